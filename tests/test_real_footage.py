@@ -7,7 +7,9 @@ these keypoints with the file as it is. Agreement to a few centimetres is what c
 """
 
 import json
+import runpy
 from pathlib import Path
+from types import SimpleNamespace
 
 import cv2
 import numpy as np
@@ -269,3 +271,65 @@ def test_openpose_keypoints_give_the_other_programs_result(views_of_file, refere
             assert np.nanpercentile(error_mm, 90) <= 45
     assert median_mm[0] <= 12
     assert min(median_mm, key=median_mm.get) == 0
+
+
+def run_script(name, paths, *out, **given):
+    """Call `main` of a script of the workflow."""
+    main = runpy.run_path(str(ROOT / "workflow" / "scripts" / f"{name}.py"))["main"]
+    main(*([paths] if paths else []), *out, **given)
+
+
+def skeletons(folder, filmed, limits):
+    """Return the 3D keypoints of OpenPose's files, made by the steps of the workflow."""
+    folder.mkdir()
+    used = {
+        "cameras": folder / "cameras.toml",
+        "skeleton": ROOT / "config" / "skeletons" / "body25b.yaml",
+        "sync": folder / "sync.json",
+        "people": folder / "people.npz",
+        "pose2d": [folder / f"{name}.npz" for name in NAMES],
+        **dict.fromkeys(("court", "covariance", "errors", "offsets")),
+    }
+    calibration = FOLDER / "calibration" / "Calib.qca.txt"
+    imported = {"names": dict(zip(NAMES, NAMES, strict=True)), "scales": {}, "override": {}}
+    imported["crops_px"] = dict.fromkeys(NAMES[:2], CUT)
+    run_script(
+        "import_cameras", None, calibration, used["cameras"], folder / "quality.json", **imported
+    )
+    folders = {name: FOLDER / "openpose_body25b" / f"cam{name[-1]}_json" for name in NAMES}
+    given = {"model": "body25b", "trim_s": (0.0, 0.5), "folders": folders, "rate_hz": 60.0}
+    for name, out in zip(NAMES, used["pose2d"], strict=True):
+        video = FOLDER / "videos" / f"{name}.mp4" if filmed else []
+        paths = SimpleNamespace(**used | {"folder": folders[name], "video": video})
+        run_script("import_pose2d", paths, out, camera=name, **given)
+    clocks = {"synchronised": True, "stated": {}}
+    run_script("synchronise_cameras", None, used["cameras"], used["pose2d"], used["sync"], **clocks)
+    found = Inputs(**used | {"people": None})
+    run_script("associate_people", found, used["people"], several=False)
+    fused = {"fusion": {"used": NAMES, "rule": "robust"}, "sex_of": {"p1": None}, **limits}
+    names = {"persons": ["p1"], "stated": [("p1", SEEN)], "take": "walk/t", "page": [], "file": "w"}
+    found = Inputs(**used | {"found": used["people"], "people_csv": None})
+    run_script("name_people", found, folder / "named.npz", **names)
+    named = Inputs(**used | {"people": folder / "named.npz"})
+    run_script("triangulate", named, folder / "pose3d.npz", **fused)
+    return keypoints.read_3d(folder / "pose3d.npz")
+
+
+class Inputs(SimpleNamespace):
+    """Inputs of a script, as Snakemake gives them."""
+
+    def get(self, name):
+        return getattr(self, name, None)
+
+
+SEEN = {"camera": "cam01", "time_s": 0.0, "at_px": [430, 620]}
+
+
+def test_keypoints_without_videos_give_the_same_skeletons(tmp_path):
+    limits = yaml_files.read(ROOT / "config" / "config.yaml")["triangulate"]
+    alone, filmed = (skeletons(tmp_path / str(way), way, limits) for way in (False, True))
+    assert alone.xyz.shape == filmed.xyz.shape == (1, 30, 25, 3)
+    assert np.isfinite(alone.xyz).mean() > 0.8
+    assert np.array_equal(np.isnan(alone.xyz), np.isnan(filmed.xyz))
+    assert np.nanmax(np.abs(alone.xyz - filmed.xyz)) < 1e-6  # metres
+    assert alone.time_s == pytest.approx(filmed.time_s, abs=1e-4)

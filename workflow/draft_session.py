@@ -29,7 +29,7 @@ def main(folder, name, court, sessions):
     title = folder.resolve().name
     draft.write(path, draft.text(found, title=title, folder=written, court=court))
     study = shown(sessions.parent / f"{name}.yaml")
-    filmed = [take for take, videos in found.takes.items() if videos]
+    filmed = [t for t, films in found.takes.items() if films and t not in draft.unfilmed(found)]
     said = [f"Wrote {shown(path)}.", draft.write_study(study, name, filmed)]
     points = draft.court_points(found, written)
     return [*said, *draft.to_check(found, shown(path), points, study)]

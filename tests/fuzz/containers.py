@@ -1,12 +1,14 @@
 """Changes of files made of parts, lengths and checksums kept right.
 
-The formats are zip, npz, PNG, JPEG, MP4 and SQLite.
+The formats are zip, tar with gzip, npz, PNG, JPEG, MP4 and SQLite.
 """
 
+import gzip
 import io
 import pickle
 import sqlite3
 import struct
+import tarfile
 import tempfile
 import warnings
 import zipfile
@@ -104,6 +106,76 @@ def _lying(members, _at, rng):
     n_bytes = rng.choice([2, 4])
     data[at : at + n_bytes] = hostile.integer(rng, n_bytes).to_bytes(n_bytes, "little")
     return bytes(data)
+
+
+TAR_LINKS = ("/etc/hostname", "../../outside", "package", "\x00", "thing/a.txt")
+TAR_KINDS = (
+    tarfile.SYMTYPE,
+    tarfile.LNKTYPE,
+    tarfile.DIRTYPE,
+    tarfile.FIFOTYPE,
+    tarfile.CHRTYPE,
+    tarfile.GNUTYPE_SPARSE,
+    tarfile.XHDTYPE,
+)
+
+TAR_SIZES = (b"77777777777", b"-0000000001", b"\x80" + b"\xff" * 10, b"00000000001")
+
+
+def change_tar(data, rng):
+    """Rewrite a tar file with a member changed, renamed, a link, missing, twice, of false size."""
+    try:
+        with tarfile.open(fileobj=io.BytesIO(data), mode="r:gz") as archive:
+            members = [(m, archive.extractfile(m).read()) for m in archive if m.isfile()]
+    except (*DAMAGED, AttributeError):  # by an earlier change
+        return data
+    if not members:
+        return data
+    at = rng.randrange(len(members))
+    if rng.random() < 0.3:
+        raw = _tar_header(members, rng)
+    else:
+        raw = _tarred(_tar_member(members, at, rng))
+    packed = gzip.compress(raw, compresslevel=1, mtime=0)
+    return packed[: rng.randrange(len(packed))] if rng.random() < 0.1 else packed
+
+
+def _tar_member(members, at, rng):
+    """Return the members with one changed, missing or twice."""
+    info, content = members[at]
+    way = rng.randrange(6)
+    if way == 0:
+        info.name = rng.choice([*hostile.NAMES[:-1], info.name.upper(), members[0][0].name])[:9000]
+    elif way == 1:
+        info.type, info.linkname, content = rng.choice(TAR_KINDS), rng.choice(TAR_LINKS), b""
+    elif way == 2:
+        return [*members[:at], *members[at + 1 :]]
+    elif way == 3:
+        return [*members, (info, binaries.flip_bits(content, rng))]
+    elif way == 4:
+        content += bytes(rng.choice([*[1 << 20] * 9, 1 << 25]))
+    else:
+        content = rng.choice(binaries.WAYS)(content, rng)
+    return [*members[:at], (info, content), *members[at + 1 :]]
+
+
+def _tar_header(members, rng):
+    """State another size in a header, its checksum made right."""
+    raw = bytearray(_tarred(members))
+    start = 512 * rng.randrange(len(raw) // 512)
+    raw[start + 124 : start + 135] = rng.choice(TAR_SIZES)
+    total = sum(raw[start : start + 148]) + 8 * 32 + sum(raw[start + 156 : start + 512])
+    raw[start + 148 : start + 156] = b"%06o\0 " % total
+    return raw
+
+
+def _tarred(members):
+    made = io.BytesIO()
+    with tarfile.open(fileobj=made, mode="w") as archive:
+        for info, content in members:
+            info.size = len(content)
+            archive.addfile(info, io.BytesIO(content))
+    return made.getvalue()
 
 
 def change_npy(data, rng):

@@ -8,6 +8,7 @@ STRUCTURE = {
     ".toml": trees.change_toml,
     ".npz": containers.change_zip,
     ".whl": containers.change_zip,
+    ".tgz": containers.change_tar,
     ".png": containers.change_png,
     ".jpg": containers.change_jpeg,
     ".mp4": containers.change_boxes,
@@ -17,6 +18,7 @@ STRUCTURE = {
 SEALED = {
     ".npz",
     ".whl",
+    ".tgz",
     ".png",
     ".db3",
     ".db",

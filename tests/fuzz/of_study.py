@@ -1,9 +1,11 @@
 """Formats of the study itself: configuration, sessions, plans, courts, skeletons, run records."""
 
 import base64
+import io
 import json
 import re
 import shutil
+import tarfile
 import zipfile
 from pathlib import Path
 
@@ -145,12 +147,28 @@ def wheels(folder):
                 archive.writestr(zipfile.ZipInfo(member), bytes(range(256)) * 20)
 
 
-def unpack(path):
+def packages(folder):
+    """Write npm packages with two small members."""
+    for name in ("thing-1.0.tgz", "other-2.0.tgz"):
+        with tarfile.open(folder / name, "w:gz") as archive:
+            for member in ("thing/a.txt", "thing/inner/b.bin", "thing/package.json"):
+                info = tarfile.TarInfo(member)
+                info.size = 256 * 20
+                archive.addfile(info, io.BytesIO(bytes(range(256)) * 20))
+
+
+def unpack_package(path):
+    """Unpack two members, as if the package's checksum were right."""
+    return unpack(path, package="thing@1.0")
+
+
+def unpack(path, **kind):
     """Unpack two members, as if the wheel's checksum were right."""
     content = path.parent / "content"
     content.write_bytes(bytes(range(256)) * 20)
     members = dict.fromkeys(("thing/a.txt", "thing/inner/b.bin"), files.sha256(content))
-    artefact = artefacts.Artefact("thing", "0" * 64, members, "CC0", requirement="thing==1.0")
+    kind = kind or {"requirement": "thing==1.0"}
+    artefact = artefacts.Artefact("thing", "0" * 64, members, "CC0", **kind)
     targets = {member: path.parent / "out" / member for member in members}
     artefacts.unpack(path, artefact, targets)
     for target in targets.values():
@@ -272,6 +290,7 @@ FORMATS = [
     Format("skeleton", 1000, laughing(copies("config/skeletons/*.yaml")), skeleton.read),
     Format("derived-joints", 400, copies("config/derived_joints.yaml"), derived_joints.read),
     Format("wheel", 800, wheels, unpack),
+    Format("npm-package", 400, packages, unpack_package),
     Format("clocks", 700, clocks, read_clocks),
     Format("sidecar", 300, sidecars, read_sidecars),
     Format("checksums", 300, sums, read_sums, refuses=False),

@@ -123,7 +123,7 @@ def test_2d_and_3d_of_other_programs_become_skeletons_and_measures(gym):
         "takes": {
             "balancing": {
                 "synchronised": True,
-                "videos": {name: str(walk / "videos" / f"{name}.mp4") for name in names},
+                "rate_hz": 60,
                 "pose2d": {
                     "body25b": {
                         name: str(walk / "openpose_body25b" / f"cam{k}_json")
@@ -133,9 +133,16 @@ def test_2d_and_3d_of_other_programs_become_skeletons_and_measures(gym):
                 "pose3d": {"body25b": {"p1": str(trc)}},
             }
         },
-        "override": {"models": ["body25b"], "take_figures": [], "export_stages": ["pose3d"]},
+        "override": {
+            "models": ["body25b"],
+            "take_figures": ["overlay", "visibility"],
+            "export_stages": ["pose3d"],
+        },
     }
     results = study(gym, "walk", session, calibrations=["file"]) / "takes/balancing"
+    made = {path.name.split(".")[0] for path in (results / "figures").glob("*.png")}
+    assert made == {"visibility"}  # an overlay needs pictures
+    assert (results / "pages/viewer.body25b.html").is_file()
     ours = keypoints.read_3d(results / "pose3d/file/all-robust/body25b.npz")
     theirs = keypoints.read_3d(results / "pose3d/imported/trc/body25b.npz")
     joints = [name for name in skeleton.JOINTS if name in ours.joints and name in theirs.joints]
@@ -149,6 +156,18 @@ def test_2d_and_3d_of_other_programs_become_skeletons_and_measures(gym):
     assert np.nanmedian(np.linalg.norm(places[0] - places[1], axis=-1)) < 0.02  # metres
     measured = pd.read_csv(results / "kinematics/imported/trc/body25b.summary.csv")
     assert set(measured["person"]) == {"p1"}
+    # With the videos the same keypoints come out of the same files.
+    alone = keypoints.read_2d(results / "pose2d/body25b/cam01.npz")
+    take = session["takes"]["balancing"]
+    del take["rate_hz"]
+    take["videos"] = {name: str(walk / "videos" / f"{name}.mp4") for name in names}
+    (gym / "config/sessions/walk.yaml").write_text(yaml.safe_dump(session))
+    wanted = "results/walk/takes/balancing/pose2d/body25b/cam01.npz"
+    done = snakemake(gym, "config/mine.yaml", "--", wanted)
+    assert done.returncode == 0, done.stdout + done.stderr
+    beside = keypoints.read_2d(results / "pose2d/body25b/cam01.npz")
+    assert np.array_equal(beside.xy, alone.xy, equal_nan=True)
+    assert beside.time_s == pytest.approx(alone.time_s)
 
 
 def test_an_own_detector_is_checked_and_kept(gym):

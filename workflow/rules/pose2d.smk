@@ -1,6 +1,6 @@
 """2D keypoints of each camera, by a network or of another program; 3D keypoints of another program.
 
-Inputs: a take's videos, networks, backgrounds, JSON folders, TRC files. Outputs:
+Inputs: a take's videos, networks, backgrounds, JSON folders, TRC files, imported cameras. Outputs:
 results/{session}/takes/{take}/pose2d/.
 Steps: detect_pose, import_pose2d, import_pose3d.
 """
@@ -37,8 +37,9 @@ rule detect_pose:
 rule import_pose2d:
     input:
         folder=lambda w: whole(take_of(w).pose2d[w.model][w.camera]),
-        files=lambda w: recordings.inside(take_of(w).pose2d[w.model][w.camera]),
-        video=lambda w: take_of(w).videos[w.camera],
+        files=of_job(recordings.keypoint_files),
+        video=lambda w: take_of(w).videos.get(w.camera, []),
+        cameras=of_job(recordings.cameras_for_size),
         skeleton=of_job(Job.skeleton_file),
     output:
         pose2d_npz=paths.POSE2D,
@@ -49,6 +50,8 @@ rule import_pose2d:
     params:
         code=code("import_pose2d.py"),
         trim_s=lambda w: take_of(w).trim_s,
+        folders=lambda w: take_of(w).pose2d[w.model],
+        rate_hz=lambda w: take_of(w).rate_hz,
     script:
         "../scripts/import_pose2d.py"
 

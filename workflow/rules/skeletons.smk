@@ -37,7 +37,7 @@ rule synchronise_cameras:
         code=code("synchronise_cameras.py"),
         step=step("synchronise_cameras"),
         synchronised=lambda w: take_of(w).synchronised,
-        stated=of_job(lambda job: takes.clocks(job, job.take.videos)),
+        stated=of_job(lambda job: takes.clocks(job, job.take.cameras)),
     script:
         "../scripts/synchronise_cameras.py"
 

@@ -12,7 +12,7 @@ import pytest
 from courtside.calibration import file_formats
 from courtside.devices import openpose
 from courtside.exports import markers, trc
-from courtside.geometry.camera import project
+from courtside.geometry.camera import Camera, project, write_toml
 from courtside.records.keypoints import keypoints as keypoint_files
 from courtside.records.keypoints import missing_reason, skeleton
 from courtside.study.errors import InputError
@@ -109,7 +109,7 @@ def test_numbers_that_reach_over_the_whole_video_may_begin_anywhere(tmp_path):
         (range(20), "20 numbered 0 to 19, as of every second frame; number the files"),
         (range(1, 15), "14 numbered 1 to 14, as of every third frame; number the files"),
         (range(50, 70), "0 to 39 or a file for each, found 20 files numbered 50 to 69;"),
-        (range(41), "at most 40 frames.* found 41 files numbered 0 to 40;"),
+        (range(42), "at most 40 frames.* found 42 files numbered 0 to 41;"),
     ],
 )
 def test_numbers_that_do_not_say_the_frame_are_refused(tmp_path, numbers, said):
@@ -132,8 +132,57 @@ def test_the_script_counts_the_frames_of_the_whole_video(tmp_path):
     assert found.time_s == pytest.approx([0.3, 0.4, 0.5])
     assert found.size.tolist() == [64, 48]
     assert (found.reason == missing_reason.OUT_OF_IMAGE).any()  # the points are beyond 64 px
+    alone = SimpleNamespace(**vars(paths) | {"video": [], "cameras": tmp_path / "cameras.toml"})
+    camera = Camera("left", (640, 480), np.diag([500.0, 500, 1]), np.zeros(5), np.eye(3, 4))
+    write_toml(alone.cameras, [camera], source="test")
+    given = {"folders": {"left": tmp_path / "j"}, "rate_hz": 10.0, "trim_s": trim_s}
+    script["main"](alone, out, camera="left", model="theirs", **given)
+    unfilmed = keypoint_files.read_2d(out)
+    assert unfilmed.time_s == pytest.approx(found.time_s)
+    assert unfilmed.size.tolist() == [640, 480]
+    seen = found.reason == missing_reason.OK
+    assert np.array_equal(unfilmed.xy[seen], found.xy[seen])
     with pytest.raises(InputError, match="correct trim_s"):
         script["main"](paths, out, camera="left", model="theirs", trim_s=(2.0, 3.0))
+
+
+def test_one_file_more_than_frames_is_left_out(tmp_path, caplog):
+    write_numbers(tmp_path / "j", range(41))
+    found = read(tmp_path / "j", n_frames=40)
+    assert found.xy[0, :, 0, 0] == pytest.approx(np.arange(100, 140))
+    assert "41 files for 40 frames; taken in their order, the last one, number 40" in caplog.text
+
+
+def test_without_a_video_frames_are_counted_from_the_first_number(tmp_path):
+    write_numbers(tmp_path / "j", range(7, 10))
+    found = read(tmp_path / "j", n_frames=5, first=6)
+    assert np.isfinite(found.score[0, :, 0]).tolist() == [False, True, True, True, False]
+    assert found.xy[0, 1:4, 0, 0].tolist() == [107, 108, 109]
+    with pytest.raises(InputError, match=r"within the 120x480 px that .* found 88% outside, up to"):
+        read(tmp_path / "j", n_frames=5, first=6, size=(120, 480))
+
+
+@pytest.mark.parametrize(
+    ("name", "count"), [("coco17", 17), ("halpe26", 26), ("coco133", 133), ("body25", 25)]
+)
+def test_skeletons_are_found_by_their_points(tmp_path, name, count):
+    write(tmp_path / "j", "0.json")
+    write(tmp_path / "j", "1.json", np.tile([5.0, 9.0, 0.8], count).tolist())
+    n_points, names = openpose.skeletons(tmp_path / "j")
+    assert (n_points, name in names, len(names)) == (count, True, 1 + (count == 25))
+
+
+def test_points_of_no_skeleton_are_named(tmp_path):
+    write(tmp_path / "j", "0.json", [1.0] * 21)
+    with pytest.raises(InputError, match="expected people with 17, 25, 26, 133 points, found 7;"):
+        openpose.skeletons(tmp_path / "j")
+    write(tmp_path / "k", "0.json")
+    with pytest.raises(InputError, match="points, found nobody;"):
+        openpose.skeletons(tmp_path / "k")
+    assert openpose.is_one(tmp_path / "k" / "0.json")
+    for text in ("{", "[1]", '{"people": 1}'):
+        (tmp_path / "k" / "1.json").write_text(text)
+        assert not openpose.is_one(tmp_path / "k" / "1.json")
 
 
 def test_scores_above_one_are_one(tmp_path):
@@ -195,6 +244,7 @@ def test_25_points_in_the_other_order_are_recognised(tmp_path, name):
         row += [300 + 30.0 * sign, 20.0 + heights[part if sign else joint], 0.9]
     write(tmp_path / "j", "0.json", row)
     assert read(tmp_path / "j", joints, n_frames=1).xy.shape == (1, 1, 25, 2)
+    assert openpose.skeletons(tmp_path / "j")[1][0] == name
     other = {"body25": "body25b", "body25b": "body25"}[name]
     with pytest.raises(InputError, match=f"points of {other}, found what looks like {name},"):
         read(tmp_path / "j", skeleton.read(SKELETONS / f"{other}.yaml"))

@@ -102,6 +102,55 @@ def test_a_camera_unknown_to_the_calibration_is_marked():
     assert "one of int_1_img" in text
 
 
+def folder(path, skeletons=(25, ("body25b", "body25"))):
+    parts = tuple(path.split("/")[2:])
+    return Recording(path, parts, "keypoints", n_frames=101, skeleton=skeletons)
+
+
+KEYPOINTS = tuple(folder(f"data/north/pose/{name}_json") for name in ("left", "right"))
+CALIBRATION = recording(
+    "data/north/Calib.toml", "calibration", cameras={"left": (64, 48), "right": (64, 48)}
+)
+
+
+def test_keypoints_without_videos_are_a_session_that_wants_their_rate(tmp_path):
+    guess, text, content = draft(*KEYPOINTS, CALIBRATION)
+    folders = {name: f"data/north/pose/{name}_json" for name in ("left", "right")}
+    assert content["takes"] == {"take1": {"pose2d": {"body25b": folders}}}
+    assert content["override"] == {"models": ["body25b"]}
+    assert (content["court"], content["synchronised"]) == ("none", True)
+    assert f"# rate_hz: 60  {session_draft.MARK} no file states it" in text
+    assert "25 points are body25b or body25: the points look like body25b" in text
+    advice = session_draft.to_check(guess, "north.yaml", "points.csv", "config/north.yaml")
+    assert "Keypoints without videos: state `rate_hz` of take1." in advice
+    folder = schemas.SCHEMAS.parents[1] / "config"
+    content["takes"]["take1"]["rate_hz"] = 60
+    found = session_faults.find(folder, tmp_path / "north.yaml", content, None, tmp_path)
+    assert [line for line in found if "expected a file, found none" not in line] == []
+    guess, _, content = draft(*KEYPOINTS)
+    assert "court_points" not in content
+    advice = session_draft.to_check(guess, "north.yaml", "points.csv", "config/north.yaml")
+    assert any("put the calibration file into the folder" in line for line in advice)
+    assert not any("Court points" in line or "No walk" in line for line in advice)
+
+
+def test_keypoints_beside_videos_are_used_where_all_takes_have_them():
+    halpe = [folder(r.path, (26, ("halpe26",))) for r in KEYPOINTS]
+    _, text, content = draft(*TAKE, *halpe, CALIBRATION)
+    take = content["takes"]["a"]
+    assert set(take) == {"videos", "pose2d"}
+    assert list(take["pose2d"]) == ["halpe26"]
+    assert content["override"] == {"models": ["halpe26"]}
+    assert "101 files" in text
+    assert "26 points are halpe26\n" in text
+    second = [recording(f"data/north/b_{name}.mp4") for name in ("left", "right")]
+    beside = [folder(f"data/north/a/{name}_json") for name in ("left", "right")]
+    _, _, content = draft(*TAKE, *second, *beside, CALIBRATION)
+    assert "pose2d" in content["takes"]["a"]
+    assert "pose2d" not in content["takes"]["b"]
+    assert "override" not in content
+
+
 def test_photos_alone_make_a_session_of_any_court():
     photos = Recording("data/door/images", ("images",), "photos", (640, 480), n_photos=12)
     _, text, content = draft(photos, folder="data/door")

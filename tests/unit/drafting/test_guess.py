@@ -34,6 +34,8 @@ def guess(*paths, **kinds):
     placed += [r for take in found.takes.values() for r in take.values()]
     placed += [r for r, _ in found.unused] + [r for *_, r in found.devices]
     placed += [r for r in (found.court_points, found.calibration) if r]
+    filmed = [r for take in found.takes.values() for r in take.values()]
+    placed += [r for t in found.keypoints.values() for r in t.values() if r not in filmed]
     assert sorted(r.path for r in placed) == sorted(r.path for r in given)  # each exactly once
     return found
 
@@ -283,3 +285,43 @@ def test_files_of_devices_alone_are_takes():
         ("arm_raise", "mocopi"),
         ("jump", "mocopi"),
     ]
+
+
+def keypoints(*paths):
+    """Return the kinds of recordings: folders of keypoints of these names."""
+    return dict.fromkeys((PurePosixPath(path).name for path in paths), "keypoints")
+
+
+def test_keypoints_alone_are_takes():
+    folders = ("openpose/serve/cam1_json", "openpose/serve/cam2_json", "openpose/lob/cam1_json")
+    folders += ("openpose/lob/cam2_json",)
+    found = guess(*folders, **keypoints(*folders))
+    assert found.cameras == ["cam1", "cam2"]
+    assert sorted(found.takes) == ["lob", "serve"]
+    assert found.keypoints == found.takes
+    assert paths(found.takes["lob"]) == {n: f"openpose/lob/{n}_json" for n in ("cam1", "cam2")}
+
+
+def test_keypoints_lie_beside_the_videos_that_they_were_made_from():
+    folders = [f"{take}/pose/cam0{k}_json" for take in ("serve", "lob") for k in (1, 2)]
+    films = [f"{take}/videos/cam0{k}.mp4" for take in ("serve", "lob") for k in (1, 2)]
+    found = guess(*films, *folders, "lob/pose/cam07_json", **keypoints(*folders, "cam07_json"))
+    assert paths(found.keypoints["serve"]) == {
+        "cam01": "serve/pose/cam01_json",
+        "cam02": "serve/pose/cam02_json",
+    }
+    assert paths(found.takes["serve"])["cam01"] == "serve/videos/cam01.mp4"
+    assert [(r.path, why) for r, why in found.unused] == [
+        ("gym/lob/pose/cam07_json", "keypoints of no camera and take found")
+    ]
+
+
+def test_keypoints_of_some_cameras_only_and_those_changed_by_another_program_are_left_out():
+    films = [f"videos/cam{k}.mp4" for k in (1, 2)]
+    folders = ["pose/cam1_json", "pose-associated/cam1_json", "pose-sync/cam2_json"]
+    found = guess(*films, *folders, **keypoints(*folders))
+    assert found.keypoints == {}
+    why = {r.path.removeprefix("gym/"): reason for r, reason in found.unused}
+    assert why["pose/cam1_json"] == "keypoints of some cameras of take take1 only"
+    assert "changed" in why["pose-associated/cam1_json"]
+    assert "changed" in why["pose-sync/cam2_json"]

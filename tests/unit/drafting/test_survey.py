@@ -1,5 +1,6 @@
 """What the files of a folder are, and the program that drafts a session of them."""
 
+import json
 import shutil
 import subprocess
 import sys
@@ -65,6 +66,25 @@ def test_every_kind_is_found(gym):
     board = found["data/My Gym/board left"]
     assert (board.size, board.n_photos) == ((160, 120), 3)
     assert found["data/My Gym/cut right.mp4"].note.startswith("expected a video")
+
+
+def test_folders_of_keypoints_are_found(tmp_path):
+    for name, count in (("cam1_json", 26), ("odd_json", 7), ("nobody_json", 0)):
+        (tmp_path / "pose" / name).mkdir(parents=True)
+        for at in range(3):
+            people = [{"pose_keypoints_2d": [5.0, 9.0, 0.8] * count}] * bool(count)
+            file = tmp_path / "pose" / name / f"cam1_{at:06d}.json"
+            file.write_text(json.dumps({"version": 1.3, "people": people}))
+    (tmp_path / "other").mkdir()
+    for at in range(3):
+        (tmp_path / "other" / f"{at}.json").write_text("{}")
+    found = {r.path: r for r in survey.survey(tmp_path, root=tmp_path)}
+    assert sorted(found) == ["pose/cam1_json", "pose/nobody_json", "pose/odd_json"]
+    one = found["pose/cam1_json"]
+    assert (one.kind, one.n_frames, one.skeleton) == ("keypoints", 3, (26, ("halpe26",)))
+    assert one.parts == ("pose", "cam1_json")
+    assert "points, found 7;" in found["pose/odd_json"].note
+    assert "points, found nobody;" in found["pose/nobody_json"].note
 
 
 def test_a_folder_elsewhere_gives_absolute_paths(gym, tmp_path):

@@ -1,12 +1,15 @@
 """Subjects among the persons found: named, inferred where only one is left, never guessed."""
 
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import yaml
 
 from courtside.reconstruction.association import naming
+from courtside.records.keypoints import sightings
 from courtside.records.keypoints.sightings import Sighting
 from courtside.study.errors import InputError
 from fixtures.people import named_takes
@@ -19,8 +22,8 @@ def sighting(subject, person, time_s=1.0):
     return Sighting(subject, "c0", time_s, named_takes.place_px(person), "line 2")
 
 
-def name(take, sightings=(), subjects=("p1",), court=None, words=WORDS):
-    return naming.name(take.found, take.seen, sightings, subjects, words, court)
+def name(take, told=(), subjects=("p1",), court=None, words=WORDS):
+    return naming.name(take.found, take.seen, told, subjects, words, court)
 
 
 def test_one_subject_and_one_person_need_no_name():
@@ -56,8 +59,17 @@ def test_one_subject_among_several_is_not_guessed():
         "c1); say which of them is p1 on the page results/people.html (people.csv), or by `seen` "
         "in config/sessions/hall.yaml"
     )
-    with pytest.raises(InputError, match="which of them is p1 by `seen` in"):
-        name(named_takes.take(2), words=naming.Wording("hall/walk", "", "hall.yaml"))
+
+
+def test_without_a_page_each_person_comes_with_the_entry_that_names_it():
+    take = named_takes.take(2)
+    with pytest.raises(InputError, match="which of them is p1 by `seen` in") as fault:
+        name(take, words=naming.Wording("hall/walk", "", "hall.yaml"))
+    entries = [yaml.safe_load(text) for text in re.findall(r"{.*?}", str(fault.value))]
+    assert len(entries) == 2
+    for person, entry in enumerate(entries):
+        found = name(take, [sightings.stated("hall.yaml", "p1", entry)])
+        assert (found.index["c1"] == person).all()
 
 
 def test_a_sighting_chooses_the_person_and_says_who_is_left():

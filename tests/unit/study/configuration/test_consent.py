@@ -70,6 +70,15 @@ def test_nothing_is_made_of_takes_with_somebody_who_withdrew():
     ]
 
 
+def test_takes_of_keypoints_alone_have_no_pictures():
+    alone = {"pose2d": {"coco17": {"a": "a_json", "b": "b_json"}}, "rate_hz": 50}
+    found = session(agreed("analysis", "export", "pictures"), takes={"t1": alone, "t2": alone})
+    assert consent.left_out(found, []) == [
+        "no pictures or videos in takes t1, t2: there are keypoints alone, no videos"
+    ]
+    assert found.takes["t1"].cameras == ("a", "b")
+
+
 def test_all_takes_of_somebody_who_withdrew_are_told_in_one_line():
     found = session(agreed(), agreed("analysis", "export", "pictures"))
     assert found.takes == {}

@@ -253,8 +253,8 @@ def test_good_sessions_have_no_fault(root, content):
         (
             RECORDED | {"subjects": {"p1": None}, "takes": {"t": FILMED}},
             [
-                "takes.t: expected the key 'videos' or 'devices' and not 'virtual' "
-                "in a recorded session"
+                "takes.t: expected the key 'videos', 'pose2d' or 'devices' and not 'virtual' in a "
+                "recorded session"
             ],
         ),
         (
@@ -325,6 +325,68 @@ def test_a_take_without_the_keypoints_that_its_session_wants_is_named(root):
     assert find(root, content | {"takes": {"t": videos | OTHERS}}) == []
     (line,) = find(root, content | {"takes": {"t": videos | OTHERS, "u": videos}})
     assert "takes.u.pose2d: expected body25b, as override.models says, found none" in line
+
+
+ALONE_2D = {"takes": {"t": OTHERS | {"rate_hz": 60}}, "override": {"models": ["body25b"]}}
+
+
+def unfilmed(root, **changes):
+    """Return the faults of a session of keypoints without videos, some of its keys changed."""
+    (root / "skeletons").mkdir(exist_ok=True)
+    (root / "skeletons" / "body25b.yaml").touch()
+    session = {"court": "none", "cameras": {"a": None, "b": None}, "subjects": {"p1": None}}
+    return find(root, session | {"calibration": {"file": "c.toml"}} | ALONE_2D | changes)
+
+
+def test_keypoints_need_no_videos(root):
+    assert unfilmed(root) == []
+    seen = {"p1": {"seen": {"camera": "b", "time_s": 0, "at_px": [1, 2]}}}
+    assert unfilmed(root, subjects=seen) == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"takes": {"t": OTHERS}}, "takes.t.rate_hz: expected the frame rate of the keypoints"),
+        ({"override": {}}, "t: expected skeletons of its pose2d alone in override.models, for"),
+        ({"override": {"models": ["body25b", "net"]}}, "write `override: {models: [body25b]}`"),
+        (
+            {"takes": {"t": {"pose2d": {"body25b": {"a": "a.mp4"}}, "rate_hz": 60}}},
+            "takes.t.pose2d: expected two cameras or more, found 1",
+        ),
+        (
+            {"takes": {"t": OTHERS | {"rate_hz": 60, "videos": {"a": "a.mp4", "b": "b.mp4"}}}},
+            "takes.t.rate_hz: expected it of a take with keypoints and no videos only",
+        ),
+        (
+            {"takes": {"t": OTHERS | {"rate_hz": 60, "clocks": {"a": {"offset_s": 1.0}}}}},
+            "takes.t.clocks.a: expected no offset or drift of the first camera",
+        ),
+        (
+            {"calibration": {"file": "c.toml"}, "cameras": {"a": None, "b": None, "c": None}}
+            | {"takes": {"t": {"pose2d": OTHERS["pose2d"] | {"coco17": {"c": "c.toml"}}}}}
+            | {"takes": {"t": {"videos": dict.fromkeys("abc", "a.mp4"), **OTHERS}}},
+            "pose2d.body25b: expected a folder of each camera of the take, found none of c",
+        ),
+    ],
+)
+def test_keypoints_without_videos_say_what_videos_would(root, changes, said):
+    (line,) = unfilmed(root, **changes)
+    assert said in line
+
+
+def test_keypoints_without_videos_need_a_calibration_file_and_cannot_be_steadied(root):
+    (root / "placed.csv").write_text("camera,x_px,y_px,x_m,y_m,z_m\n")
+    content = ALONE_2D | {"court": "none"}
+    content |= {"cameras": {"a": {"static": "a.mp4"}, "b": {"static": "b.mp4"}}}
+    content |= {"subjects": {"p1": None}, "court_points": "placed.csv"}
+    (root / "skeletons").mkdir()
+    (root / "skeletons" / "body25b.yaml").touch()
+    (line,) = find(root, content)
+    assert "takes.t: expected `calibration` in a session with keypoints and no videos" in line
+    steady = OTHERS | {"rate_hz": 60, "steady": True}
+    (line,) = find(root, content | {"calibration": {"file": "c.toml"}, "takes": {"t": steady}})
+    assert "takes.t.steady: expected videos, in which shake is measured" in line
 
 
 def test_court_points_may_be_clicked_later_where_there_are_pictures_to_click_on(root):

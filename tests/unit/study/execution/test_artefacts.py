@@ -1,5 +1,6 @@
 """Fetching pinned files: mirror and registries, checksums, and archives that mean harm."""
 
+import gzip
 import hashlib
 import io
 import struct
@@ -307,6 +308,27 @@ def test_where_npm_finds_nothing_one_line_says_what_to_do(tmp_path, monkeypatch)
 def test_a_member_of_a_package_that_is_no_file_leaves_nothing(tmp_path, second, message):
     one = tarball(tmp_path / "mirror", entry("pkg/a.bin", CONTENT["pkg/a.bin"]), second)
     with pytest.raises(InputError, match=message):
+        artefacts.fetch(one, outputs(tmp_path), mirror_folder=tmp_path / "mirror")
+    assert made(tmp_path) == []
+
+
+def test_a_false_size_in_a_package_leaves_nothing(tmp_path):
+    """A tar file is no longer than its content, whatever sizes it states."""
+    folder = tmp_path / "mirror"
+    tarball(folder)
+    raw = bytearray(gzip.decompress((folder / TARBALL).read_bytes()))
+    raw[124:135] = b"%011o" % (2 << 30)
+    raw[148:156] = b"%06o\0 " % (sum(raw[:148]) + 8 * 32 + sum(raw[156:512]))
+    (folder / TARBALL).write_bytes(gzip.compress(bytes(raw)))
+    with pytest.raises(InputError, match=r"member pkg/a\.bin: expected") as caught:
+        artefacts.fetch(npm_artefact(folder), outputs(tmp_path), mirror_folder=folder)
+    assert "\n" not in str(caught.value)
+    assert made(tmp_path) == []
+
+
+def test_a_member_that_a_package_lacks_leaves_nothing(tmp_path):
+    one = tarball(tmp_path / "mirror", entry("pkg/a.bin", CONTENT["pkg/a.bin"]))
+    with pytest.raises(InputError, match=r"expected the member pkg/b\.bin, found none"):
         artefacts.fetch(one, outputs(tmp_path), mirror_folder=tmp_path / "mirror")
     assert made(tmp_path) == []
 

@@ -21,6 +21,26 @@ def test_files_of_a_folder_are_inputs_but_hidden_ones(tmp_path):
     assert recordings.inside(str(tmp_path / "1.png")) == []
 
 
+def test_keypoints_without_videos_wait_for_all_cameras(job, study, tmp_path):
+    session = study.sessions["walk-4cams-tiny"]
+    files = [tmp_path / name / "0.json" for name in ("cam01", "cam02")]
+    for file in files:
+        file.parent.mkdir()
+        file.touch()
+    pose2d = {"body25b": {file.parent.name: str(file.parent) for file in files}}
+    wildcards = {**REAL, "camera": "cam01", "model": "body25b"}
+
+    def given(**keys):
+        take = replace(session.takes["balancing"], pose2d=pose2d, **keys)
+        sessions = {session.name: replace(session, takes={"balancing": take})}
+        one = job(replace(study, sessions=sessions), **wildcards)
+        return recordings.keypoint_files(one), recordings.cameras_for_size(one)
+
+    assert given() == ([str(files[0])], [])
+    cameras = "results/walk-4cams-tiny/calibration/file/cameras.toml"
+    assert given(videos={}, rate_hz=60.0) == (list(map(str, files)), cameras)
+
+
 def test_fixed_cameras_and_devices_have_videos(job):
     assert recordings.video(job(**REAL, camera="cam01")) == f"{DEMO}/cam01.mp4"
     colour = "results/single-view-tiny/takes/claps/devices/d415.mp4"

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from courtside.study.targets import takes
+from courtside.study.targets import pages, takes
 
 REAL = "results/walk-4cams-tiny/takes/balancing"
 FORMATS = ("pdf", "png", "csv")
@@ -65,6 +65,29 @@ def test_figures_without_consent_to_pictures_show_nobody(study):
     ]
     assert takes.every_figure(study) == figures
     assert takes.every_figure(agreeing(study, "analysis")) == figures[3:]
+
+
+def unfilmed(study):
+    """Return the study whose real take has another program's keypoints and no videos."""
+    session = study.sessions["walk-4cams-tiny"]
+    take = session.takes["balancing"]
+    pose2d = {"body25b": {name: f"{name}_json" for name in take.videos}}
+    alone = replace(take, videos={}, pose2d=pose2d, rate_hz=60.0)
+    sessions = {session.name: replace(session, takes={"balancing": alone})}
+    return replace(study, sessions=sessions)
+
+
+def test_without_videos_only_pictures_are_left_out(study):
+    study = unfilmed(study)
+    assert takes.every_check(study) == []
+    assert takes.every_verdict(study) == [f"{REAL}/quality.csv"]
+    assert takes.every_kinematics(study) == [
+        f"{REAL}/kinematics/file/all-robust/blazepose-full.summary.csv"
+    ]
+    drawn = {path.split("/")[-1].split(".")[0] for path in takes.every_figure(study)}
+    assert drawn == {"skeletons", "reprojection", "visibility", "kinematics"}
+    assert pages.every_people_page(study) == pages.every_overlay_video(study) == []
+    assert len(pages.every_viewer(study)) == 1
 
 
 def test_shake_is_drawn_of_steady_takes(study):

@@ -2,7 +2,8 @@
 
 bvh: `read`: any BVH file as a posed hierarchy; `read_text`: its checked content
 mocopi, nuitrack: `read`: the motion of one person as a `DeviceMotion`
-openpose: `read`: keypoints of one camera; `link`: persons followed through frames
+openpose: `read`: keypoints of one camera; `skeletons`; `link`: persons followed through frames
+frame_numbers: `matched`, `common`: which frames the files of a folder are of
 open_depth: `read`: colour and depth of any form as a `DepthRecording`; `baseline`
 depth_folder: `read`: colour and depth from a folder of plain files
 depth_recording: `DepthRecording`

@@ -1,7 +1,6 @@
 """Keypoint files of OpenPose and AlphaPose, and the tracklets of the people in them."""
 
 import json
-import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -9,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
+from courtside.devices import frame_numbers
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.records.keypoints.skeleton import Skeleton
@@ -31,106 +31,104 @@ def read(
     model: str,
     size: tuple[int, int],
     time_s: NDArray,
+    first: int | None = None,
     trim_s: tuple[float, float] | None = None,
 ) -> Keypoints2D:
     """Read the keypoints of one camera: a tracklet for each person that could be followed.
 
-    The `folder` holds files `*.json`; the last number in a name is that of the frame, from 0, or
-    from any number where the files reach over the whole video. Their points are in the order of the
-    `skeleton`; `size` is the width and height of the video, px. `time_s` (T,) are the times of all
-    frames of the video; in those without a file nobody is seen. With `trim_s`, only frames from its
-    start to before its stop.
+    The `folder` holds files `*.json`; the last number in a name is that of the frame
+    (`frame_numbers`). Their points are in the order of the `skeleton`; `size` is the width and
+    height of the picture, px. `time_s` (T,) are the times of all frames of the video; in those
+    without a file nobody is seen. Without a video, `first` is the number of the first of them. With
+    `trim_s`, only frames from its start to before its stop.
 
     An `InputError` if there are no such files, one is damaged or has another number of points, the
-    numbers do not say which frames the files are of, no frame lies within `trim_s`, or the points
-    are those of another skeleton.
+    numbers do not say which frames the files are of, no frame lies within `trim_s`, the points are
+    those of another skeleton, or, without a video, of pictures of another size.
     """
-    files = _numbered(Path(folder))
-    first = _first_number(folder, files, len(time_s))
-    times = np.asarray(time_s, dtype=float)
+    files, times = frame_numbers.numbered(folder), np.asarray(time_s, dtype=float)
+    known = first is not None
+    if first is None:
+        first, remark = frame_numbers.matched(folder, files, len(times), _n_needed(times, trim_s))
+        if remark:
+            log.logger.warning("%s", remark)
     kept = np.flatnonzero((times >= trim_s[0]) & (times < trim_s[1]) if trim_s else times >= 0)
     if trim_s and not len(kept):
         raise InputError(
             f"{folder}: expected frames from {trim_s[0]:g} s to before {trim_s[1]:g} s (trim_s of "
-            f"the take), found a video from 0 to {times[-1]:.2f} s; correct trim_s"
+            f"the take), found a recording from 0 to {times[-1]:.2f} s; correct trim_s"
         )
     empty = np.empty((0, len(skeleton.joints), 3))
     people = [empty] * len(times)
     for number, path in files.items():
-        people[number - first] = _people(path, len(skeleton.joints), skeleton.name)
+        if number - first < len(people):  # the last one may be one too many
+            people[number - first] = _people(path, len(skeleton.joints), skeleton.name)
     _check_order(folder, skeleton.name, people)
+    if known:
+        _check_size(folder, np.concatenate(people), size)
     tracks = link([people[at] for at in kept])
     return _keypoints(tracks, skeleton, camera, model, size, times[kept])
 
 
-# ASSUME: of fewer files, numbers that are a whole share of the video's may be so by chance.
-LEAST_FILES = 10
-RENUMBER = "number the files by the frames of the video, from 0, or name the video of these files"
+# ASSUME: of points that were found in pictures of this size so many lie within them.
+WITHIN = 0.8
 
 
-def _first_number(folder: StrPath, files: Mapping[int, Path], n_frames: int) -> int:
-    """Return the number of the video's first frame; `InputError` where the numbers do not say it.
+def _n_needed(times: NDArray, trim_s: tuple[float, float] | None) -> int:
+    return int(np.count_nonzero(times < trim_s[1])) if trim_s else len(times)
 
-    Numbers within the video are those of its frames, as OpenPose writes them even where it begins
-    later; others must reach over the whole video.
+
+def _check_size(folder: StrPath, people: NDArray, size: tuple[int, int]) -> None:
+    """Raise `InputError` if points, (K, J, 3), were found in pictures of another `size`, px."""
+    xy = people[np.isfinite(people[..., 0])][:, :2]
+    within = ((xy >= -0.5) & (xy <= np.array(size) - 0.5)).all(axis=1)
+    if len(xy) and within.mean() < WITHIN:
+        raise InputError(
+            f"{folder}: expected points within the {size[0]}x{size[1]} px that the camera was "
+            f"calibrated for, found {1 - within.mean():.0%} outside, up to "
+            f"({xy[:, 0].max():.0f}, {xy[:, 1].max():.0f}); declare `scale` or `crop_px` of the "
+            "camera, or name its own folder"
+        )
+
+
+# Skeletons by their number of points.
+SKELETONS = {17: ("coco17",), 25: MISTAKEN, 26: ("halpe26",), 133: ("coco133",)}
+LOOKED_AT = 30  # files of a folder, to see what its points are
+
+
+def skeletons(folder: StrPath) -> tuple[int, tuple[str, ...]]:
+    """Return how many points people of a folder have, and which skeletons these may be of.
+
+    The likeliest is first: of 25 points the ninth tells, where it is seen. An `InputError` if the
+    files are no such files, nobody is in them, or no skeleton has so many points.
     """
-    first, last = min(files), max(files)
-    span = last - first + 1
-    if span > n_frames:
+    files = [path for _, path in sorted(frame_numbers.numbered(folder).items())]
+    looked_at = files[:: max(1, len(files) // LOOKED_AT)]
+    people = [person.ravel() for path in looked_at for person in _rows(path)]
+    counts = {row.size for row in people}
+    n_points, rest = divmod(counts.pop(), 3) if len(counts) == 1 else (0, 0)
+    known = () if rest else SKELETONS.get(n_points, ())
+    if not known:
+        found = ", ".join(sorted({f"{row.size / 3:g}" for row in people})) or "nobody"
         raise InputError(
-            f"{folder}: expected at most {n_frames} frames, as many as the video has, found "
-            f"{len(files)} files numbered {first} to {last}; name the video that the files were "
-            "made from"
+            f"{folder}: expected people with {', '.join(map(str, SKELETONS))} points, found "
+            f"{found}; see config/README.md, Keypoints of other programs"
         )
-    if span == n_frames:
-        return first
-    every = round(n_frames / span)
-    whole_share = every > 1 and abs(span * every - n_frames) < every
-    if first <= 1 and len(files) == span >= LEAST_FILES and whole_share:
-        raise InputError(
-            f"{folder}: expected a file for each of {n_frames} frames of the video, found {span} "
-            f"numbered {first} to {last}, as of every {_ordinal(every)} frame; {RENUMBER}"
-        )
-    if last >= n_frames:
-        raise InputError(
-            f"{folder}: expected numbers of frames from 0 to {n_frames - 1} or a file for each, "
-            f"found {len(files)} files numbered {first} to {last}; {RENUMBER}"
-        )
-    said = "%s: %d files for %d frames; taken as frames %d to %d, counted from 0"
-    log.logger.warning(said, folder, len(files), n_frames, first, last)
-    return 0
+    likely = _likely(_seen(np.stack(people).reshape(-1, n_points, 3))) if len(known) > 1 else ""
+    return n_points, tuple(sorted(known, key=lambda name: name != likely))
 
 
-def _ordinal(number: int) -> str:
-    return {2: "second", 3: "third"}.get(number, f"{number}th")
+def is_one(path: StrPath) -> bool:
+    """Return whether a JSON file says who is in a frame, as OpenPose's do."""
+    try:
+        content = json.loads(Path(path).read_text(encoding="utf-8-sig"))
+    except RAISED_BY_READERS:
+        return False
+    return isinstance(content, dict) and isinstance(content.get("people"), list)
 
 
-def _numbered(folder: Path) -> dict[int, Path]:
-    if not folder.is_dir():
-        raise InputError(f"{folder}: expected a folder of JSON files, found none; correct the path")
-    files: dict[int, Path] = {}
-    for path in sorted(folder.glob("*.json")):
-        digits = re.findall(r"[0-9]+", path.stem)
-        if not digits:
-            raise InputError(
-                f"{path}: expected the frame's number in the name, found none; rename it"
-            )
-        number = int(digits[-1])
-        if number in files:
-            raise InputError(
-                f"{path}: expected one file for frame {number}, found {files[number].name} as "
-                "well; keep the files of one camera in one folder"
-            )
-        files[number] = path
-    if not files:
-        raise InputError(
-            f"{folder}: expected JSON files, found none; give the folder of one camera"
-        )
-    return files
-
-
-def _people(path: Path, n_joints: int, skeleton: str) -> NDArray:
-    """Return the persons of a file, (K, J, 3); NaN where a point is unseen."""
+def _rows(path: Path) -> list[NDArray]:
+    """Return the numbers of each person of a file as they stand there."""
     wanted = "OpenPose's JSON, `people` with `pose_keypoints_2d`", "export it again"
     with reading(path, *wanted):
         content = require_type(json.loads(path.read_text(encoding="utf-8-sig")), dict)
@@ -138,31 +136,43 @@ def _people(path: Path, n_joints: int, skeleton: str) -> NDArray:
         rows = [person["pose_keypoints_2d"] for person in found]
     # numpy raises TypeError for entries other than numbers.
     with reading(path, *wanted, kinds=(*RAISED_BY_READERS, TypeError)):
-        table = [np.asarray(row, dtype=float) for row in rows]
+        return [np.asarray(row, dtype=float) for row in rows]
+
+
+def _people(path: Path, n_joints: int, skeleton: str) -> NDArray:
+    """Return the persons of a file, (K, J, 3); NaN where a point is unseen."""
+    table = _rows(path)
     for row in table:
         if row.shape != (3 * n_joints,):
             raise InputError(
                 f"{path}: expected {n_joints} points of skeleton {skeleton}, found "
                 f"{row.size / 3:g}; name the skeleton that the files were made with"
             )
-    people = np.stack(table).reshape(-1, n_joints, 3) if table else np.empty((0, n_joints, 3))
+    return _seen(np.array(table).reshape(-1, n_joints, 3))
+
+
+def _seen(people: NDArray) -> NDArray:
+    """Return the persons (K, J, 3) of whom a point is seen, with NaN where one is not."""
     unseen = ~np.isfinite(people).all(axis=2) | (people[..., 2] <= 0)
     people[unseen] = np.nan
     return people[~unseen.all(axis=1)]
 
 
-def _check_order(folder: StrPath, skeleton: str, people: Sequence[NDArray]) -> None:
-    """Raise `InputError` if the points of BODY_25 are named BODY_25B, or the other way round."""
-    if skeleton not in MISTAKEN:
-        return
-    everyone = np.concatenate(people)
+def _likely(everyone: NDArray) -> str:
+    """Return which skeleton of 25 points people (K, 25, 3) show; "" where they do not."""
     middle, one, other = (everyone[:, at, :2] for at in MIDDLE_IN_BODY25)
     size_px = np.nanmax(everyone[..., :2], axis=1) - np.nanmin(everyone[..., :2], axis=1)
-    off = np.linalg.norm(middle - (one + other) / 2, axis=1) / size_px.max(axis=1)
+    with np.errstate(invalid="ignore", divide="ignore"):  # all points at one place
+        off = np.linalg.norm(middle - (one + other) / 2, axis=1) / size_px.max(axis=1)
     if not np.isfinite(off).any():
-        return
-    found = "body25" if np.nanmedian(off) < MIDDLE else "body25b"
-    if found != skeleton:
+        return ""
+    return "body25" if np.nanmedian(off) < MIDDLE else "body25b"
+
+
+def _check_order(folder: StrPath, skeleton: str, people: Sequence[NDArray]) -> None:
+    """Raise `InputError` if the points of BODY_25 are named BODY_25B, or the other way round."""
+    found = _likely(np.concatenate(people)) if skeleton in MISTAKEN else ""
+    if found and found != skeleton:
         raise InputError(
             f"{folder}: expected the points of {skeleton}, found what looks like {found}, with as "
             "many points in another order; name that skeleton"

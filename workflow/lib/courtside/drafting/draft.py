@@ -34,7 +34,7 @@ def text(guess: Guess, *, title: str, folder: str, court: str = "badminton") -> 
             f"{folder}: expected videos, photos or files of devices, found "
             f"{_what_is_there(guess)}; put the videos of the fixed cameras and of the walk there"
         )
-    measured = guess.calibration is None and bool(guess.cameras)
+    measured = guess.calibration is None and bool(guess.cameras) and not unfilmed(guess)
     lines = [
         f"# Drafted from {_quoted(folder)}: check the lines with `{MARK}`; config/README.md lists "
         "all keys.",
@@ -47,7 +47,7 @@ def text(guess: Guess, *, title: str, folder: str, court: str = "badminton") -> 
     clicked = measured and court != "none"
     lines += [*_cameras(guess), *_walks(guess), *_places(guess, folder, clicked)]
     lines += [*_synchronised(guess), *_takes(guess)]
-    lines += [*_fewer_images(guess, clicked), *_unused(guess)]
+    lines += [*_override(guess, clicked), *_unused(guess)]
     return "\n".join(lines) + "\n"
 
 
@@ -188,13 +188,42 @@ def _takes(guess: Guess) -> list[str]:
     remark = "recordings that belong together; `synchronised: true` where the cameras share a clock"
     lines = [f"takes:  {MARK} {remark}"] * bool(guess.takes)
     for name, take in guess.takes.items():
-        lines += [f"  {_quoted(name)}:", *["    videos:"] * bool(take)]
-        for camera in (camera for camera in guess.cameras if camera in take):
-            recording = take[camera]
-            path = f"{_quoted(camera)}: {_quoted(recording.path)}"
-            lines.append(f"      {path}  # {_described(recording)}")
-        lines += _devices(guess, name)
+        lines.append(f"  {_quoted(name)}:")
+        if name not in unfilmed(guess):
+            lines += [*["    videos:"] * bool(take), *_of_each_camera(guess, take, "      ")]
+        lines += [*_keypoints(guess, name), *_devices(guess, name)]
     return lines
+
+
+def _of_each_camera(guess: Guess, take: Take, indent: str) -> Iterator[str]:
+    """Yield a line for each camera's recording of a take."""
+    for camera in (camera for camera in guess.cameras if camera in take):
+        recording = take[camera]
+        path = f"{_quoted(camera)}: {_quoted(recording.path)}"
+        yield f"{indent}{path}  # {_described(recording)}"
+
+
+def unfilmed(guess: Guess) -> list[str]:
+    """Return the takes of which there are keypoints alone, no videos."""
+    return [name for name, take in guess.keypoints.items() if take == guess.takes[name]]
+
+
+def _keypoints(guess: Guess, name: str) -> list[str]:
+    """Return the keys of the keypoints of a take, found by another program."""
+    if name not in guess.keypoints:
+        return []
+    take = guess.keypoints[name]
+    n_points, skeletons = next(iter(take.values())).skeleton
+    what = f"another program's keypoints; {n_points} points are {' or '.join(skeletons)}"
+    if len(skeletons) > 1:
+        what += f": the points look like {skeletons[0]}, ask what they were made with"
+    rate = f"    # rate_hz: 60  {MARK} no file states it: write the frame rate, without the #"
+    return [
+        *[rate] * (name in unfilmed(guess)),
+        "    pose2d:",
+        f"      {skeletons[0]}:  {MARK} {what}",
+        *_of_each_camera(guess, take, "        "),
+    ]
 
 
 def _devices(guess: Guess, take: str) -> list[str]:
@@ -206,6 +235,19 @@ def _devices(guess: Guess, take: str) -> list[str]:
             f"      {name}: {{file: {_quoted(recording.path)}}}  {MARK} whom it follows: subject"
         )
     return ["    devices:", *lines] if lines else []
+
+
+def _override(guess: Guess, clicked: bool) -> list[str]:
+    """Return the key of what differs from the study: few bridging images, imported keypoints."""
+    keys, remarks = _fewer_images(guess, clicked), []
+    remarks += ["the walks give no more bridging images"] * bool(keys)
+    filmed = [name for name, take in guess.takes.items() if take]
+    if guess.keypoints and set(guess.keypoints) == set(filmed):
+        found = [next(iter(t.values())).skeleton[1][0] for t in guess.keypoints.values()]
+        keys.append(f"models: [{', '.join(dict.fromkeys(found))}]")
+        alone = "for there are no videos" if unfilmed(guess) else "remove it to use a network"
+        remarks.append(f"keypoints of another program, {alone}")
+    return [f"override: {{{', '.join(keys)}}}  {MARK} {'; '.join(remarks)}"] * bool(keys)
 
 
 def _fewer_images(guess: Guess, clicked: bool) -> list[str]:
@@ -220,7 +262,7 @@ def _fewer_images(guess: Guess, clicked: bool) -> list[str]:
     if guess.cameras and guess.calibration is None:
         ways = [f"sfm-n{n_images}", *["known18"] * clicked]
         keys += [f"calibrations: [{', '.join(ways)}]", f"take_calibrations: [sfm-n{n_images}]"]
-    return [f"override: {{{', '.join(keys)}}}  {MARK} the walks give no more bridging images"]
+    return keys
 
 
 def _bridging_images(recording: Recording) -> int:
@@ -243,6 +285,8 @@ def _unused(guess: Guess) -> list[str]:
 
 def _described(recording: Recording) -> str:
     size = "" if recording.size is None else f"{recording.size[0]}x{recording.size[1]}"
+    if recording.kind == "keypoints":
+        return f"{recording.n_frames} files"
     if recording.kind == "video":
         rate = "one frame" if recording.rate_hz is None else f"{recording.rate_hz:.4g} Hz"
         return ", ".join([size, rate, f"{recording.duration_s:.1f} s"])
@@ -308,11 +352,16 @@ def to_check(guess: Guess, path: StrPath, court_points: str, study: StrPath) -> 
             "Clocks: as many frames in all cameras, so `synchronised: true`; remove it if the "
             "cameras were started by hand."
         )
-    if guess.calibration is None and guess.court_points is None and guess.cameras:
+    if unfilmed(guess):
+        wanted = f"state `rate_hz` of {', '.join(unfilmed(guess))}"
+        if guess.calibration is None:
+            wanted += "; put the calibration file into the folder and name it as `calibration`"
+        lines.append(f"Keypoints without videos: {wanted}.")
+    elif guess.calibration is None and guess.court_points is None and guess.cameras:
         lines.append(
             f"Court points: the first run makes a page to click them on, for {court_points}."
         )
-    if guess.cameras and not guess.walks and guess.calibration is None:
+    if guess.cameras and not (guess.walks or guess.calibration or unfilmed(guess)):
         lines.append("No walk was found: the cameras will rest on clicked court points alone.")
     lines.append(
         f"`snakemake -n -q rules --configfile {study}` checks it and counts what will be made."
@@ -351,7 +400,7 @@ def _odd(guess: Guess) -> Iterator[str]:
 
 
 def _odd_take(name: str, take: Take) -> Iterator[str]:
-    if not take:
+    if not take or any(recording.kind == "keypoints" for recording in take.values()):
         return
     rates = {round(r.rate_hz or 0) for r in take.values()}
     if len(rates) > 1:

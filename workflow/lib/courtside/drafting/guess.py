@@ -22,6 +22,9 @@ BOARD |= {"calib", "calibration", "intrinsic", "intrinsics", "int"}
 SLACK = timedelta(seconds=30)
 FOLDERS = {"video", "videos", "data", "film", "films", "footage", "takes", "raw"}
 FOLDERS |= {"recording", "recordings", "cam", "camera", "kamera"}
+FOLDERS |= {"json", "pose", "poses", "pose2d", "keypoints", "openpose", "alphapose", "rtmlib"}
+# Words of folders in which Pose2Sim keeps keypoints that it has changed itself.
+CHANGED = {"associated", "sync", "filtered"}
 CAMERA = re.compile(
     r"(cam|camera|c|gopro|gp|view|kamera|phone|iphone|pixel|dslr|miqus|oqus|arqus)[0-9]+"
     r"|(left|right|centre|center|middle|back|front|side|rear|oblique|mirror|links|rechts|mitte)[0-9]*"
@@ -35,17 +38,19 @@ class Recording:
     path: str  # as a session's file names it
     # Folders below the one that was searched, and the name without its suffix
     parts: tuple[str, ...]
-    # `video`, `photo`, `photos`, `bvh`, `bag`, `court_points`, `racket`, `calibration`, or
-    # `unusable`
+    # `video`, `photo`, `photos`, `keypoints` (a folder of JSON), `bvh`, `bag`, `court_points`,
+    # `racket`, `calibration`, or `unusable`
     kind: str
     size: tuple[int, int] | None = None  # of its pictures, px
     rate_hz: float | None = None  # of a video
     duration_s: float | None = None  # of a video
-    n_frames: int | None = None  # of a video
+    n_frames: int | None = None  # of a video; files of keypoints
     n_photos: int = 0  # of a folder of photos
     note: str = ""  # why it is unusable, or what is unusual about it
     # Of a calibration: sizes of the pictures of its cameras
     cameras: dict[str, tuple[int, int]] = field(default_factory=dict)
+    # Of keypoints: how many points, and the skeletons that they may be of, the likeliest first
+    skeleton: tuple[int, tuple[str, ...]] = (0, ())
 
     @cached_property
     def device(self) -> DeviceName | None:
@@ -78,7 +83,10 @@ class Guess:
     # Pictures of a chessboard, by camera
     boards: dict[str, Recording] = field(default_factory=dict)
     walks: dict[str, Recording] = field(default_factory=dict)
-    takes: dict[str, Take] = field(default_factory=dict)  # by take and camera
+    # By take and camera: videos, or folders of keypoints where there are no videos
+    takes: dict[str, Take] = field(default_factory=dict)
+    # By take and camera: folders of keypoints, beside videos and alone
+    keypoints: dict[str, Take] = field(default_factory=dict)
     # Take or "", kind of device, file
     devices: list[tuple[str, str, Recording]] = field(default_factory=list)
     # Cameras that no name tells apart: numbered in the order of their files
@@ -93,12 +101,15 @@ def guess(recordings: Sequence[Recording]) -> Guess:
     """Guess what each recording, in name order, is; every one is in the guess once."""
     found = Guess()
     recordings = _without_later_chapters(found, recordings)
-    videos = [r for r in recordings if r.kind == "video"]
+    recordings = _without_changed_keypoints(found, recordings)
+    filmed = any(r.kind == "video" for r in recordings)
+    videos = [r for r in recordings if r.kind == ("video" if filmed else "keypoints")]
     own = _own_words(recordings, videos)
     cameras = _camera_words(recordings, videos, own)
     rest = _sort_pictures(found, recordings, own, cameras)
     rest = _numbered(found, rest) if not cameras else rest
     _group(found, rest)
+    _place_keypoints(found, recordings, own, cameras)
     found.cameras = [
         name
         for name in [*cameras, *found.numbered]
@@ -127,6 +138,34 @@ def _without_later_chapters(found: Guess, recordings: Sequence[Recording]) -> li
         else:
             kept.append(recording)
     return kept
+
+
+def _without_changed_keypoints(found: Guess, recordings: Sequence[Recording]) -> list[Recording]:
+    """Leave out the keypoints that Pose2Sim has synchronised, associated or filtered itself."""
+    changed = [
+        r for r in recordings if r.kind == "keypoints" and CHANGED & set(words_of(r.parts[:-1]))
+    ]
+    why = "keypoints that another program changed; the study needs them as they were detected"
+    found.unused += [(recording, why) for recording in changed]
+    return [recording for recording in recordings if recording not in changed]
+
+
+def _place_keypoints(
+    found: Guess, recordings: Iterable[Recording], own: Words, cameras: Words
+) -> None:
+    """Put folders of keypoints beside the videos that they were made from; without any, alone."""
+    alone = {n: t for n, t in found.takes.items() if any(r.kind == "keypoints" for r in t.values())}
+    found.keypoints = dict(alone)
+    for recording in (r for r in recordings if r.kind == "keypoints" and not alone):
+        camera, words = _camera_of(own[recording.path], cameras)
+        only = len(found.takes) == 1
+        near = [n for n in found.takes if only or (words and set(words) <= set(words_of([n])))]
+        camera = camera if near and camera in found.takes[near[0]] else None
+        place = found.keypoints.setdefault(near[0], {}) if near else {}
+        _keep(found, place, recording, camera, "keypoints of no camera and take found")
+    for name in [n for n, t in found.keypoints.items() if len(t) < len(found.takes[n])]:
+        why = f"keypoints of some cameras of take {name} only"
+        found.unused += [(recording, why) for recording in found.keypoints.pop(name).values()]
 
 
 def _own_words(recordings: Iterable[Recording], videos: Sequence[Recording]) -> Words:
@@ -183,12 +222,16 @@ def _sort_pictures(
     """
     rest: list[Placed] = []
     alone = sum(r.kind == "video" for r in recordings) == 1
-    for recording in (r for r in recordings if r.kind in ("video", "photo", "photos")):
+    filmed = any(r.kind == "video" for r in recordings)
+    kinds = ("video", "photo", "photos") if filmed else ("keypoints", "photo", "photos")
+    for recording in (r for r in recordings if r.kind in kinds):
         camera, words = _camera_of(own[recording.path], cameras)
         if recording.kind == "photos" and _has(recording, BOARD):
             _keep(found, found.boards, recording, camera, "a chessboard of no camera found")
         elif recording.kind == "photo" or _has(recording, STATIC):
             _keep(found, found.static, recording, camera, "a picture of no camera found")
+        elif recording.kind == "keypoints":
+            rest.append((recording, camera, words))
         elif recording.kind == "photos" or _is_walk(recording, camera, cameras) or alone:
             counted = words or words_of(recording.parts[-1:])
             wanted = names.name("_".join(counted), "walk")
@@ -325,7 +368,7 @@ def _stand_in(found: Guess) -> None:
     """Use the first take for missing static recordings: a walk is tied to them."""
     for camera in found.cameras:
         films = [take[camera] for take in found.takes.values() if camera in take]
-        if camera not in found.static and films:
+        if camera not in found.static and films and films[0].kind == "video":
             found.static[camera] = films[0]
             found.stand_ins.append(camera)
 
@@ -370,5 +413,9 @@ def _rename(found: Guess) -> None:
     found.takes = {
         takes[key]: {cameras[camera]: r for camera, r in take.items()}
         for key, take in found.takes.items()
+    }
+    found.keypoints = {
+        takes[key]: {cameras[camera]: r for camera, r in take.items()}
+        for key, take in found.keypoints.items()
     }
     found.devices = [(takes.get(take, ""), device, r) for take, device, r in found.devices]

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from courtside.calibration import file_formats
+from courtside.devices import frame_numbers, openpose
 from courtside.drafting.guess import Recording
 from courtside.records.cameras import clicks
 from courtside.study.errors import InputError, StrPath
@@ -50,6 +51,8 @@ def survey(folder: StrPath, *, root: StrPath) -> list[Recording]:
         together = len(photos) > 1 and Path(at) != folder
         if together:
             found.append(_described(Path(at), folder, root, _photos))
+        if sum(path.suffix == ".json" for path in files) > 1 and Path(at) != folder:
+            found.append(_described(Path(at), folder, root, _keypoints))
         for path in files:
             reader = READERS.get(path.suffix.lower())
             if reader and not (together and path in photos):
@@ -92,6 +95,18 @@ def _photos(path: Path) -> dict[str, Any]:
     height, width = walk_frames.read_photo(photos[0]).shape[:2]
     more = {"kind": "photos", "n_photos": len(photos)} if path.is_dir() else {"kind": "photo"}
     return {"size": (width, height), **more}
+
+
+def _keypoints(path: Path) -> dict[str, Any] | None:
+    """Describe a folder of 2D keypoints of another program; None if its files are others."""
+    if not openpose.is_one(next(iter(sorted(path.glob("*.json"))))):
+        return None
+    skeletons = openpose.skeletons(path)
+    return {
+        "kind": "keypoints",
+        "n_frames": len(frame_numbers.numbered(path)),
+        "skeleton": skeletons,
+    }
 
 
 def _table(path: Path) -> dict[str, Any] | None:

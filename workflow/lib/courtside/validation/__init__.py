@@ -4,6 +4,7 @@ check: `check`: all sessions of a study; every fault in one `InputError`
 calibrated: `faults`: cameras and sizes against the calibration file, sizes of a camera's recordings
 views: `faults`: one view given for two cameras, exchanged cameras
 lengths: `faults`, `remarks`: numbers of frames and rates of the cameras of a take
+keypoint_folders: `check`: files of another program's 2D keypoints against frames
 providers: `check`: execution providers of pose networks that the installed onnxruntime lacks
 remembered: `Remembered`: looks at files, kept from run to run
 """

@@ -10,7 +10,7 @@ from courtside.study.configuration.session_files import is_there
 from courtside.study.configuration.sessions import Session, Study, Take
 from courtside.study.errors import InputError
 from courtside.study.methods import Calibration, fewer_images
-from courtside.validation import calibrated, lengths, views
+from courtside.validation import calibrated, keypoint_folders, lengths, views
 from courtside.validation.remembered import Remembered
 from courtside.video.glance import Glance
 
@@ -54,6 +54,10 @@ class _Session:
             }
             for name, take in session.takes.items()
         }
+        self._keypoints = {
+            name: keypoint_folders.check(take, self._takes[name])
+            for name, take in session.takes.items()
+        }
         others = [*session.walks.values(), *_filmed_by_devices(session)]
         for path in others:
             self._look(path, None)
@@ -75,7 +79,7 @@ class _Session:
         for line in calibrated.faults(self._session, self._sizes()):
             yield line if line.startswith(tuple(self._paths())) else f"{file}: {line}"
         for name, take in self._session.takes.items():
-            for line in self._take_faults(name, take):
+            for line in (*self._take_faults(name, take), *self._keypoints[name][0]):
                 yield f"{file}: takes.{name}: {line}"
         yield from (f"{file}: {line}" for line in self._shared_files())
         yield from (f"{file}: {line}" for line in self._few_pictures())
@@ -84,7 +88,8 @@ class _Session:
         """Yield what is worth a look."""
         for name, take in self._session.takes.items():
             said = lengths.remarks(self._takes[name], synchronised=take.synchronised)
-            yield from (f"{self._session.file}: takes.{name}: {line}" for line in said)
+            every = (*said, *self._keypoints[name][1])
+            yield from (f"{self._session.file}: takes.{name}: {line}" for line in every)
 
     def _take_faults(self, name: str, take: Take) -> Iterator[str]:
         looks = self._takes[name]

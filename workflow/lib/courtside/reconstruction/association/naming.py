@@ -53,7 +53,7 @@ def name(
     if open_ and not marks and len(subjects) == 1 and not free:
         free = [int(np.argmax(found.placed))]
     if len(open_) > 1 or (open_ and len(free) > 1):
-        raise InputError(_not_told(found, [subjects[s] for s in open_], free, words))
+        raise InputError(_not_told(found, seen, [subjects[s] for s in open_], free, words))
     for subject, person in zip(open_, free, strict=False):
         owner[person], used[subject] = subject, person
     return _named(found, seen, subjects, owner, used, marks)
@@ -111,7 +111,9 @@ def _beside(path: NDArray, court: Court | None) -> bool:
     return bool((middle < -BESIDE_M).any() or (middle > court.size_m + BESIDE_M).any())
 
 
-def _not_told(found: People, open_: list[str], free: list[int], words: Wording) -> str:
+def _not_told(
+    found: People, seen: Sequence[Footage], open_: list[str], free: list[int], words: Wording
+) -> str:
     """Return the line of subjects who are not told from others."""
     shares = found.shares()
     people = []
@@ -120,7 +122,7 @@ def _not_told(found: People, open_: list[str], free: list[int], words: Wording) 
         by = ", ".join(camera for camera, share in shares.items() if share[k] >= COUNTS)
         people.append(
             f"{found.person_id[k]} ({found.placed[k]:.0%} of the take, about x {x:.1f} y {y:.1f} m,"
-            f" seen by {by})"
+            f" seen by {by}{'' if words.page else _sighting(found, seen, k)})"
         )
     who = "which of them is" if len(free) != 1 else "whether this is"
     page = f"on the page {words.page} (people.csv), or " if words.page else ""
@@ -129,6 +131,21 @@ def _not_told(found: People, open_: list[str], free: list[int], words: Wording) 
         f"{', '.join(people) or 'nobody'}; say {who} {' or '.join(open_)} {page}by `seen` in "
         f"{words.file}"
     )
+
+
+def _sighting(found: People, seen: Sequence[Footage], person: int) -> str:
+    """Return the entry of `seen` that means a person, for who has no page with pictures."""
+    for one in seen:
+        rows = found.index[one.camera.name][person]
+        xy = one.tracklets.xy[rows, np.arange(len(rows))]
+        frames = np.flatnonzero((rows >= 0) & np.isfinite(xy[..., 0]).any(axis=1))
+        if len(frames):
+            at = frames[len(frames) // 2]
+            x, y = np.nanmedian(xy[at], axis=0)
+            time_s = one.tracklets.time_s[at]
+            where = f"camera: {one.camera.name}, time_s: {time_s:.3f}, at_px: [{x:.0f}, {y:.0f}]"
+            return f", {{{where}}}"
+    return ""
 
 
 def _named(

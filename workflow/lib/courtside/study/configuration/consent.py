@@ -1,4 +1,4 @@
-"""What the persons of a session have agreed to, and what is left out where they have not."""
+"""What the persons of a session have agreed to, and what is left out of its results."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
@@ -58,9 +58,10 @@ def withheld(
 
 
 def left_out(session: "Session", wanted: Iterable[str] = ("export", "pictures")) -> list[str]:
-    """Say what is not made of a session for want of consent.
+    """Say what is not made of a session for want of consent, or of videos.
 
-    One line for each thing left out (analysis, and the words `wanted`) and each set of persons.
+    One line for each thing left out (analysis, and the words `wanted`) and each set of persons, and
+    one for the takes of which there are keypoints alone.
     """
     lines = [
         f"nothing is made of {takes}: {persons} not agreed to analysis (consent)"
@@ -72,6 +73,10 @@ def left_out(session: "Session", wanted: Iterable[str] = ("export", "pictures"))
             f"no {WORDS[word]} in {takes}: {persons} not agreed to {word} (consent)"
             for takes, persons in _together(who)
         ]
+    unfilmed = [take.name for take in session.takes.values() if take.cameras and not take.videos]
+    if unfilmed:
+        named = f"take{'s' * (len(unfilmed) > 1)} {', '.join(unfilmed)}"
+        lines.append(f"no pictures or videos in {named}: there are keypoints alone, no videos")
     return lines
 
 

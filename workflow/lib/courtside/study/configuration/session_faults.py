@@ -146,7 +146,7 @@ def _recorded_faults(file: Path, content: Content, root: Path) -> Iterator[str]:
             "how the cameras are to be found"
         )
     yield from _board_faults(file, content)
-    if len(cameras) < 2 and ("calibration" in content or any("videos" in take for take in takes)):
+    if len(cameras) < 2 and ("calibration" in content or any(map(take_faults.cameras_of, takes))):
         yield (
             f"{file}: cameras: expected two or more, found {len(cameras)}; one camera sees no depth"
         )

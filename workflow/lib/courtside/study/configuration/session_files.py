@@ -21,7 +21,7 @@ KINDS = {  # of devices, by the ending of their recording; a folder is one of a 
     ".csv": "nuitrack",
 }
 # Of a take, as its record has them.
-AS_STATED = ("synchronised", "steady", "virtual", "clocks", "pose2d", "pose3d")
+AS_STATED = ("synchronised", "steady", "virtual", "clocks", "pose2d", "pose3d", "rate_hz")
 
 FOR_ALL_TAKES = ("synchronised",)  # of a session, where its takes do not say it themselves
 OVERRIDDEN = ("principal_point_px", "reason")  # of a calibration file, as its session states them

@@ -77,6 +77,13 @@ class Take:
     pose2d: dict[str, dict[str, str]] = field(default_factory=dict)
     # For a skeleton, by person, the TRC file of another program
     pose3d: dict[str, dict[str, str]] = field(default_factory=dict)
+    rate_hz: float | None = None  # of the frames of `pose2d`, where there are no videos
+
+    @property
+    def cameras(self) -> tuple[str, ...]:
+        """The fixed cameras that see it: of its videos, else of another program's keypoints."""
+        folders = [] if self.videos else self.pose2d.values()
+        return tuple(dict.fromkeys(name for own in (self.videos, *folders) for name in own))
 
 
 @dataclass(frozen=True)

@@ -42,4 +42,6 @@ def _holds(content: Content, take: str, subject: str) -> bool:
 def _cameras(take: Content, content: Content) -> list[str]:
     """Return the fixed cameras that film a take."""
     made = take.get("virtual")
-    return list(take.get("videos", {}) if made is None else made.get("cameras", content["cameras"]))
+    return (
+        take_faults.cameras_of(take) if made is None else [*made.get("cameras", content["cameras"])]
+    )

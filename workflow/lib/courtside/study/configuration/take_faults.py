@@ -7,7 +7,7 @@ from courtside.study.configuration.session_files import KINDS
 from courtside.study.configuration.yaml_files import Content
 
 MEANT_FOR = {"unit": ("inertial", "nuitrack"), "angles": ("inertial",)}  # keys of devices
-RECORDINGS = ("videos", "devices")  # keys of a take that was recorded
+RECORDINGS = ("videos", "pose2d", "devices")  # keys of a take that was recorded
 
 
 def imported(content: Content) -> list[str]:
@@ -26,17 +26,66 @@ def of_other_programs(folder: Path, file: Path, content: Content) -> Iterator[st
     wanted = set(content.get("override", {}).get("models", []))
     for name, take in ((n, t) for n, t in content.get("takes", {}).items() if t):
         subjects = take.get("subjects", content.get("subjects", {}))
-        for key, known in (("pose2d", take.get("videos", {})), ("pose3d", subjects)):
+        filmed = take.get("videos", content["cameras"])
+        for key, known in (("pose2d", filmed), ("pose3d", subjects)):
             where = f"{file}: takes.{name}.{key}"
-            yield from unknown(where, take.get(key, {}), there)
+            strange = unknown(where, take.get(key, {}), there)
             for skeleton, files in take.get(key, {}).items():
-                yield from unknown(f"{where}.{skeleton}", files, known)
+                strange += unknown(f"{where}.{skeleton}", files, known)
+            yield from strange or (_without_a_folder(where, take) if key == "pose2d" else ())
+        if "pose2d" in take and "videos" not in take:
+            yield from _unfilmed(f"{file}: takes.{name}", take, content)
         missing = wanted & set(imported(content)) - set(take.get("pose2d", {}))
         for skeleton in sorted(missing if take.get("videos") else ()):
             yield (
                 f"{file}: takes.{name}.pose2d: expected {skeleton}, as override.models says, found "
                 "none; name its folders"
             )
+
+
+def cameras_of(take: Content) -> list[str]:
+    """Return the fixed cameras that see a recorded take, as `sessions.Take.cameras`."""
+    seen = [take["videos"]] if "videos" in take else take.get("pose2d", {}).values()
+    return list(dict.fromkeys(name for own in seen for name in own))
+
+
+def _without_a_folder(where: str, take: Content) -> Iterator[str]:
+    """Yield the cameras of a take of which a skeleton names no folder."""
+    for skeleton, folders in take.get("pose2d", {}).items():
+        missing = [name for name in cameras_of(take) if name not in folders]
+        if missing:
+            yield (
+                f"{where}.{skeleton}: expected a folder of each camera of the take, found none of "
+                f"{', '.join(missing)}; name it, or remove the camera from the take"
+            )
+
+
+def _unfilmed(where: str, take: Content, content: Content) -> Iterator[str]:
+    """Yield what a take of keypoints without videos lacks, or has for nothing."""
+    if "rate_hz" not in take:
+        yield (
+            f"{where}.rate_hz: expected the frame rate of the keypoints, which their files do not "
+            "state, found none; add the rate of the videos that they were made from, or `videos`"
+        )
+    if "calibration" not in content:
+        yield (
+            f"{where}: expected `calibration` in a session with keypoints and no videos, found "
+            "none; its file says how large the pictures were"
+        )
+    if len(cameras_of(take)) < 2:
+        yield f"{where}.pose2d: expected two cameras or more, found {len(cameras_of(take))}"
+    if take.get("steady"):
+        yield (
+            f"{where}.steady: expected videos, in which shake is measured, found keypoints only; "
+            "remove it"
+        )
+    wanted, there = content.get("override", {}).get("models", []), [*take["pose2d"]]
+    if not wanted or set(wanted) - set(there):
+        yield (
+            f"{where}: expected skeletons of its pose2d alone in override.models, for without "
+            f"videos no network can look, found {wanted or 'none'}; write `override: {{models: "
+            f"[{', '.join(there)}]}}`"
+        )
 
 
 def find(
@@ -54,9 +103,9 @@ def find(
     yield from unknown(f"{where}.subjects", there, subjects)
     yield from _device_faults(where, take, cameras, there)
     made = (take.get("virtual") or {}).get("devices", {})
-    recorded = [*(cameras if virtual else take.get("videos", {})), *take.get("devices", {}), *made]
+    recorded = [*(cameras if virtual else cameras_of(take)), *take.get("devices", {}), *made]
     yield from unknown(f"{where}.clocks", take.get("clocks", {}), recorded)
-    first = next(iter(take.get("videos", {})), None)
+    first = next(iter(cameras_of(take)), None)
     if any(take.get("clocks", {}).get(first, {}).get(key, 0) for key in ("offset_s", "drift_ppm")):
         yield (
             f"{where}.clocks.{first}: expected no offset or drift of the first camera, whose clock "
@@ -69,6 +118,11 @@ def find(
                 f"{where}.steady: expected `static` of camera {name}, against which shake is "
                 "measured, found none; name a recording of the empty court"
             )
+    if "rate_hz" in take and ("videos" in take or "pose2d" not in take):
+        yield (
+            f"{where}.rate_hz: expected it of a take with keypoints and no videos only, found it; "
+            "remove it: videos state their own"
+        )
     start_s, stop_s = take.get("trim_s", (0, 1))
     if start_s >= stop_s:
         yield f"{where}.trim_s: expected a start before the stop, found [{start_s}, {stop_s}]"
@@ -83,8 +137,8 @@ def _kind_faults(where: str, take: Content, virtual: bool) -> Iterator[str]:
         )
     if not virtual and ("virtual" in take or not set(RECORDINGS) & set(take)):
         yield (
-            f"{where}: expected the key 'videos' or 'devices' and not 'virtual' in a recorded "
-            f"session, found {sorted(take)}; correct the take"
+            f"{where}: expected the key 'videos', 'pose2d' or 'devices' and not 'virtual' in a "
+            f"recorded session, found {sorted(take)}; correct the take"
         )
 
 

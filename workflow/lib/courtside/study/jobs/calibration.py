@@ -60,7 +60,7 @@ def checked(job: Job) -> list[dict[str, Any]]:
     `pose2d` of each camera by the session's first network, `sync` and `people`.
     """
     model, found = job.session.parameters["models"][0], []
-    for name in (name for name, take in job.session.takes.items() if take.videos):
+    for name in (name for name, take in job.session.takes.items() if take.cameras):
         known = {**job.wildcards, "take": name, "model": model, "calibration": "file"}
         one = Job(job.study, known)
         files = {"sync": one.fill(paths.CAMERA_CLOCKS), "people": one.fill(paths.FOUND_PEOPLE)}

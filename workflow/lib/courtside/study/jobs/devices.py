@@ -30,7 +30,7 @@ class Source:
 def sources(job: Job, corrected: bool = True) -> dict[str, Source]:
     """Return the sources of a take, the one whose clock is the reference first."""
     of_network, found = job.model.skeleton, {}
-    if job.take.videos and job.session.take_calibrations():
+    if job.take.cameras and job.session.take_calibrations():
         found["cameras"] = Source(job.fill(paths.CAMERA_SOURCE), of_network, "cameras")
     devices = sorted(job.take.devices.items(), key=lambda pair: pair[1].kind == "inertial")
     for name, device in devices:

@@ -103,7 +103,7 @@ def first_skeleton(job: Job) -> Path:
 
 def viewed_cameras(job: Job) -> str | list:
     """Return the cameras that a viewer draws; none of a take of devices alone."""
-    ways = job.session.take_calibrations() if job.take.videos else []
+    ways = job.session.take_calibrations() if job.take.cameras else []
     return job.fill(paths.CAMERAS, calibration=ways[0]) if ways else []
 
 

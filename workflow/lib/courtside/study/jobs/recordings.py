@@ -17,6 +17,18 @@ def inside(path: str) -> list[str]:
     return sorted(file.as_posix() for file in found if not file.name.startswith("."))
 
 
+def keypoint_files(job: Job) -> list[str]:
+    """Return the keypoint files of a camera; without videos of all, whose numbers count frames."""
+    folders = job.take.pose2d[job["model"]]
+    wanted = [folders[job["camera"]]] if job.take.videos else folders.values()
+    return [file for folder in wanted for file in inside(folder)]
+
+
+def cameras_for_size(job: Job) -> str | list:
+    """Return the imported cameras, which say how large pictures were, where there are no videos."""
+    return [] if job.take.videos else job.fill(paths.CAMERAS, calibration="file")
+
+
 def video(job: Job) -> str:
     """Return the video of a camera of a take, or of a device that films."""
     name = job["camera"]

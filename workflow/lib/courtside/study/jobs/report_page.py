@@ -177,7 +177,7 @@ def _take(study: Study, session: Session, take: Take) -> dict[str, Any]:
     known = {"session": session.name, "take": take.name, "model": session.parameters["models"][0]}
     named: dict[str, Any] = {}
     links: list[tuple[str, str]] = []
-    if take.videos and ways and fusion:
+    if take.cameras and ways and fusion:
         known |= {"calibration": ways[0], "fusion": fusion}
         named = _measured(session, take, known)
         links = [(named["summary"], "summary (CSV)"), (named["frames"], "frames (CSV)")]

@@ -13,7 +13,7 @@ from courtside.study.methods import Fusion
 
 def each_camera(job: Job, pattern: str) -> list[str]:
     """Return a file of each camera of a take, in the take's order."""
-    return job.of_each(pattern, camera=job.take.videos)
+    return job.of_each(pattern, camera=job.take.cameras)
 
 
 def every_take(job: Job, pattern: str, **more: str) -> list[str]:
@@ -63,7 +63,7 @@ def people_csv(job: Job) -> str | list:
 def fusion(job: Job) -> dict[str, Any]:
     """Return which cameras of a take are fused, and by which rule."""
     named = job.session.fused_cameras(job["fusion"])
-    used = [name for name in named if name in job.take.videos]
+    used = [name for name in named if name in job.take.cameras]
     return {"used": used, "rule": Fusion.parse(job["fusion"]).rule}
 
 

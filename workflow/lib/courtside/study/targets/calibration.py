@@ -29,7 +29,7 @@ def every_file_check(study: Study) -> list[str]:
 
 def checks_file(session: Session) -> bool:
     """Return whether the calibration file of a session is used and something can check it."""
-    filmed = any(take.videos for take in session.takes.values())
+    filmed = any(take.cameras for take in session.takes.values())
     return "file" in session.take_calibrations() and (filmed or bool(session.static_points))
 
 

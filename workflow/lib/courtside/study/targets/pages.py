@@ -13,7 +13,7 @@ def every_viewer(study: Study) -> list[str]:
 
 def viewers(session: Session, take: Take) -> list[str]:
     """Return the viewer of a take, with the first network; none where there is no skeleton."""
-    if not (take.devices or (take.videos and session.take_calibrations())):
+    if not (take.devices or (take.cameras and session.take_calibrations())):
         return []
     model = session.parameters["models"][0]
     return takes.files(paths.VIEWER, session, take, model=model)

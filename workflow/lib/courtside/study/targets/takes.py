@@ -62,8 +62,8 @@ def every_verdict(study: Study) -> list[str]:
 
 
 def verdicts(session: Session, take: Take) -> list[str]:
-    """Return the table of verdicts on a take; none where it has no videos or no calibration."""
-    measured = take.videos and session.take_calibrations() and session.fusions()
+    """Return the table of verdicts on a take; none without fixed cameras or calibration."""
+    measured = take.cameras and session.take_calibrations() and session.fusions()
     return files(paths.QUALITY, session, take) if measured else []
 
 
@@ -77,8 +77,11 @@ def every_figure(study: Study) -> list[str]:
 
 
 def shown(session: Session, take: Take, figures: Iterable[str]) -> list[str]:
-    """Return the figures of a take that show nobody who has not agreed to pictures."""
-    refused = consent.refusing(session, take, "pictures")
+    """Return the figures of a take that show nobody who has not agreed to pictures.
+
+    A take without videos has none with pictures.
+    """
+    refused = consent.refusing(session, take, "pictures") or not take.videos
     return [name for name in figures if not refused or name not in PICTURED]
 
 

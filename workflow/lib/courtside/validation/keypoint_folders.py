@@ -1,0 +1,69 @@
+"""Folders of 2D keypoints of another program: their files against the frames of the videos."""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from courtside.devices import frame_numbers
+from courtside.study.configuration.session_files import is_there
+from courtside.study.configuration.sessions import Take
+from courtside.study.errors import InputError
+from courtside.video.glance import Glance
+
+
+def check(take: Take, looks: Mapping[str, Glance]) -> tuple[list[str], list[str]]:
+    """Return faults of the folders of a take, and remarks on how their files are matched.
+
+    `looks` are those at its videos, by camera; folders that are not there are told elsewhere.
+    """
+    faults: list[str] = []
+    remarks: list[str] = []
+    for folders in take.pose2d.values():
+        there = {name: path for name, path in folders.items() if is_there(Path(path))}
+        try:
+            if take.videos:
+                remarks += _against_videos(take, there, looks)
+            elif there:
+                remarks += _against_each_other(there)
+        except InputError as error:
+            faults += error.lines
+    return faults, remarks
+
+
+def _against_videos(
+    take: Take, folders: Mapping[str, str], looks: Mapping[str, Glance]
+) -> list[str]:
+    """Return remarks; an `InputError` has the faults of all cameras."""
+    faults: list[str] = []
+    remarks: list[str] = []
+    for name, folder in folders.items():
+        look = looks.get(name)
+        try:
+            numbers = frame_numbers.numbered(folder)
+            if look and look.n_frames:
+                needed = _n_needed(take, look)
+                remarks.append(frame_numbers.matched(folder, numbers, look.n_frames, needed)[1])
+        except InputError as error:
+            faults += error.lines
+    if faults:
+        raise InputError(*faults)
+    return list(filter(None, remarks))
+
+
+def _n_needed(take: Take, look: Glance) -> int | None:
+    return int(take.trim_s[1] * look.rate_hz) + 1 if take.trim_s and look.rate_hz else None
+
+
+def _against_each_other(folders: Mapping[str, str]) -> Iterator[str]:
+    """Yield a remark where cameras have files of different frames; `InputError` if of others."""
+    shared = frame_numbers.common(folders)
+    by_frames: dict[str, list[str]] = {}
+    for name, folder in folders.items():
+        numbers = frame_numbers.numbered(folder)
+        found = f"{len(numbers)} files of frames {min(numbers)} to {max(numbers)}"
+        by_frames.setdefault(found, []).append(name)
+    if len(by_frames) > 1:
+        each = ", ".join(f"{found} ({', '.join(names)})" for found, names in by_frames.items())
+        yield (
+            f"pose2d has {each}: taken as frames {shared[0]} to {shared[-1]} of every camera, "
+            "nobody seen where there is no file; right if the same number is the same frame"
+        )
