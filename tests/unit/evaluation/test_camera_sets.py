@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from courtside.evaluation import camera_sets, joints
+from courtside.statistics import moving_blocks
 from fixtures.people import walker
 
 
@@ -95,7 +96,7 @@ def held(block_s, n_takes=60):
 
 
 def test_intervals_are_as_wide_as_errors_that_last_make_them(monkeypatch):
-    monkeypatch.setattr(camera_sets, "REPLICATES", 200)
+    monkeypatch.setattr(moving_blocks, "REPLICATES", 200)
     # 20 blocks for a median: 90 % rather than 95 %. Resampling single frames would be far too
     # optimistic.
     assert 0.8 <= held(1.0) <= 1

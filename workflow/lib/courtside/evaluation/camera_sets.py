@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from courtside.evaluation import joints
 from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
+from courtside.statistics import moving_blocks
 
 SHARED = ("time_s", "joints", "person_id")
 SETS = ("limbs", "right half", "left half")  # of `joints.SETS`, in the table's order
@@ -17,7 +18,6 @@ COLUMNS += ["missing_percent", "reference_missing_percent", "median_mm", "p95_mm
 COLUMNS += ["exchanged_percent"]
 GAINS = ["fusion", "than", "n_frames", "n", "median_mm", "median_from_mm", "median_to_mm"]
 GAINS += ["p95_mm", "p95_from_mm", "p95_to_mm"]
-REPLICATES = 1000  # of the bootstrap: usual for percentile intervals (Davison & Hinkley 1997)
 
 
 def compare(records: dict[str, Keypoints3D], reference: str) -> pd.DataFrame:
@@ -140,12 +140,9 @@ def _intervals(one: NDArray, other: NDArray, block: int, seed: int) -> dict[str,
     n_frames = one.shape[1]
     if n_frames < 4 * block:
         return {}
-    rng = np.random.default_rng(seed)
-    n_blocks = -(-n_frames // block)
-    found = np.empty((REPLICATES, 2))
-    for replicate in found:
-        start = rng.integers(n_frames - block + 1, size=n_blocks)
-        at = (start[:, None] + np.arange(block)).ravel()[:n_frames]
+    drawn = moving_blocks.frames(n_frames, block, seed=seed)
+    found = np.empty((len(drawn), 2))
+    for replicate, at in zip(found, drawn, strict=True):
         known = np.isfinite(one[:, at])
         both = one[:, at][known], other[:, at][known]
         replicate[:] = _difference(*both) if known.any() else np.nan

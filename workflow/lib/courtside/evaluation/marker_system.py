@@ -17,6 +17,7 @@ from scipy.optimize import minimize_scalar
 from courtside.calibration.point_covariance import ellipsoid, mahalanobis
 from courtside.evaluation import joints
 from courtside.geometry.similarity import Sim3, kabsch
+from courtside.statistics import moving_blocks
 from courtside.study.errors import InputError
 
 # Compared, with the names that marker systems give them. A marker system's `Hand` is its wrist.
@@ -37,7 +38,6 @@ SOFT_M = 0.03  # ASSUME: errors below it have full weight in the motion, larger 
 FEWEST = 0.5  # ASSUME: of the joints: a shift that leaves fewer beside the truth is no match
 ROUNDS = 20  # of its weights, which settle in about ten
 BLOCK_S = 0.5  # errors of neighbouring frames are alike: blocks of frames are resampled
-REPLICATES = 1000  # usual for percentile intervals (Davison & Hinkley 1997)
 ALL = "all"
 COLUMNS = ["joint", "n", "missing_percent", "median_mm", "median_from_mm", "median_to_mm", "p90_mm"]
 COLUMNS += ["p90_from_mm", "p90_to_mm", "coverage_90_percent"]
@@ -171,10 +171,6 @@ def _summary(error: NDArray, covariance: NDArray, block: int) -> dict[str, Any]:
 
 def _drawn(distance: NDArray, block: int) -> list[NDArray]:
     """Return the distances, of (T, J), of takes resampled by blocks of frames."""
-    rng = np.random.default_rng(0)
-    count = len(distance)
-    block = min(block, count)
-    starts = rng.integers(count - block + 1, size=(REPLICATES, -(-count // block)))
-    frames = (starts[..., None] + np.arange(block)).reshape(REPLICATES, -1)[:, :count]
+    frames = moving_blocks.frames(len(distance), block)
     known = np.isfinite(distance)
     return [distance[one][known[one]] for one in frames if known[one].any()]
