@@ -76,6 +76,7 @@ PLACES = {
     ],
     "figures/agreement.pairs.csv": [f"{TOGETHER} | agreement.pairs.csv", LABELS],
     "figures/agreement*.csv": [f"{TOGETHER} | agreement.{end}.csv" for end in ("table", "pairs")],
+    "figures/networks*.csv": [f"{TOGETHER} | networks.csv"],
     "figures/archive.csv": [f"{TOGETHER} | {end}.csv" for end in ("archive", "agreement.pairs")],
     "figures/badminton_fig05.csv": [f"{FIGURES} | badminton_fig05", LABELS],
     "figures/badminton_fig12.csv": [f"{FIGURES} | badminton_fig12", QUANTILES, OF_CALIBRATION],

@@ -1,9 +1,10 @@
 """What takes say together: sets of cameras, networks side by side, clocks, a subject over sessions.
 
-Inputs: 3D keypoints, kinematics, errors. Outputs: results/{session}/takes/{take}/views/,
+Inputs: 3D keypoints, kinematics, errors, truth of virtual takes. Outputs: results/{session}/takes/{take}/views/,
 results/figures/.
 Steps: compare_views (real takes), tabulate_players, tabulate_angles, draw_clock_errors,
-draw_reliability, compare_networks, draw_agreement, compare_sessions.
+draw_reliability, compare_networks, draw_agreement, evaluate_networks, draw_networks,
+compare_sessions.
 """
 
 
@@ -114,6 +115,36 @@ rule draw_agreement:
         networks=STUDY.parameters["compare_networks"]["networks"],
     script:
         "../scripts/draw_agreement.py"
+
+
+rule evaluate_networks:
+    input:
+        errors_csv=[row.errors for row in targets.together.evaluated_takes(STUDY)],
+        pose3d_npz=[row.pose3d for row in targets.together.evaluated_takes(STUDY) if row.truth],
+        truth_npz=[row.truth for row in targets.together.evaluated_takes(STUDY) if row.truth],
+    output:
+        table_csv=paths.NETWORK_ERRORS,
+    log:
+        "results/figures/logs/evaluate_networks/all.log",
+    params:
+        code=code("evaluate_networks.py"),
+        labels=[row.labels for row in targets.together.evaluated_takes(STUDY)],
+        networks=STUDY.parameters["evaluate_networks"]["networks"],
+    script:
+        "../scripts/evaluate_networks.py"
+
+
+rule draw_networks:
+    input:
+        table_csv=paths.NETWORK_ERRORS,
+    output:
+        **study_figure("networks", "networks", ("players", "networks")),
+    log:
+        "results/figures/logs/draw_networks/all.log",
+    params:
+        code=code("draw_networks.py"),
+    script:
+        "../scripts/draw_networks.py"
 
 
 rule compare_sessions:

@@ -192,8 +192,9 @@ rule evaluate_skin_depths:
 rule evaluate_detection:
     input:
         pose2d_npz=of_job(takes.each_camera, paths.POSE2D),
-        take_truth_npz=paths.TRUE_TAKE,
-        truth_npz=paths.TRUTH,
+        take_truth_npz=of_job(evaluation.true_take),
+        truth_npz=of_job(Job.true_file, paths.TRUTH),
+        reference_npz=of_job(evaluation.reference),
         skeleton_yaml=of_job(Job.skeleton_file),
     output:
         errors_csv=paths.DETECTION_ERRORS,
@@ -201,6 +202,7 @@ rule evaluate_detection:
         "results/{session}/logs/evaluate_detection/{take}.{model}.log",
     params:
         code=code("evaluate_detection.py"),
+        n_persons=of_job(lambda job: len(job.take.subjects)),
         labels=lambda w: dict(w.items()),
     script:
         "../scripts/evaluate_detection.py"

@@ -175,3 +175,38 @@ def test_a_network_without_the_joints_is_refused():
     fewer = replace(view, joints=view.joints[:-1], xy=view.xy[:, :, :-1])
     with pytest.raises(InputError, match="right_ankle"):
         evaluate(fewer, real)
+
+
+def reference_of(view, xy):
+    return replace(keypoints_made.view(CAMERA, LIMBS, view.time_s, xy), model="hand")
+
+
+def test_keypoints_are_compared_with_those_of_another_program():
+    view = seen(truth())
+    torso = np.linalg.norm(view.xy[0, :, [0, 6]].mean(0) - view.xy[0, :, [3, 9]].mean(0), axis=-1)
+    moved = view.xy.copy()
+    moved[0, 3, LIMBS.index("left_wrist")] += [0.25 * torso[3], 0]
+    moved[0, 5, LIMBS.index("left_knee")] = np.nan
+    sides = [LIMBS.index(name) for name in ("left_ankle", "right_ankle")]
+    moved[0, 7, sides] = moved[0, 7, sides[::-1]]
+    rows = detection.against(view, reference_of(view, moved), LIMBS)
+    assert list(rows.columns) == detection.COLUMNS and set(rows.person) == {"hand 1"}
+    np.testing.assert_allclose(rows.torso_px.to_numpy()[::12], torso)
+    far = rows[(rows.error_px > 1e-6) & (rows.frame_idx != 7)]
+    assert far[["frame_idx", "joint"]].values.tolist() == [[3, "left_wrist"]]
+    assert far.error_torso.item() == pytest.approx(0.25) and not far.placed.item()
+    assert rows[~rows.in_picture][["frame_idx", "joint"]].values.tolist() == [[5, "left_knee"]]
+    assert rows[rows.exchanged][["frame_idx", "joint"]].values.tolist() == [
+        [7, "left_ankle"],
+        [7, "right_ankle"],
+    ]
+
+
+def test_only_the_persons_that_the_take_is_of_are_compared():
+    both = seen(truth(n_persons=2))
+    part = both.xy.copy()
+    part[0, 4:] = np.nan  # seen in fewer frames than the other
+    rows = detection.against(both, reference_of(both, part), LIMBS, n_persons=1)
+    assert len(rows) == 10 * 12 and rows.placed.all()
+    with pytest.raises(InputError, match="expected the 10 frames"):
+        detection.against(both, reference_of(seen(truth(9)), part[:, :9]), LIMBS)

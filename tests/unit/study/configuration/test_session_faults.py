@@ -1,8 +1,10 @@
 """What a session's file gets wrong beyond its schema, and what conditions do: one line each."""
 
+import re
+
 import pytest
 
-from courtside.study.configuration import session_faults
+from courtside.study.configuration import session_faults, take_faults
 
 FILE = "gym.yaml"
 RECORDED = {
@@ -473,3 +475,22 @@ def test_a_name_that_no_disk_takes_is_a_file_that_is_not_there(root):
     camera = {"static": "x" * 300}
     (line,) = find(root, RECORDED | {"cameras": {"a": camera, "b": {"static": "b.mp4"}}})
     assert "cameras.a.static: expected a file, found none" in line
+
+
+@pytest.mark.parametrize(
+    ("step", "part"),
+    [
+        ({"takes": {"gym/shot": "body25b"}}, "expected null, for it has a truth, found 'body25b'"),
+        ({"takes": {"hall/walk": None}}, r"keypoints \['coco17'\] .* found None"),
+        ({"takes": {"hall/walk": "body25b"}}, r"keypoints \['coco17'\] .* found 'body25b'"),
+        ({"networks": ["resnet"]}, r"expected one of \['full'\], found 'resnet'"),
+        ({"takes": {"gym/shot": None, "hall/walk": "coco17", "elsewhere/shot": None}}, None),
+    ],
+)
+def test_networks_are_compared_with_a_truth_or_with_keypoints_that_are_there(step, part):
+    hall = {"takes": {"walk": {"pose2d": {"coco17": {"a": "json"}}}, "empty": None}}
+    found = {"gym": ("gym.yaml", PLAYERS), "hall": ("hall.yaml", hall)}
+    step = {"takes": {}, "networks": ["full"]} | step
+    lines = list(take_faults.evaluated("config.yaml", step, ["full"], found))
+    assert len(lines) == (part is not None)
+    assert all(re.search(part, line) and line.startswith("config.yaml: ") for line in lines)

@@ -19,6 +19,24 @@ def test_truth_is_that_of_virtual_takes(job):
     assert evaluation.true_take(job(session="walk-4cams-tiny", take="balancing")) == []
 
 
+def test_recorded_takes_are_compared_with_the_imported_keypoints_that_are_named(job, studies):
+    assert evaluation.reference(job(**SHOT)) == []
+    take = {"session": "walk-4cams-tiny", "take": "balancing"}
+    step = {"takes": {"walk-4cams-tiny/balancing": "body25b"}, "networks": ["blazepose-full"]}
+    found = evaluation.reference(job(replace_step(studies(), step), **take))
+    folder = "results/walk-4cams-tiny/takes/balancing/pose2d/body25b"
+    assert found == [f"{folder}/cam0{at}.npz" for at in (1, 2, 3, 4)]
+
+
+def replace_step(study, step):
+    """Return the study with another step in the parameters of every session."""
+    changed = {
+        name: replace(one, parameters={**one.parameters, "evaluate_networks": step})
+        for name, one in study.sessions.items()
+    }
+    return replace(study, sessions=changed)
+
+
 def test_skeletons_of_every_stage_and_fusion_are_compared_and_labelled(job):
     fusions = ["all-robust", "two-dlt", "halfbody", "three-robust", "three-dlt"]
     stages = ["pose3d", "pose3d_filtered"]

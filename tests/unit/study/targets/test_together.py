@@ -16,6 +16,7 @@ def test_figures_of_players(study):
         f"{SHOT}/figures/three_cameras.known18.blazepose-full",
         "results/figures/reliability",
         "results/figures/archive",
+        "results/figures/networks",
     ]
     figures = [f"{stem}.{suffix}" for stem in stems for suffix in ("pdf", "png", "csv")]
     assert together.every_players_figure(study) == [
@@ -55,3 +56,12 @@ def test_networks_are_compared_take_by_take(study, studies):
     step = {**study.parameters["compare_networks"], "sessions": ["walk-4cams-tiny", "absent"]}
     found = together.compared_takes(studies(compare_networks=step))
     assert [row.labels["model"] for row in found] == ["blazepose-full", "blazepose-static"]
+
+
+def test_networks_are_evaluated_with_the_truth_or_with_imported_keypoints(study, studies):
+    (one,) = together.evaluated_takes(study)
+    assert one.errors == ("results/players-tiny/evaluation/takes/shot/detection/blazepose-full.csv")
+    assert one.pose3d == f"{SHOT}/pose3d/known18/all-robust/blazepose-full.npz"
+    assert one.truth == "results/virtual/players-tiny/takes/shot/truth.npz"
+    assert one.labels["against"] == "truth" and one.labels["model"] == "blazepose-full"
+    assert together.evaluated_takes(studies(sessions=["plain-tiny"])) == []

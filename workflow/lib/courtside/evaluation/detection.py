@@ -78,7 +78,37 @@ def evaluate(
     true = true[:, :, _places(truth.joints, joints, "the truth")]
     rows = view.xy[:, frames][:, :, _places(view.joints, joints, f"{view.camera}, {view.model}")]
     detected = _assign(rows, true, torso, [list(joints).index(name) for name in TRUNK])
-    return _table(truth, view, joints, frames, time_s, detected, true, torso)
+    names = list(map(str, truth.person_id))
+    strokes = np.array([_strokes(truth.events.get(name, {}), time_s) for name in names])
+    known = names, frames, time_s, strokes
+    return _table(view, joints, known, detected, true, torso)
+
+
+def against(
+    view: Keypoints2D, reference: Keypoints2D, joints: Sequence[str], n_persons: int = 1
+) -> pd.DataFrame:
+    """Compare one camera's keypoints with those of another program, or of a hand, in its pictures.
+
+    A table as of `evaluate`, with the reference in place of the truth: its errors count, too.
+    Persons are the reference's `n_persons` tracklets of the most frames, in the reference's order
+    and named after it. `torso_px` is the reference's own in that picture, not turned square-on.
+    `InputError` if the two have different frames.
+    """
+    if not np.array_equal(view.time_s.round(3), reference.time_s.round(3)):
+        raise InputError(
+            f"{view.camera}, {reference.model}: expected the {len(view.time_s)} frames of "
+            f"{view.model}, found {len(reference.time_s)} or other times; import those of the video"
+        )
+    places = _places(reference.joints, joints, f"{reference.camera}, {reference.model}")
+    true, trunk = reference.xy[:, :, places], [list(joints).index(name) for name in TRUNK]
+    n_frames = np.isfinite(true[:, :, trunk]).all(axis=(2, 3)).sum(axis=1)
+    true = true[np.sort(np.argsort(-n_frames, kind="stable")[:n_persons])]
+    shoulders, hips = (true[:, :, trunk[part : part + 2]].mean(axis=2) for part in (0, 2))
+    torso = np.linalg.norm(shoulders - hips, axis=-1)
+    rows = view.xy[:, :, _places(view.joints, joints, f"{view.camera}, {view.model}")]
+    names = [f"{reference.model} {at + 1}" for at in range(len(true))]
+    known = names, np.arange(len(view.time_s)), view.time_s, np.zeros(torso.shape, dtype=bool)
+    return _table(view, joints, known, _assign(rows, true, torso, trunk), true, torso)
 
 
 def _seen(
@@ -119,14 +149,13 @@ def _assign(rows: NDArray, true: NDArray, torso: NDArray, trunk: list[int]) -> N
     return found
 
 
-def _table(truth, view, joints, frames, time_s, detected, true, torso):
+def _table(view, joints, known, detected, true, torso):
+    names, frames, time_s, strokes = known  # persons, frames, times, (P, F) in a stroke
     other = [list(joints).index(_other_side(joint)) for joint in joints]
     error = np.linalg.norm(detected - true, axis=-1)
     share = error / torso[..., None]
     crossed = np.linalg.norm(detected[:, :, other] - true, axis=-1) / torso[..., None]
     placed = share < TOLERANCE
-    names = list(map(str, truth.person_id))
-    strokes = np.array([_strokes(truth.events.get(name, {}), time_s) for name in names])
     labels = np.reshape(names, (-1, 1, 1)), frames[:, None], time_s[:, None], np.array(joints)
     columns = {
         **dict(zip(("person", "frame_idx", "time_s", "joint"), labels, strict=True)),

@@ -154,6 +154,7 @@ PLAYERS_TABLE = "results/figures/players.csv"
 ANGLES_TABLE = "results/figures/angles.csv"
 NETWORK_PAIRS = "results/figures/agreement.pairs.csv"
 NETWORK_AGREEMENT = "results/figures/agreement.table.csv"
+NETWORK_ERRORS = "results/figures/networks.table.csv"
 
 # Below the folder config/.
 COURT_YAML = "courts/{court}.yaml"

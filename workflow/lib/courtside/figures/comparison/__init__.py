@@ -2,5 +2,6 @@
 
 agreement: `read`, `choose`, `draw`: limits of agreement of two networks
 archive: `table`, `draw`: measures of one subject over sessions
+networks: `table`, `draw`: networks on the same frames
 reliability: `table`, `draw`: how far the stated errors of joints hold
 """

@@ -59,6 +59,8 @@ def load(config: Content, config_file: str, folder: StrPath, root: StrPath = "."
             found[name] = (file, content)
     if not faults:
         faults += session_faults.conditions(config_file, config, found)
+        step = config["evaluate_networks"]
+        faults += take_faults.evaluated(config_file, step, models or {}, found)
         faults += model_faults.absent(folder, Path(root), models, detectors, _used(config, found))
     if faults or known is None or models is None or detectors is None:
         raise InputError(*faults)
@@ -74,6 +76,9 @@ def load(config: Content, config_file: str, folder: StrPath, root: StrPath = "."
 def _used(config: Content, found: dict[str, tuple]) -> list[str]:
     """Return the models that the study and its sessions name."""
     own = [content.get("override", {}).get("models", []) for _, content in found.values()]
+    compared = config["evaluate_networks"]
+    there = {name.partition("/")[0] for name in compared["takes"]} & set(found)
+    own.append(compared["networks"] if there else [])
     return [*config["models"], *itertools.chain.from_iterable(own)]
 
 

@@ -88,6 +88,30 @@ def _unfilmed(where: str, take: Content, content: Content) -> Iterator[str]:
         )
 
 
+def evaluated(
+    config_file: str, step: Content, models: Content, found: dict[str, tuple]
+) -> Iterator[str]:
+    """Yield the faults of `evaluate_networks`; `found` has (file, content) of each session.
+
+    Takes that the study does not have are left out, as everywhere.
+    """
+    where = f"{config_file}: evaluate_networks"
+    yield from unknown(f"{where}.networks", step["networks"], models)
+    for name, against in step["takes"].items():
+        session, _, take = name.partition("/")
+        _, content = found.get(session, (None, {}))
+        if take not in content.get("takes", {}):
+            continue
+        there = sorted((content["takes"][take] or {}).get("pose2d", {}))
+        if "virtual" in content and against is not None:
+            yield f"{where}.takes.{name}: expected null, for it has a truth, found {against!r}"
+        elif "virtual" not in content and against not in there:
+            yield (
+                f"{where}.takes.{name}: expected one of the imported keypoints {there} of that "
+                f"take to compare with, found {against!r}; name one, or import some (`pose2d`)"
+            )
+
+
 def find(
     where: str, take: Content, cameras: Content, subjects: Content, virtual: bool
 ) -> Iterator[str]:

@@ -31,6 +31,13 @@ def true_take(job: Job) -> str | list:
     return job.true_file(paths.TRUE_TAKE)
 
 
+def reference(job: Job) -> list[str]:
+    """Return the imported keypoints that a recorded take is compared with; nothing of a virtual."""
+    takes = job.step("evaluate_networks")["takes"]
+    model = takes.get(job.fill("{session}/{take}"))
+    return job.of_each(paths.POSE2D, camera=job.take.videos, model=[model]) if model else []
+
+
 def skeletons(job: Job) -> list[str]:
     """Return the skeletons that are compared with the truth: every stage and fusion."""
     return job.of_each(paths.SKELETONS, stage=job.stages(), fusion=every_fusion(job))

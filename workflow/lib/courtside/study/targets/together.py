@@ -26,6 +26,16 @@ class MeasuredTake:
         return {key: value for key, value in self.labels.items() if key != "model"}
 
 
+@dataclass(frozen=True)
+class EvaluatedTake:
+    """A take in which one network is compared with the truth, or with imported keypoints."""
+
+    errors: str  # the file of its errors in the pictures
+    pose3d: str | None  # of its raw skeletons; None without a truth
+    truth: str | None
+    labels: dict[str, str]  # session, take, against (truth, or imported keypoints) and model
+
+
 def every_players_figure(study: Study) -> list[str]:
     """Return the figures that takes are drawn in together, and the tables of players."""
     stems = []
@@ -43,6 +53,7 @@ def every_players_figure(study: Study) -> list[str]:
         "reliability": takes.evaluations(study, "reliability"),
         "agreement": compared_takes(study),
         "archive": archived_takes(study),
+        "networks": evaluated_takes(study),
     }
     stems += [paths.STUDY_FIGURE.format(figure=name) for name, found in there.items() if found]
     tables = [paths.PLAYERS_TABLE, paths.ANGLES_TABLE]
@@ -79,6 +90,22 @@ def compared_takes(study: Study) -> list[MeasuredTake]:
     """Return the takes in which two networks are compared."""
     step = study.parameters["compare_networks"]
     return measured_takes(study, step["sessions"], step["networks"])
+
+
+def evaluated_takes(study: Study) -> list[EvaluatedTake]:
+    """Return the takes in which networks are evaluated, with each of them."""
+    step, found = study.parameters["evaluate_networks"], []
+    for session, take in study.named_takes(step["takes"]):
+        labels = {"session": session.name, "take": take.name}
+        labels["against"] = step["takes"][f"{session.name}/{take.name}"] or "truth"
+        truth = paths.TRUE_TAKE.format(**labels) if session.virtual else None
+        way = {"calibration": session.take_calibrations()[0], "fusion": session.fusions()[0]}
+        for model in step["networks"]:
+            known = {**labels, "model": model}
+            pose3d = paths.POSE3D.format(**known, **way) if truth else None
+            errors = paths.DETECTION_ERRORS.format(**known)
+            found.append(EvaluatedTake(errors, pose3d, truth, known))
+    return found
 
 
 def archived_takes(study: Study) -> list[MeasuredTake]:

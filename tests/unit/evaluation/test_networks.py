@@ -1,0 +1,124 @@
+"""Networks made with known errors, exchanges, gaps and jitter are told apart by just these."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from courtside.evaluation import detection, networks
+from courtside.records.keypoints import skeleton
+from courtside.statistics import moving_blocks
+
+TORSO_PX = 100.0
+CAMERAS = {"one": 0, "two": 7}  # with the frames that each was started before the take
+
+
+@pytest.fixture(autouse=True)
+def _fewer_replicates(monkeypatch):
+    monkeypatch.setattr(moving_blocks, "REPLICATES", 100)
+
+
+def made(off_px, n_frames=120, exchanged=(), gone=(), rate_hz=30):
+    """Return rows of `detection.evaluate`: `off_px(rng, shape)` is added to the true joints."""
+    rng, parts = np.random.default_rng(3), []
+    for camera, early in CAMERAS.items():
+        index = pd.MultiIndex.from_product(
+            [range(early, early + n_frames), skeleton.JOINTS], names=["frame_idx", "joint"]
+        )
+        rows = index.to_frame(index=False).assign(person="p1", camera=camera, torso_px=TORSO_PX)
+        rows["time_s"] = (rows["frame_idx"] - early) / rate_hz
+        off = off_px(rng, (len(rows), 2))
+        for at, axis in enumerate("xy"):
+            rows[f"true_{axis}_px"] = 500 + 300 * np.sin(rows["time_s"] + at)
+            rows[f"{axis}_px"] = rows[f"true_{axis}_px"] + off[:, at]
+        frame = rows["frame_idx"] - early
+        lost = frame.isin(gone)
+        rows.loc[lost, ["x_px", "y_px"]] = np.nan
+        rows["error_px"] = np.hypot(*(rows[f"{a}_px"] - rows[f"true_{a}_px"] for a in "xy"))
+        rows["error_torso"] = rows["error_px"] / TORSO_PX
+        rows["found"], rows["in_picture"], rows["in_stroke"] = ~lost, True, False
+        rows["exchanged"] = frame.isin(exchanged)
+        rows["placed"] = (rows["error_torso"] < detection.TOLERANCE) & ~rows["exchanged"]
+        parts.append(rows)
+    return pd.concat(parts, ignore_index=True)[detection.COLUMNS]
+
+
+def constant(length_px):
+    return lambda rng, shape: np.full(shape, length_px) * [0.6, 0.8]
+
+
+def noise(sigma_px):
+    return lambda rng, shape: rng.normal(0, sigma_px, shape)
+
+
+def measured(pictures, **more):
+    take = networks.ComparedTake("gym", "truth", pictures, **more)
+    rows = networks.table([take], list(pictures))
+    assert list(rows.columns) == networks.COLUMNS
+    return rows.set_index(["network", "measure"])
+
+
+def test_a_known_error_is_found_in_pixels_and_torsos():
+    rows = measured({"near": made(constant(5)), "far": made(constant(30))})
+    for measure in ("error_median", "error_p95", "error_median_torso", "error_p95_torso"):
+        np.testing.assert_allclose(rows.loc[[("near", measure), ("far", measure)], "value"],
+                                   [5, 30])  # fmt: skip
+    far = rows.loc["far", "error_median"]
+    np.testing.assert_allclose(far[["difference", "difference_from", "difference_to"]].tolist(), 25)
+    assert np.isnan(rows.loc[("near", "error_median"), "difference"])
+    assert rows.loc[("near", "pck"), "value"] == 100 and rows.loc[("far", "pck"), "value"] == 0
+
+
+def test_jitter_is_the_noise_of_each_axis_and_no_steady_error():
+    rows = measured({"still": made(constant(30)), "noisy": made(noise(3.0))})
+    assert rows.loc[("still", "jitter"), "value"] < 1e-9
+    np.testing.assert_allclose(rows.loc[("noisy", "jitter"), "value"], 3.0, rtol=0.05)
+    assert np.isclose(rows.loc[("noisy", "jitter"), "n"], 2 * 118 * 12)
+
+
+def test_exchanged_and_missing_joints_are_counted_in_the_frames_with_a_truth():
+    one = made(constant(1), exchanged=range(30, 60))
+    other = made(constant(1), gone=range(90, 120))
+    rows = measured({"one": one, "other": other})["value"].unstack("measure")
+    np.testing.assert_allclose(rows["exchanged"], [25, 0])
+    np.testing.assert_allclose(rows["missing"], [0, 25])
+    np.testing.assert_allclose(rows["pck"], [75, 75])
+
+
+def test_errors_are_of_the_frames_that_all_networks_have():
+    hard = made(constant(1))
+    late = hard["time_s"] > 2.99
+    hard.loc[late, "error_px"] = 500.0
+    both = measured({"brave": hard, "timid": made(constant(1), gone=range(90, 120))})
+    assert both.loc[("brave", "error_p95"), "value"] == pytest.approx(1)
+    assert both.loc[("brave", "error_p95"), "n"] == 2 * 90 * 12
+    assert measured({"brave": hard}).loc[("brave", "error_p95"), "value"] == 500
+
+
+def test_an_interval_holds_a_share_as_wide_as_its_blocks_make_it():
+    rows = measured({"one": made(constant(1), n_frames=1200, exchanged=range(300, 600))})
+    share = rows.loc[("one", "exchanged")]
+    assert share["value_from"] < 25 < share["value_to"] and share["n_blocks"] == 80
+    # 80 blocks of one state each
+    np.testing.assert_allclose(share["value_to"] - share["value_from"], 19, rtol=0.3)
+    short = measured({"one": made(constant(1), n_frames=40)}).loc[("one", "pck")]
+    assert short["n_blocks"] == 2 and np.isnan(short["value_from"])
+
+
+def test_frames_of_cameras_are_drawn_together_by_their_time():
+    step_s, slot = networks._slots(made(constant(1), n_frames=5))
+    assert step_s == pytest.approx(1 / 30)
+    assert slot.loc["one"].tolist() == slot.loc["two"].tolist() == [0, 1, 2, 3, 4]
+
+
+def test_errors_in_space_are_of_the_places_that_all_have_and_takes_are_joined():
+    near, far = np.full((1, 60, 12), 20.0), np.full((1, 60, 12), 45.0)
+    near[0, :30] = np.nan
+    pictures = {"near": made(constant(1)), "far": made(constant(1))}
+    space = {"error_3d": {"near": near, "far": far}, "rate_hz_3d": 30.0}
+    take = networks.ComparedTake("gym", "truth", pictures, **space)
+    plain = networks.ComparedTake("gym", "truth", pictures)
+    rows = networks.table([take, plain], list(pictures)).set_index(["network", "measure"])
+    assert rows["n_takes"].eq(2).all()
+    found = rows.loc[("far", "error_3d_median")]
+    assert (found["value"], found["difference"], found["n"]) == (45, 25, 30 * 12)
+    assert "error_3d_median" not in measured(pictures).loc["near"].index

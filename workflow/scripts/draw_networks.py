@@ -1,0 +1,16 @@
+"""Draw networks on the same frames: table of their measures -> figure, CSV."""
+
+import pandas as pd
+
+from courtside.figures.comparison import networks
+from courtside.figures.style import style
+from courtside.study.execution.script import run
+
+
+def main(table_csv, pdf, png, csv):
+    numbers = networks.table(pd.read_csv(table_csv))
+    style.save(networks.draw(numbers), numbers, pdf, png, csv)
+
+
+if __name__ == "__main__":
+    run(main, snakemake)
