@@ -11,18 +11,23 @@ from unittest import mock
 
 import numpy as np
 import onnx
+import pandas as pd
 import pytest
 
 sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))  # last: both have a `scene`
 import hall_markers
 import long_take
 import mapping_seeds
+import networks
 import real_footage
 import rows
 import run_log
 import structure_from_motion
 from comparisons import pose
+from courtside.devices import openpose
+from courtside.records.keypoints import skeleton
 from courtside.study.configuration import configuration, yaml_files
+from courtside.study.targets import together
 
 ROOT = Path(__file__).parents[1]
 LOG = """Provided cores: 2
@@ -176,3 +181,44 @@ def test_the_session_of_the_hall_is_a_session(tmp_path):
     found = configuration.load(study, written, config, tmp_path).sessions["hall-markers"]
     assert found.calibrations() == found.take_calibrations() == list(hall_markers.WAYS)
     assert (tmp_path / "data" / "court_points.csv").read_text().count("cam0") == 1
+
+
+def test_joints_set_by_hand_are_read_as_keypoints_of_another_program(tmp_path):
+    (tmp_path / "annotations.csv").write_text(
+        "camera,frame_idx,joint,x_px,y_px,visibility\n"
+        "cam02,0,LShoulder,10,20,2\ncam02,0,RHand,30,40,2\ncam02,1,LShoulder,11,20,2\n"
+        "cam01,0,LShoulder,1,2,2\ncam02,0,Spine,5,6,2\n"
+    )
+    folders = networks.write_json(tmp_path, tmp_path / "hand")
+    joints = skeleton.read(ROOT / "config" / "skeletons" / "body25.yaml")
+    view = openpose.read(folders["cam02"], joints, camera="cam02", model="body25", size=(99, 99),
+                         time_s=np.array([0.0, 0.1]))  # fmt: skip
+    at = [view.joints.tolist().index(name) for name in ("left_shoulder", "right_wrist", "nose")]
+    np.testing.assert_array_equal(view.xy[0, 0, at], [[10, 20], [30, 40], [np.nan] * 2])
+    assert view.xy[0, 1, at[0]].tolist() == [11, 20] and view.xy.shape[:2] == (1, 2)
+
+
+def test_the_study_of_networks_on_recorded_pictures_has_no_fault(tmp_path):
+    demo, config = tmp_path / "demo", tmp_path / "config"
+    for at in range(1, 5):
+        (demo / "openpose_body25b" / f"cam{at}_json").mkdir(parents=True)
+    shutil.copytree(ROOT / "config", config)
+    written = networks.write_study(tmp_path, demo, None, ["blazepose-full", "blazepose-static"])
+    study = yaml_files.read(config / "config.yaml") | yaml_files.read(tmp_path / written)
+    found = configuration.load(study, written, config, tmp_path)
+    rows = together.evaluated_takes(found)
+    assert [row.labels["against"] for row in rows] == ["body25b"] * 2
+    assert [row.pose3d for row in rows] == [None, None]
+
+
+def test_times_of_networks_stand_over_the_first():
+    about = {"session": "repeats", "against": "truth", "unit": "%", "n": 9, "value": 90.0}
+    made = [
+        {**about, "network": name, "measure": "pck", "value_from": 88.0, "value_to": np.nan}
+        for name in ("full", "heavy")
+    ]
+    found = list(networks.rows(pd.DataFrame(made), {"full": 20.0, "heavy": 70.0}))
+    printed = {(row[1], row[2]): row[3] for row in found}
+    assert printed["`heavy`; virtual, `repeats`", "time"] == "3.50"
+    assert printed["`full`; virtual, `repeats`", "pck_from"] == "88.0"
+    assert printed["`full`; virtual, `repeats`", "pck_to"] == "-"

@@ -120,8 +120,8 @@ rule draw_agreement:
 rule evaluate_networks:
     input:
         errors_csv=[row.errors for row in targets.together.evaluated_takes(STUDY)],
-        pose3d_npz=[row.pose3d for row in targets.together.evaluated_takes(STUDY) if row.truth],
-        truth_npz=[row.truth for row in targets.together.evaluated_takes(STUDY) if row.truth],
+        pose3d_npz=[row.pose3d for row in targets.together.evaluated_takes(STUDY) if row.pose3d],
+        truth_npz=evaluation.compared_truths(targets.together.evaluated_takes(STUDY)),
     output:
         table_csv=paths.NETWORK_ERRORS,
     log:

@@ -5,7 +5,7 @@ Reads errors in the pictures, and of virtual takes raw 3D keypoints and truth; w
 
 import pandas as pd
 
-from courtside.evaluation import networks as compared
+from courtside.evaluation.tables import networks as compared
 from courtside.records import tables
 from courtside.records.keypoints import keypoints
 from courtside.records.truth import take_truth

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from courtside.evaluation import networks as evaluated
+from courtside.evaluation.tables import networks as evaluated
 from courtside.figures.comparison import networks
 
 

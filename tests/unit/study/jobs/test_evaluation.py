@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from courtside.study import paths
 from courtside.study.jobs import evaluation
+from courtside.study.targets import together
 
 SHOT = {"session": "players-tiny", "take": "shot", "calibration": "known18"}
 NET = {**SHOT, "model": "blazepose-static"}
@@ -26,6 +27,12 @@ def test_recorded_takes_are_compared_with_the_imported_keypoints_that_are_named(
     found = evaluation.reference(job(replace_step(studies(), step), **take))
     folder = "results/walk-4cams-tiny/takes/balancing/pose2d/body25b"
     assert found == [f"{folder}/cam0{at}.npz" for at in (1, 2, 3, 4)]
+
+
+def test_networks_have_a_truth_where_they_have_skeletons(study):
+    takes = together.evaluated_takes(study)
+    assert evaluation.compared_truths(takes) == [f"{TRUE}/shot/truth.npz"]
+    assert evaluation.compared_truths([replace(takes[0], pose3d=None)]) == []
 
 
 def replace_step(study, step):

@@ -62,6 +62,5 @@ def test_networks_are_evaluated_with_the_truth_or_with_imported_keypoints(study,
     (one,) = together.evaluated_takes(study)
     assert one.errors == ("results/players-tiny/evaluation/takes/shot/detection/blazepose-full.csv")
     assert one.pose3d == f"{SHOT}/pose3d/known18/all-robust/blazepose-full.npz"
-    assert one.truth == "results/virtual/players-tiny/takes/shot/truth.npz"
     assert one.labels["against"] == "truth" and one.labels["model"] == "blazepose-full"
     assert together.evaluated_takes(studies(sessions=["plain-tiny"])) == []

@@ -5,7 +5,6 @@ joints: `errors`, `table`, `true`, `left_out`: errors of 3D joints, against the 
 reliability: `counts`, `pooled`: how often ellipsoids hold, and how well outliers are flagged
 error_fit: `joints_of`: what the model of joint errors is fitted on
 detection: `evaluate`, `against`, `torso_px`: errors of a network's 2D joints in the pictures
-networks: `table`: networks on the same frames, with intervals
 kinematics: `table`, `angles`: errors of paths and speeds, of joint angles
 sources: `errors`, `table`, `split`: errors of devices and cameras, and their parts
 round_trip: `table`, `distance_after`: the paper's table 1

@@ -163,6 +163,21 @@ VIEWS = {
             "angles": "{raw_bias.n}",
         },
     ),
+    "networks": View(
+        "networks",
+        {
+            "network; pictures": "{row}",
+            "2D error, median, px": _interval("error_median"),
+            "95 %, px": _interval("error_p95"),
+            "of the torso, median / 95 %, %": "{error_median_torso} / {error_p95_torso}",
+            "PCK@0.2, %": _interval("pck"),
+            "sides exchanged, %": _interval("exchanged"),
+            "jitter, px": _interval("jitter"),
+            "3D error, median / 95 %, mm": f"{_interval('error_3d_median')} / {{error_3d_p95}}",
+            "joints in 2D": "{error_median.n}",
+            "time of a person, over the first": "{time}",
+        },
+    ),
     "footage": View(
         "footage",
         {

@@ -1,8 +1,9 @@
-"""Tables of the study: calibration, players, racket.
+"""Tables of the study: calibration, players, racket, networks.
 
 angles: `read`, `table`: errors of joint angles
 calibration: read, tidy, table: errors of calibrations; pick, summary, spread, structures_of: parts
     of it
+networks: `in_space`, `table`: networks on the same frames, with intervals
 players: `read`, `together`, `table`: errors of simulated players
 racket: `read`, `table`: lengths of a racket
 """

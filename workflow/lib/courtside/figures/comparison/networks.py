@@ -22,7 +22,7 @@ SPREAD = 0.5  # of the distance between networks, for the sessions' marks
 
 
 def table(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return the rows of `evaluation.networks.table` that are drawn."""
+    """Return the rows of `evaluation.tables.networks.table` that are drawn."""
     return rows[rows["measure"].isin(DRAWN)].reset_index(drop=True)
 
 

@@ -10,6 +10,7 @@ from courtside.study.jobs.calibration import CLICK_KEYS
 from courtside.study.jobs.job import Job
 from courtside.study.jobs.takes import every_fusion
 from courtside.study.targets.calibration import racket_models
+from courtside.study.targets.together import EvaluatedTake
 
 PAIRS = [  # of fusions that are compared, ours first
     ("two-robust", "two-dlt"),
@@ -36,6 +37,11 @@ def reference(job: Job) -> list[str]:
     takes = job.step("evaluate_networks")["takes"]
     model = takes.get(job.fill("{session}/{take}"))
     return job.of_each(paths.POSE2D, camera=job.take.videos, model=[model]) if model else []
+
+
+def compared_truths(takes: Iterable[EvaluatedTake]) -> list[str]:
+    """Return the truth of each take in which a network's skeletons are compared with one."""
+    return [paths.TRUE_TAKE.format(**take.labels) for take in takes if take.pose3d]
 
 
 def skeletons(job: Job) -> list[str]:

@@ -32,7 +32,6 @@ class EvaluatedTake:
 
     errors: str  # the file of its errors in the pictures
     pose3d: str | None  # of its raw skeletons; None without a truth
-    truth: str | None
     labels: dict[str, str]  # session, take, against (truth, or imported keypoints) and model
 
 
@@ -98,13 +97,12 @@ def evaluated_takes(study: Study) -> list[EvaluatedTake]:
     for session, take in study.named_takes(step["takes"]):
         labels = {"session": session.name, "take": take.name}
         labels["against"] = step["takes"][f"{session.name}/{take.name}"] or "truth"
-        truth = paths.TRUE_TAKE.format(**labels) if session.virtual else None
         way = {"calibration": session.take_calibrations()[0], "fusion": session.fusions()[0]}
         for model in step["networks"]:
             known = {**labels, "model": model}
-            pose3d = paths.POSE3D.format(**known, **way) if truth else None
+            pose3d = paths.POSE3D.format(**known, **way) if session.virtual else None
             errors = paths.DETECTION_ERRORS.format(**known)
-            found.append(EvaluatedTake(errors, pose3d, truth, known))
+            found.append(EvaluatedTake(errors, pose3d, known))
     return found
 
 

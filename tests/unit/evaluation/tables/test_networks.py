@@ -4,7 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from courtside.evaluation import detection, networks
+from courtside.evaluation import detection
+from courtside.evaluation.tables import networks
 from courtside.records.keypoints import skeleton
 from courtside.statistics import moving_blocks
 

@@ -1,0 +1,177 @@
+"""Networks on the same frames: recorded pictures beside virtual ones, and processor time.
+
+    python benchmarks/networks.py RESULTS [--demo DEMO] [--hall DATA] [--study FOLDER]
+
+RESULTS is of a default run, with figures/networks.table.csv. DEMO is Pose2Sim's demonstration with
+OpenPose's keypoints in `openpose_body25b/cam1_json` to `cam4_json`; DATA is the recording of
+`hall_markers.py`, with joints set by hand in `annotations.csv`. With these the script writes a
+study into FOLDER (by default a temporary one), in which each network is compared with them on the
+road that `evaluate_networks` has for recorded takes. Times are of the landmark stage, one person,
+one thread, all networks in turn on each picture; the least of the pictures counts. It writes
+docs/numbers/networks.csv, a source of docs/make_tables.py; what was not measured again stays.
+"""
+
+import argparse
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pandas as pd
+import yaml
+
+import hall_markers
+from many_sessions import ROOT, copied
+
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
+
+from courtside.evaluation import marker_system
+from courtside.evaluation.numbers import register, stated
+from courtside.pose import decoders
+from courtside.records.keypoints import skeleton
+from courtside.study import paths
+from courtside.study.configuration import sessions, yaml_files
+
+TABLE, OUTPUT = "networks", ROOT / stated.FOLDER / "networks.csv"
+COMMAND = "`python benchmarks/networks.py results --demo DEMO --hall DATA`"
+WALK, HALL = "walk-4cams", "hall-markers"
+WORDS = {
+    (WALK, "body25b"): "real, `walk-4cams`, against OpenPose (no truth)",
+    (HALL, "body25"): "real, sports hall, against joints set by hand",
+}
+DECIMALS = {"px": 1, "%": 1, "mm": 0}
+N_PICTURES, VIDEO = 20, "external/pose2sim/Pose2Sim/Demo_SinglePerson/videos/cam03.mp4"
+HAND = {f"{side}_shoulder": f"{side[0].upper()}Shoulder" for side in ("left", "right")}
+
+
+def write_json(data, folder):
+    """Write joints set by hand as OpenPose writes its own; return the folders by camera."""
+    table, names = pd.read_csv(data / "annotations.csv"), {**HAND, **marker_system.JOINTS}
+    joints = skeleton.read(ROOT / "config" / "skeletons" / "body25.yaml").joints
+    place = {theirs: joints.index(ours) for ours, theirs in names.items()}
+    table = table[table["joint"].isin(place) & table["camera"].isin(hall_markers.CAMERAS)]
+    for (camera, frame), part in table.groupby(["camera", "frame_idx"]):
+        points = np.zeros((len(joints), 3))
+        points[part["joint"].map(place)] = part[["x_px", "y_px"]].assign(score=1.0)
+        person = {"pose_keypoints_2d": points.ravel().tolist()}
+        path = folder / camera / f"{camera}_{frame:06d}.json"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(json.dumps({"people": [person]}))
+    return {camera: str(folder / camera) for camera in hall_markers.CAMERAS}
+
+
+def write_study(folder, demo, data, networks):
+    """Write the sessions of recorded pictures and their study; return its configuration."""
+    takes, places = {}, folder / "config" / "sessions"
+    if demo:
+        content = yaml_files.read(places / f"{WALK}.yaml")
+        json_of = {f"cam0{at}": demo / "openpose_body25b" / f"cam{at}_json" for at in range(1, 5)}
+        found = {camera: str(path.resolve()) for camera, path in json_of.items()}
+        content["takes"]["balancing"]["pose2d"] = {"body25b": found}
+        (places / f"{WALK}.yaml").write_text(yaml.safe_dump(content, sort_keys=False))
+        takes[f"{WALK}/balancing"] = "body25b"
+    if data:
+        hall_markers.checked(data)
+        hall_markers.write_study(folder, data.resolve(), networks[0])
+        content = yaml_files.read(places / f"{HALL}.yaml")
+        content["takes"]["play"]["pose2d"] = {"body25": write_json(data, folder / "data" / "hand")}
+        (places / f"{HALL}.yaml").write_text(yaml.safe_dump(content, sort_keys=False))
+        takes[f"{HALL}/play"] = "body25"
+    study = {"sessions": [name.split("/")[0] for name in takes], "plans": [], "variations": []}
+    study["evaluate_networks"] = {"takes": takes, "networks": networks}
+    (folder / "config" / "networks-study.yaml").write_text(yaml.safe_dump(study))
+    return "config/networks-study.yaml"
+
+
+def recorded(folder, results, demo, data, networks):
+    """Return the table of networks on recorded pictures; pinned files are those of the results."""
+    study = write_study(copied(folder), demo, data, networks)
+    for part in ("external", "networks"):
+        shutil.copytree(results / part, folder / "results" / part, dirs_exist_ok=True)
+    command = [sys.executable, "-m", "snakemake", "--configfile", study, "--", paths.NETWORK_ERRORS]
+    subprocess.run(command, cwd=folder, check=True)
+    return pd.read_csv(folder / paths.NETWORK_ERRORS)
+
+
+def times(results, networks):
+    """Return each network's least processor time, ms, over some pictures of one person."""
+    models = yaml_files.read(ROOT / "config" / "models.yaml")
+    detectors = yaml_files.read(ROOT / "config" / "detectors.yaml")
+    found, detector = {}, None
+    for name in networks:
+        one = sessions.model(name, models[name], detectors)
+        joints = skeleton.read(ROOT / "config" / "skeletons" / f"{one.skeleton}.yaml").joints
+        file = {part: results / "networks" / name / f"{part}.onnx" for part in paths_of(one)}
+        found[name] = decoders.landmark_network(file["landmarks"], joints, **one.decoder_options())
+        detector = detector or decoders.person_detector(
+            file["detector"], **one.detector.decoder_options()
+        )
+    capture, seconds = cv2.VideoCapture(str(results / VIDEO)), {name: [] for name in networks}
+    for _ in range(N_PICTURES):
+        picture = capture.read()[1]
+        region = detector.detect(picture)[0]
+        for name, network in found.items():
+            start = time.process_time()
+            network.estimate(picture, region)
+            seconds[name].append(time.process_time() - start)
+    return {name: 1000 * min(each) for name, each in seconds.items()}
+
+
+def paths_of(model):
+    """Return the parts of a network that are files."""
+    return ["landmarks", *(["detector"] if model.detector else [])]
+
+
+def rows(table, ms):
+    """Yield the rows of docs/numbers; the time stands with the virtual takes."""
+    for row in table.itertuples():
+        virtual = row.against == "truth"
+        words = f"virtual, `{row.session}`" if virtual else WORDS[row.session, row.against]
+        about = [TABLE, f"`{row.network}`; {words}"]
+        rest = [row.unit, row.session, row.n, 0, "benchmark", COMMAND]
+        for end, column in (("", "value"), ("_from", "value_from"), ("_to", "value_to")):
+            value = getattr(row, column)
+            text = register.printed(value, DECIMALS[row.unit])
+            yield [*about, f"{row.measure}{end}", text, *rest]
+        if virtual and row.measure == "pck":
+            ratio = ms[row.network] / ms[table["network"].iloc[0]]
+            more = ["", row.session, N_PICTURES, 0, "benchmark", COMMAND]
+            yield [*about, "time", f"{ratio:.2f}", *more]
+
+
+def kept(measured):
+    """Return the rows of sessions that were not measured now."""
+    if not OUTPUT.is_file():
+        return []
+    before = pd.read_csv(OUTPUT, dtype=str, keep_default_na=False)
+    return before[~before["sessions"].isin(measured)].to_numpy().tolist()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("results", type=Path)
+    parser.add_argument("--demo", type=Path, help="Pose2Sim's demonstration with OpenPose's JSON")
+    parser.add_argument("--hall", type=Path, help="the recording mocap_8")
+    parser.add_argument("--study", type=Path, help="a folder for the study, kept")
+    given = parser.parse_args()
+    table = pd.read_csv(given.results / Path(paths.NETWORK_ERRORS).relative_to(paths.RESULTS))
+    networks = list(dict.fromkeys(table["network"]))
+    ms = times(given.results, networks)
+    print(*(f"{name}: {value:.1f} ms" for name, value in ms.items()), sep="\n")
+    if given.demo or given.hall:
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = given.study or Path(temporary)
+            folder.mkdir(parents=True, exist_ok=True)
+            real = recorded(folder, given.results, given.demo, given.hall, networks)
+        table = pd.concat([table, real], ignore_index=True)
+    print(table.round(2).to_string(index=False))
+    stated.write(OUTPUT, [*rows(table, ms), *kept(set(table["session"]))])
+
+
+if __name__ == "__main__":
+    main()
