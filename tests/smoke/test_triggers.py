@@ -81,7 +81,9 @@ PLAYERS_FUSED = {
     "evaluate_reliability": 2,
     "evaluate_fusions": 2 * 2,  # raw and corrected
     "evaluate_round_trip": 1,
-    "evaluate_detection": 1,  # fig 5 is of one take
+    "evaluate_detection": 1,  # fig 5 and the figure of networks are of one take
+    "evaluate_networks": 1,
+    "draw_networks": 1,
     "build_viewer": 2,
     "compare_sessions": 1,
     "tabulate_players": 1,
