@@ -44,7 +44,7 @@ WORDS = {
     (WALK, "body25b"): "real, `walk-4cams`, against OpenPose (no truth)",
     (HALL, "body25"): "real, sports hall, against joints set by hand",
 }
-DECIMALS = {"px": 1, "%": 1, "mm": 0}
+DECIMALS = {"px": 1, "%": 1, "mm": 0, "jitter": 2}
 N_PICTURES, VIDEO = 20, "external/pose2sim/Pose2Sim/Demo_SinglePerson/videos/cam03.mp4"
 HAND = {f"{side}_shoulder": f"{side[0].upper()}Shoulder" for side in ("left", "right")}
 
@@ -136,7 +136,7 @@ def rows(table, ms):
         rest = [row.unit, row.session, row.n, 0, "benchmark", COMMAND]
         for end, column in (("", "value"), ("_from", "value_from"), ("_to", "value_to")):
             value = getattr(row, column)
-            text = register.printed(value, DECIMALS[row.unit])
+            text = register.printed(value, DECIMALS.get(row.measure, DECIMALS[row.unit]))
             yield [*about, f"{row.measure}{end}", text, *rest]
         if virtual and row.measure == "pck":
             ratio = ms[row.network] / ms[table["network"].iloc[0]]
