@@ -1,5 +1,7 @@
 """Networks made with known errors, exchanges, gaps and jitter are told apart by just these."""
 
+from dataclasses import dataclass, fields, replace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -8,6 +10,7 @@ from courtside.evaluation import detection
 from courtside.evaluation.tables import networks
 from courtside.records.keypoints import skeleton
 from courtside.statistics import moving_blocks
+from fixtures.people import walker
 
 TORSO_PX = 100.0
 CAMERAS = {"one": 0, "two": 7}  # with the frames that each was started before the take
@@ -123,3 +126,31 @@ def test_errors_in_space_are_of_the_places_that_all_have_and_takes_are_joined():
     found = rows.loc[("far", "error_3d_median")]
     assert (found["value"], found["difference"], found["n"]) == (45, 25, 30 * 12)
     assert "error_3d_median" not in measured(pictures).loc["near"].index
+
+
+@dataclass
+class Truth:
+    """What `courtside.evaluation.joints.Truth` has."""
+
+    time_s: np.ndarray
+    xyz: np.ndarray
+    joints: tuple = walker.SKELETON.joints
+    person_id: tuple = ("p2", "p1")
+
+
+def test_skeletons_are_compared_person_by_person_on_common_frames():
+    points = walker.points(n_frames=30, n_persons=2)
+    whole = np.nan_to_num(points.xyz, nan=1.0)
+    truth = Truth(points.time_s, whole[::-1])
+    moved = replace(points, xyz=whole + np.array([0.03, 0.0, 0.04]) * [[[[1]]], [[[2]]]])
+    cut = {
+        field.name: getattr(moved, field.name)[:, 5:]
+        for field in fields(moved)
+        if np.shape(getattr(moved, field.name))[:2] == (2, 30)
+    }
+    late = replace(moved, time_s=moved.time_s[5:], **cut)
+    found, rate_hz = networks.in_space({"all": moved, "late": late}, truth)
+    assert rate_hz == pytest.approx(50)
+    np.testing.assert_allclose(found["all"], np.broadcast_to([[[100]], [[50]]], (2, 30, 12)))
+    assert np.isnan(found["late"][:, :5]).all()
+    np.testing.assert_allclose(found["late"][:, 5:], found["all"][:, 5:])
