@@ -83,7 +83,7 @@ def write_study(folder, demo, data, networks):
         (places / f"{HALL}.yaml").write_text(yaml.safe_dump(content, sort_keys=False))
         takes[f"{HALL}/play"] = "body25"
     study = {"sessions": [name.split("/")[0] for name in takes], "plans": [], "variations": []}
-    study["evaluate_networks"] = {"takes": takes, "networks": networks}
+    study["evaluate_networks"] = {"takes": takes, "networks": networks, "skeletons": []}
     (folder / "config" / "networks-study.yaml").write_text(yaml.safe_dump(study))
     return "config/networks-study.yaml"
 

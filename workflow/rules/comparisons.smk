@@ -129,6 +129,9 @@ rule evaluate_networks:
     params:
         code=code("evaluate_networks.py"),
         labels=[row.labels for row in targets.together.evaluated_takes(STUDY)],
+        skeleton_labels=[
+            row.labels for row in targets.together.evaluated_takes(STUDY) if row.pose3d
+        ],
         networks=STUDY.parameters["evaluate_networks"]["networks"],
     script:
         "../scripts/evaluate_networks.py"

@@ -13,14 +13,13 @@ from courtside.study.execution import log
 from courtside.study.execution.script import run
 
 
-def main(errors_csv, table_csv, *, labels, networks, pose3d_npz=(), truth_npz=()):
+def main(errors_csv, table_csv, *, labels, skeleton_labels, networks, pose3d_npz=(), truth_npz=()):
     takes, points, truths = {}, {}, {}
     for path, label in zip(errors_csv, labels, strict=True):
         key = label["session"], label["take"], label["against"]
         rows = pd.read_csv(path, dtype={"person": str})
         takes.setdefault(key, {})[label["model"]] = rows
-    true = [label for label in labels if label["against"] == "truth"]
-    for path, truth, label in zip(pose3d_npz, truth_npz, true, strict=True):
+    for path, truth, label in zip(pose3d_npz, truth_npz, skeleton_labels, strict=True):
         key = label["session"], label["take"], label["against"]
         points.setdefault(key, {})[label["model"]] = keypoints.read_3d(path)
         truths[key] = truth

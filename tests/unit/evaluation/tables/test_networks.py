@@ -126,6 +126,9 @@ def test_errors_in_space_are_of_the_places_that_all_have_and_takes_are_joined():
     found = rows.loc[("far", "error_3d_median")]
     assert (found["value"], found["difference"], found["n"]) == (45, 25, 30 * 12)
     assert "error_3d_median" not in measured(pictures).loc["near"].index
+    one = measured(pictures, error_3d={"far": far}, rate_hz_3d=30.0)["value"].unstack("measure")
+    assert one.loc["far", "error_3d_median"] == 45
+    assert np.isnan(one.loc["near", "error_3d_median"])
 
 
 @dataclass

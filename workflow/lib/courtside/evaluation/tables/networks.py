@@ -102,19 +102,20 @@ def table(takes: Sequence[ComparedTake], networks: Sequence[str]) -> pd.DataFram
 def _measured(group: Sequence[ComparedTake], networks: Sequence[str]) -> Iterator[dict]:
     """Yield the rows of the takes of one session."""
     seen = [_of_pictures(take, networks) for take in group]
-    space = [_of_space(take, networks) for take in group if take.error_3d]
+    space = [_of_space(take) for take in group if take.error_3d]
     for name, (unit, key, percentile) in MEASURES.items():
         series = space if key == "error_3d" else seen
-        lengths = [len(one[networks[0]].values[key]) for one in series]
-        counts, n_blocks = _counts(lengths, [one[networks[0]].rate_hz for one in series])
+        names = [name for name in networks if series and name in series[0]]
+        lengths = [len(one[names[0]].values[key]) for one in series]
+        counts, n_blocks = _counts(lengths, [one[names[0]].rate_hz for one in series])
         first: NDArray | None = None
-        for network in networks if series else ():
+        for network in names:
             values, frame = _flat([one[network].values[key] for one in series])
             value, drawn = _statistic(values, percentile), _drawn(counts, values, frame, percentile)
             first = np.append(drawn, value) if first is None else first
             row = {"network": network, "measure": name, "unit": unit, "value": value}
             row |= {"n": len(values), "n_blocks": n_blocks, **_ends("value", drawn)}
-            if network != networks[0]:
+            if network != networks[0] == names[0]:
                 row |= {"difference": value - first[-1], **_ends("difference", drawn - first[:-1])}
             yield row
 
@@ -228,11 +229,11 @@ def _values(one: pd.DataFrame, both: NDArray) -> dict[str, NDArray]:
     }
 
 
-def _of_space(take: ComparedTake, networks: Sequence[str]) -> dict[str, Series]:
+def _of_space(take: ComparedTake) -> dict[str, Series]:
     """Return the 3D errors of each network, of the places that all have."""
-    known = np.logical_and.reduce([np.isfinite(take.error_3d[name]) for name in networks])
+    known = np.logical_and.reduce([np.isfinite(error) for error in take.error_3d.values()])
     found = {}
-    for name in networks:
-        frames = np.where(known, take.error_3d[name], np.nan).transpose(1, 0, 2)
+    for name, error in take.error_3d.items():
+        frames = np.where(known, error, np.nan).transpose(1, 0, 2)
         found[name] = Series({"error_3d": frames.reshape(len(frames), -1)}, take.rate_hz_3d)
     return found

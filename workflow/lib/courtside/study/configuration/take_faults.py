@@ -96,7 +96,8 @@ def evaluated(
     Takes that the study does not have are left out, as everywhere.
     """
     where = f"{config_file}: evaluate_networks"
-    yield from unknown(f"{where}.networks", step["networks"], models)
+    for key in ("networks", "skeletons"):
+        yield from unknown(f"{where}.{key}", step[key], models)
     for name, against in step["takes"].items():
         session, _, take = name.partition("/")
         _, content = found.get(session, (None, {}))

@@ -31,7 +31,7 @@ class EvaluatedTake:
     """A take in which one network is compared with the truth, or with imported keypoints."""
 
     errors: str  # the file of its errors in the pictures
-    pose3d: str | None  # of its raw skeletons; None without a truth
+    pose3d: str | None  # of its raw skeletons; None where these are not compared
     labels: dict[str, str]  # session, take, against (truth, or imported keypoints) and model
 
 
@@ -100,7 +100,8 @@ def evaluated_takes(study: Study) -> list[EvaluatedTake]:
         way = {"calibration": session.take_calibrations()[0], "fusion": session.fusions()[0]}
         for model in step["networks"]:
             known = {**labels, "model": model}
-            pose3d = paths.POSE3D.format(**known, **way) if session.virtual else None
+            measured = session.virtual and model in step["skeletons"]
+            pose3d = paths.POSE3D.format(**known, **way) if measured else None
             errors = paths.DETECTION_ERRORS.format(**known)
             found.append(EvaluatedTake(errors, pose3d, known))
     return found
