@@ -483,13 +483,16 @@ def test_a_name_that_no_disk_takes_is_a_file_that_is_not_there(root):
         ({"takes": {"gym/shot": "body25b"}}, "expected null, for it has a truth, found 'body25b'"),
         ({"takes": {"hall/walk": None}}, r"keypoints \['coco17'\] .* found None"),
         ({"takes": {"hall/walk": "body25b"}}, r"keypoints \['coco17'\] .* found 'body25b'"),
+        ({"takes": {"hall/unseen": "coco17"}}, "expected a take with videos"),
         ({"networks": ["resnet"]}, r"expected one of \['full'\], found 'resnet'"),
         ({"skeletons": ["lite"]}, r"skeletons: expected one of \['full'\], found 'lite'"),
         ({"takes": {"gym/shot": None, "hall/walk": "coco17", "elsewhere/shot": None}}, None),
     ],
 )
 def test_networks_are_compared_with_a_truth_or_with_keypoints_that_are_there(step, part):
-    hall = {"takes": {"walk": {"pose2d": {"coco17": {"a": "json"}}}, "empty": None}}
+    keypoints = {"pose2d": {"coco17": {"a": "json"}}}
+    walk = {**keypoints, "videos": {"a": "a.mp4"}}
+    hall = {"takes": {"walk": walk, "unseen": keypoints, "empty": None}}
     found = {"gym": ("gym.yaml", PLAYERS), "hall": ("hall.yaml", hall)}
     step = {"takes": {}, "networks": ["full"], "skeletons": []} | step
     lines = list(take_faults.evaluated("config.yaml", step, ["full"], found))

@@ -103,13 +103,19 @@ def evaluated(
         _, content = found.get(session, (None, {}))
         if take not in content.get("takes", {}):
             continue
-        there = sorted((content["takes"][take] or {}).get("pose2d", {}))
+        named = content["takes"][take] or {}
+        there = sorted(named.get("pose2d", {}))
         if "virtual" in content and against is not None:
             yield f"{where}.takes.{name}: expected null, for it has a truth, found {against!r}"
         elif "virtual" not in content and against not in there:
             yield (
                 f"{where}.takes.{name}: expected one of the imported keypoints {there} of that "
                 f"take to compare with, found {against!r}; name one, or import some (`pose2d`)"
+            )
+        elif "virtual" not in content and "videos" not in named:
+            yield (
+                f"{where}.takes.{name}: expected a take with videos, in which networks look, found "
+                "keypoints only; remove it"
             )
 
 

@@ -36,7 +36,7 @@ def reference(job: Job) -> list[str]:
     """Return the imported keypoints that a recorded take is compared with; nothing of a virtual."""
     takes = job.step("evaluate_networks")["takes"]
     model = takes.get(job.fill("{session}/{take}"))
-    return job.of_each(paths.POSE2D, camera=job.take.videos, model=[model]) if model else []
+    return job.of_each(paths.POSE2D, camera=job.take.cameras, model=[model]) if model else []
 
 
 def compared_truths(takes: Iterable[EvaluatedTake]) -> list[str]:
