@@ -1,11 +1,14 @@
 """How the tests share processes: a file stays in one, and so do all that hurt one study."""
 
 import os
+import sys
 from pathlib import PurePosixPath
 
 from xdist.scheduler import LoadFileScheduling
 
 os.environ["OPENBLAS_NUM_THREADS"] = "1"  # as in the study; a third less time than with threads
+# Hundreds of jobs and programs import the library: let the first keep its bytecode.
+os.environ["PYTHONDONTWRITEBYTECODE"], sys.dont_write_bytecode = "", False
 
 # Files and folders. The two files come first and make the tiny study: in one scope they keep their
 # process, so that no other file waits behind the study. What else reads the study comes last: it

@@ -11,8 +11,6 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 FOLDER = Path("tests") / "smoke"
 TINY = Path("config") / "tiny.yaml"
-# Two hundred jobs import the library: let the first keep its bytecode, as on the user's machine.
-ENVIRONMENT = {**os.environ, "PYTHONDONTWRITEBYTECODE": ""}
 MADE_BY = ("Snakefile", "workflow", "config", "profiles", "environment.lock")
 
 
@@ -38,7 +36,6 @@ def run(*options, root=ROOT, check=True, timeout_s=3600):
     done = subprocess.run(
         command,
         cwd=root,
-        env=ENVIRONMENT,
         capture_output=True,
         text=True,
         timeout=timeout_s,

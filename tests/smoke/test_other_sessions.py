@@ -22,7 +22,7 @@ from courtside.sfm import model
 from courtside.study.errors import InputError
 from fixtures.recordings import onnx_files
 from fixtures.recordings.real_data import REAL, needs_real
-from smoke.snakemake_runs import ENVIRONMENT, copy_repository
+from smoke.snakemake_runs import copy_repository
 
 DOOR = REAL / "sfm-door"
 TINY_FEATURES = {"extract_features": {"first_octave": -1}}
@@ -50,9 +50,7 @@ def study(gym, name, session, **settings):
 def snakemake(gym, configuration, *options):
     """Run Snakemake in the repository's copy; return the finished process."""
     command = [sys.executable, "-m", "snakemake", "--configfile", configuration, *map(str, options)]
-    return subprocess.run(
-        command, cwd=gym, env=ENVIRONMENT, capture_output=True, text=True, check=False
-    )
+    return subprocess.run(command, cwd=gym, capture_output=True, text=True, check=False)
 
 
 @needs_real

@@ -51,18 +51,24 @@ def drawn(folder, **environment):
     return [(folder / f"f.{kind}").read_bytes() for kind in ("pdf", "png", "csv")]
 
 
-def test_two_processes_make_the_same_bytes(tmp_path):
-    """Independent of the order of sets, time zone, language, date and width of the terminal."""
-    one = drawn(tmp_path / "one", PYTHONHASHSEED="1", TZ="UTC", LC_ALL="C", COLUMNS="80")
+@pytest.fixture(scope="module")
+def both(tmp_path_factory):
+    """Return the files of two processes with other environments, more than a second apart."""
+    root = tmp_path_factory.mktemp("drawn")
+    one = {"PYTHONHASHSEED": "1", "TZ": "UTC", "LC_ALL": "C", "COLUMNS": "80"}
+    two = {"PYTHONHASHSEED": "2", "TZ": "Asia/Tokyo", "LC_ALL": "C.UTF-8", "COLUMNS": "200"}
+    first = drawn(root / "one", **one)
     time.sleep(1.1)  # dates in files have whole seconds
-    two = drawn(
-        tmp_path / "two", PYTHONHASHSEED="2", TZ="Asia/Tokyo", LC_ALL="C.UTF-8", COLUMNS="200"
-    )
-    assert one == two
+    return first, drawn(root / "two", SOURCE_DATE_EPOCH="0", **two)
 
 
-def test_files_hold_neither_date_nor_program(tmp_path):
-    pdf, png, csv = drawn(tmp_path / "one", SOURCE_DATE_EPOCH="0")
+def test_two_processes_make_the_same_bytes(both):
+    """Independent of the order of sets, time zone, language, date and width of the terminal."""
+    assert both[0] == both[1]
+
+
+def test_files_hold_neither_date_nor_program(both):
+    pdf, png, csv = both[1]
     for word in (b"CreationDate", b"ModDate", b"Producer", b"/ID", b"1970"):
         assert word not in pdf
     for word in (b"tEXt", b"tIME", b"Matplotlib"):

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from courtside.events import tpose as tposes
+from courtside.geometry import rotations
 from courtside.geometry.rotations import unit
 from courtside.geometry.similarity import Sim3, kabsch
 from courtside.records.devices.device_motion import DeviceMotion
@@ -206,8 +206,8 @@ def _spread(
     xyz: NDArray, names: list[str], carried_by: Anchors, rotation: NDArray
 ) -> dict[str, float | None]:
     points = _carried(xyz, names, carried_by)
-    rotations, units_m = axes(*points)
-    turned = Rotation.from_matrix(rotations @ rotation.T).magnitude()
+    own, units_m = axes(*points)
+    turned = rotations.angles(own @ rotation.T)
     wrists = np.stack(points[2:])
     about = wrists - np.median(wrists, axis=1, keepdims=True)
     return {

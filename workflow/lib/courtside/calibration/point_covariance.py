@@ -3,8 +3,8 @@
 from collections.abc import Callable
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import gammaincinv
 
 from courtside.calibration.bundle import problem
 from courtside.calibration.bundle.problem import Network
@@ -98,4 +98,4 @@ def mahalanobis(error: NDArray, covariance: NDArray) -> NDArray:
 
 def ellipsoid(share: float) -> float:
     """Return what `mahalanobis` stays within for a share, 0..1, of normal errors."""
-    return 2 * gammaincinv(3 / 2, share)
+    return 2 * scipy.special.gammaincinv(3 / 2, share)

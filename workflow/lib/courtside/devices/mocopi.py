@@ -11,9 +11,9 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from courtside.devices import bvh, plausible
+from courtside.geometry import rotations
 from courtside.geometry.camera_fields import METRES
 from courtside.records.devices import hierarchy
 from courtside.records.devices.device_motion import DeviceMotion
@@ -113,7 +113,7 @@ def _height_m(posed: PosedHierarchy) -> float:
 
 def _check_angles(path: StrPath, posed: PosedHierarchy) -> None:
     """Raise `InputError` if no joint ever turns as far as a person's do."""
-    turns = Rotation.from_matrix(posed.parent_from_joint.reshape(-1, 3, 3)).magnitude()
+    turns = rotations.angles(posed.parent_from_joint.reshape(-1, 3, 3))
     most_deg = float(np.degrees(turns.max(initial=0.0)))
     if NO_TURN < most_deg < LEAST_TURN_DEG:
         raise InputError(

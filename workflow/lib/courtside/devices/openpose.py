@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 
 from courtside.devices import frame_numbers
 from courtside.records.keypoints import missing_reason
@@ -260,7 +260,7 @@ def _assign(costs: NDArray) -> dict[int, int]:
     if not costs.size:
         return {}
     near = costs <= 1
-    rows, columns = linear_sum_assignment(np.where(near, costs, 1e6))
+    rows, columns = scipy.optimize.linear_sum_assignment(np.where(near, costs, 1e6))
     return {int(r): int(c) for r, c in zip(rows, columns, strict=True) if near[r, c]}
 
 

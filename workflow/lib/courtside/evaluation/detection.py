@@ -6,8 +6,8 @@ from typing import Protocol
 
 import numpy as np
 import pandas as pd
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 
 from courtside.evaluation import joints as pose_errors
 from courtside.geometry import camera as camera_models
@@ -143,7 +143,7 @@ def _assign(rows: NDArray, true: NDArray, torso: NDArray, trunk: list[int]) -> N
     apart = apart / torso[:, None]  # (P, R, F)
     cost = np.where(apart < 1, apart, 1e3)
     for at in range(true.shape[1]):
-        for person, row in zip(*linear_sum_assignment(cost[:, :, at]), strict=True):
+        for person, row in zip(*scipy.optimize.linear_sum_assignment(cost[:, :, at]), strict=True):
             if apart[person, row, at] < 1:
                 found[person, at] = rows[row, at]
     return found

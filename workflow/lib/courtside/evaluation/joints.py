@@ -7,8 +7,8 @@ from typing import ClassVar, Protocol
 
 import numpy as np
 import pandas as pd
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from courtside.calibration.point_covariance import ellipsoid, mahalanobis
 from courtside.geometry import camera as camera_models
@@ -51,7 +51,7 @@ def at_times(time_s: NDArray, xyz: NDArray, wanted_s: NDArray) -> NDArray:
 
     Both times are on the reference clock; NaN outside the span of `time_s`.
     """
-    found = CubicSpline(time_s, xyz, axis=1, extrapolate=False)(wanted_s)
+    found = scipy.interpolate.CubicSpline(time_s, xyz, axis=1, extrapolate=False)(wanted_s)
     return np.asarray(found)
 
 

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 import pandas as pd
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from courtside.calibration import point_covariance
 from courtside.evaluation import joints
@@ -54,7 +54,7 @@ def table(
 
 def _paths(
     frames: pd.DataFrame, truth: Truth, derived: DerivedJoints, sex_of: dict[str, str | None]
-) -> Iterator[tuple[pd.DataFrame, str, CubicSpline]]:
+) -> Iterator[tuple[pd.DataFrame, str, "scipy.interpolate.CubicSpline"]]:
     """Yield each person's frames with each point and its true path."""
     for person, part in frames.groupby("person", sort=False):
         of = truth.person_id.tolist().index(person)
@@ -63,7 +63,7 @@ def _paths(
         )
         for point, shares in weights.items():
             xyz = np.einsum("j,tjk->tk", shares, truth.xyz[of])
-            yield part, point, CubicSpline(truth.time_s, xyz)
+            yield part, point, scipy.interpolate.CubicSpline(truth.time_s, xyz)
 
 
 def speeds(
@@ -88,17 +88,21 @@ def distances(errors: pd.DataFrame) -> tuple[NDArray, NDArray]:
     return error, sigma
 
 
-def _inside(part: pd.DataFrame, path: CubicSpline) -> pd.DataFrame:
+def _inside(part: pd.DataFrame, path: "scipy.interpolate.CubicSpline") -> pd.DataFrame:
     return part[part["time_s"].between(path.x[0], path.x[-1])]
 
 
-def _speed_errors(part: pd.DataFrame, point: str, path: CubicSpline) -> tuple[NDArray, NDArray]:
+def _speed_errors(
+    part: pd.DataFrame, point: str, path: "scipy.interpolate.CubicSpline"
+) -> tuple[NDArray, NDArray]:
     true = np.linalg.norm(path(part["time_s"].to_numpy(), 1), axis=1)
     speed, sigma = (part[f"{point}_{name}"].to_numpy() for name in ("speed_m_s", "speed_sd_m_s"))
     return speed - true, sigma
 
 
-def _distances(part: pd.DataFrame, point: str, path: CubicSpline, measured: pd.DataFrame) -> dict:
+def _distances(
+    part: pd.DataFrame, point: str, path: "scipy.interpolate.CubicSpline", measured: pd.DataFrame
+) -> dict:
     known = np.flatnonzero(part[f"{point}_x_m"].notna())
     time_s = part["time_s"].to_numpy()[known]
     whole = len(known) > 1 and np.ptp(known) == len(known) - 1
@@ -116,7 +120,7 @@ def _distances(part: pd.DataFrame, point: str, path: CubicSpline, measured: pd.D
     }
 
 
-def _errors(part: pd.DataFrame, point: str, path: CubicSpline) -> dict:
+def _errors(part: pd.DataFrame, point: str, path: "scipy.interpolate.CubicSpline") -> dict:
     part = _inside(part, path)
     time_s = part["time_s"].to_numpy()
     place = part[[f"{point}_{axis}_m" for axis in "xyz"]].to_numpy()

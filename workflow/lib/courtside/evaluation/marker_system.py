@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 
 from courtside.calibration.point_covariance import ellipsoid, mahalanobis
 from courtside.evaluation import joints
@@ -83,7 +83,9 @@ def fit(
     if not np.isfinite(costs).any():
         raise InputError("truth: expected joints at the take's times, found none; check its times")
     near = tried[int(np.argmin(costs))]
-    found = minimize_scalar(cost, bounds=(near - STEP_S, near + STEP_S), method="bounded")
+    found = scipy.optimize.minimize_scalar(
+        cost, bounds=(near - STEP_S, near + STEP_S), method="bounded"
+    )
     true = moved(float(found.x))
     both = _both(xyz, true)
     motion = _motion(xyz[both], true[both])

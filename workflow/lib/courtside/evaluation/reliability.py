@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
+import scipy
 from numpy.typing import NDArray
-from scipy import special
 
 from courtside.calibration.point_covariance import ellipsoid, mahalanobis
 from courtside.evaluation import joints
@@ -81,7 +81,7 @@ def of_measures(found: Mapping[str, tuple[NDArray, NDArray]]) -> pd.DataFrame:
 
 def _half_width(level: int) -> float:
     """Return half the interval that holds a share, in percent, of normal errors, in sigmas."""
-    return float(special.ndtri((1 + level / 100) / 2))
+    return float(scipy.special.ndtri((1 + level / 100) / 2))
 
 
 def pooled(rows: pd.DataFrame, keys: Sequence[str]) -> pd.DataFrame:

@@ -9,11 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
-from scipy.spatial.transform import Rotation
 
-from courtside.geometry import similarity
+from courtside.geometry import rotations, similarity
 from courtside.geometry.interpolation import cubic_bend
 from courtside.geometry.similarity import Sim3
 from courtside.records.keypoints import skeleton
@@ -218,7 +217,9 @@ def _best_shift(
     at_s = coarse[int(np.argmin([left(shift_s) for shift_s in coarse]))]
     step_s = coarse[1] - coarse[0]
     limits = max(at_s - step_s, -MOST_SHIFT_S), min(at_s + step_s, MOST_SHIFT_S)
-    found = minimize_scalar(left, bounds=limits, method="bounded", options={"xatol": 1e-5})
+    found = scipy.optimize.minimize_scalar(
+        left, bounds=limits, method="bounded", options={"xatol": 1e-5}
+    )
     # No shift at all must not be worse than the one found.
     return float(found.x) if found.fun < left(0.0) else 0.0
 
@@ -244,7 +245,7 @@ def _fit(
     turned = a @ rotation.T
     scale = float((turned * b).sum() / (a * a).sum()) if "scale" in subset else 1.0
     rest = float(np.mean(np.sum((scale * turned - b) ** 2, axis=-1)))
-    angle = np.degrees(Rotation.from_matrix(rotation).magnitude())
+    angle = np.degrees(rotations.angles(rotation))
     shift = float(np.linalg.norm(middle_b - scale * rotation @ middle_a))
     return rest, {"origin": shift, "scale": scale, "rotation": float(angle)}
 
@@ -279,7 +280,7 @@ def against(
     origin = world_from_device.points(body_from_device.inverse().translation)
     true = body_from_world.inverse().translation
     return {
-        "angle_deg": float(np.degrees(Rotation.from_matrix(rotation).magnitude())),
+        "angle_deg": float(np.degrees(rotations.angles(rotation))),
         "unit_percent": float(100 * (body_from_world.scale / body_from_device.scale - 1)),
         "origin_mm": float(1000 * np.linalg.norm(origin - true)),
     }

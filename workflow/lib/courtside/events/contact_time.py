@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import special
 
 FEWEST = 7  # ASSUME: values that a fit needs
 SMOOTHINGS_S = np.linspace(0.0, 0.06, 13)  # standard deviations of the Gaussians tried
@@ -173,6 +173,6 @@ def _ramps(left_s: NDArray, sigma_s: NDArray) -> list[NDArray]:
     """Return the mean of max(u, 0) and of its square for u normal about `left_s`."""
     sigma_s = np.maximum(sigma_s, 1e-9)
     ratio = left_s / sigma_s
-    below, density = special.ndtr(ratio), np.exp(-0.5 * ratio**2) / np.sqrt(2 * np.pi)
+    below, density = scipy.special.ndtr(ratio), np.exp(-0.5 * ratio**2) / np.sqrt(2 * np.pi)
     first = left_s * below + sigma_s * density
     return [first, (left_s**2 + sigma_s**2) * below + left_s * sigma_s * density]

@@ -4,8 +4,8 @@ import warnings
 from collections.abc import Iterator, Sequence
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy
 from courtside.study.errors import InputError, StrPath
@@ -124,5 +124,5 @@ def _angles_deg(rotations: NDArray) -> NDArray:
         return np.empty(rotations.shape[:3])
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Gimbal lock", category=UserWarning)
-        turns = Rotation.from_matrix(rotations.reshape(-1, 3, 3))
+        turns = scipy.spatial.transform.Rotation.from_matrix(rotations.reshape(-1, 3, 3))
         return turns.as_euler(ORDER, degrees=True).reshape(rotations.shape[:3])

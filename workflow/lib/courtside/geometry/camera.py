@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import tomli_w
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial.transform import Rotation
 
 from courtside.geometry import camera_fields, picture_size, rotations
 from courtside.study.errors import InputError, StrPath, reading
@@ -105,7 +104,7 @@ def turned(camera: Camera, vector: ArrayLike) -> Camera:
 
     The vector leads from the axes before to those after: a direction d of the camera becomes R d.
     """
-    rotation = Rotation.from_rotvec(np.asarray(vector, dtype=float)).as_matrix()
+    rotation = rotations.rotation_from_rodrigues(np.asarray(vector, dtype=float))
     return replace(camera, cam_from_world=rotation @ camera.cam_from_world)
 
 

@@ -3,8 +3,8 @@
 from collections.abc import Iterable
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial.transform import Rotation
 
 from courtside.geometry import interpolation
 
@@ -16,12 +16,17 @@ NO_TURN = np.eye(3)
 
 def rotation_from_rodrigues(vectors: ArrayLike) -> NDArray:
     """Return the rotations (..., 3, 3) of rotation vectors (..., 3), axis times radians."""
-    return Rotation.from_rotvec(vectors).as_matrix()
+    return scipy.spatial.transform.Rotation.from_rotvec(vectors).as_matrix()
 
 
 def rodrigues_from_rotation(rotations: ArrayLike) -> NDArray:
     """Return the rotation vectors (..., 3), axis times radians, of rotations (..., 3, 3)."""
-    return Rotation.from_matrix(rotations).as_rotvec()
+    return scipy.spatial.transform.Rotation.from_matrix(rotations).as_rotvec()
+
+
+def angles(rotations: ArrayLike) -> NDArray:
+    """Return the angles (...) of rotations (..., 3, 3), radians in 0..pi."""
+    return scipy.spatial.transform.Rotation.from_matrix(rotations).magnitude()
 
 
 def nearest_rotation(matrix: NDArray) -> NDArray:

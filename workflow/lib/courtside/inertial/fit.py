@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial.transform import Rotation
 
 from courtside.geometry import rotations
 from courtside.geometry.interpolation import linear
@@ -233,7 +233,7 @@ class Fit:
 
 def facings(matrices: NDArray, up: NDArray) -> NDArray:
     """Return the part about the vertical of rotations (T, 3, 3), as rotation vectors (T, 3)."""
-    quaternion = Rotation.from_matrix(matrices).as_quat()
+    quaternion = scipy.spatial.transform.Rotation.from_matrix(matrices).as_quat()
     angle = 2 * np.arctan2(quaternion[:, :3] @ up, quaternion[:, 3])
     return np.unwrap(angle)[:, None] * up
 

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
 
 from courtside.geometry import rotations
 from courtside.geometry.similarity import kabsch
@@ -43,7 +43,7 @@ def estimate(
     frames = max(window_s / np.median(np.diff(time_s)), 1e-3) if len(time_s) > 1 else 1.0
     for _ in range(3):
         products, device, vision = _products(device_xyz, vision_xyz, weights)
-        smooth = gaussian_filter1d(products, frames, axis=0, mode="nearest")
+        smooth = scipy.ndimage.gaussian_filter1d(products, frames, axis=0, mode="nearest")
         rotation, heading = _alternate(smooth, up)
         turned = device @ _about(up, heading).swapaxes(1, 2) @ rotation.T
         off = np.linalg.norm(np.nan_to_num(vision - turned), axis=2)

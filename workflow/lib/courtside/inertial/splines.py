@@ -8,9 +8,8 @@ memory time: where data are missing, the correction returns to zero.
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import BSpline
-from scipy.linalg import cho_factor, cho_solve, cholesky_banded, lapack
 
 DEGREE = 3
 REACH = DEGREE + 1  # basis functions that are not zero at a time
@@ -53,9 +52,9 @@ def basis_over(start_s: float, stop_s: float, spacing_s: float) -> Basis:
     return Basis(start_s, max(stop_s - start_s, 1e-6) / n_intervals, n_intervals)
 
 
-def _pieces() -> BSpline:
+def _pieces() -> "scipy.interpolate.BSpline":
     knots = np.arange(-DEGREE, REACH + 1.0)
-    return BSpline(knots, np.eye(REACH), DEGREE)
+    return scipy.interpolate.BSpline(knots, np.eye(REACH), DEGREE)
 
 
 def precision(basis: Basis, memory_s: float) -> NDArray:
@@ -134,7 +133,7 @@ class Solution:
     def samples(self, n: int, rng: np.random.Generator) -> NDArray:
         """Draw deviations (n, K, P) of the coefficients from their estimate, given the border."""
         size = self.factor.shape[1]
-        drawn, _ = lapack.dtbtrs(
+        drawn, _ = scipy.linalg.lapack.dtbtrs(
             self.factor, rng.standard_normal((size, n)), uplo="L", trans="T", diag="N"
         )
         return drawn.T.reshape(n, *self.inner.shape)
@@ -149,15 +148,17 @@ def solve(
     (K, P, Q) is between both kinds of parameters; the border's own are (Q, Q) and (Q,).
     """
     n, size = right.shape
-    factor = cholesky_banded(_to_band(blocks), lower=True, overwrite_ab=True)
+    factor = scipy.linalg.cholesky_banded(_to_band(blocks), lower=True, overwrite_ab=True)
     sides = np.column_stack([border.reshape(n * size, -1), right.reshape(-1)])
-    done, _ = lapack.dpbtrs(factor, sides, lower=1)
+    done, _ = scipy.linalg.lapack.dpbtrs(factor, sides, lower=1)
     schur = border_matrix - sides[:, :-1].T @ done[:, :-1]
     rest = border_right - sides[:, :-1].T @ done[:, -1]
-    outer = cho_factor((schur + schur.T) / 2)
-    found = cho_solve(outer, rest)
+    outer = scipy.linalg.cho_factor((schur + schur.T) / 2)
+    found = scipy.linalg.cho_solve(outer, rest)
     inner = done[:, -1] - done[:, :-1] @ found
-    return Solution(inner.reshape(n, size), found, factor, cho_solve(outer, np.eye(len(rest))))
+    return Solution(
+        inner.reshape(n, size), found, factor, scipy.linalg.cho_solve(outer, np.eye(len(rest)))
+    )
 
 
 def times(band: NDArray, coefficients: NDArray) -> NDArray:

@@ -6,7 +6,7 @@ Every function returns a new record; the raw one is not changed.
 from dataclasses import replace
 
 import numpy as np
-import scipy  # it loads `signal`, half a second, in the jobs that filter
+import scipy
 from numpy.typing import NDArray
 
 from courtside.records.keypoints import missing_reason

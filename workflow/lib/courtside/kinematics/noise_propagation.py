@@ -13,9 +13,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-import scipy  # as in `filtering`
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from courtside.kinematics import filtering
 
@@ -51,7 +50,9 @@ def differentiate(lines: NDArray, rate_hz: float) -> NDArray:
     derivative = np.full(np.shape(lines), np.nan)
     for start, stop in filtering.runs(np.isfinite(lines).all(axis=1)):
         if stop - start > 2:
-            spline = CubicSpline(np.arange(stop - start) / rate_hz, lines[start:stop])
+            spline = scipy.interpolate.CubicSpline(
+                np.arange(stop - start) / rate_hz, lines[start:stop]
+            )
             derivative[start:stop] = spline(np.arange(stop - start) / rate_hz, 1)
     return derivative
 

@@ -9,11 +9,12 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 from pandas import DataFrame
-from scipy.spatial.transform import Rotation
 
 from courtside.geometry import camera as camera_models
+from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
 from courtside.records.cameras import footage, shake_table
 from courtside.records.cameras.footage import Footage
@@ -69,7 +70,7 @@ def steady(view: Keypoints2D, camera: Camera, table: DataFrame) -> Keypoints2D:
             unknown.sum(),
             len(unknown),
         )
-    still_from_shaken = Rotation.from_rotvec(np.where(unknown[:, None], 0.0, -turned)).as_matrix()
+    still_from_shaken = rotations.rotation_from_rodrigues(np.where(unknown[:, None], 0.0, -turned))
     xy = _project(camera, _directions(camera, view.xy) @ still_from_shaken.mT)
     kept = unknown[:, None, None] | np.isnan(xy)
     return replace(
@@ -133,7 +134,7 @@ def _solve(camera: Camera, measured: NDArray) -> NDArray:
     # Start: small rotations about the axes right, down and forward, near the optical axis.
     vectors = np.column_stack([-y / f[1], x / f[0], turn])
     for _ in range(N_STEPS):
-        moved = _project(camera, directions @ Rotation.from_rotvec(vectors).as_matrix().mT)
+        moved = _project(camera, directions @ rotations.rotation_from_rodrigues(vectors).mT)
         shift = moved[:, 0] - centre
         across, down = moved[:, 1] - moved[:, 2], moved[:, 3] - moved[:, 4]
         curl = np.arctan2(across[:, 1] - down[:, 0], across[:, 0] + down[:, 1])
@@ -331,7 +332,9 @@ def _split(level: NDArray, near: int, n: int) -> int:
 def _knock(table: DataFrame, turns: NDArray, split: int, n: int) -> Knock:
     shift = table[["shift_x_px", "shift_y_px"]].to_numpy(float)
     ends = [slice(max(split - n, 0), split), slice(split, split + n)]
-    before, after = (Rotation.from_rotvec(np.median(turns[end], axis=0)) for end in ends)
+    before, after = (
+        scipy.spatial.transform.Rotation.from_rotvec(np.median(turns[end], axis=0)) for end in ends
+    )
     moved = [np.median(shift[end], axis=0) for end in ends]
     turn = np.degrees((after * before.inv()).magnitude())
     return Knock(float(table.time_s.iloc[split]), moved[1] - moved[0], float(turn))

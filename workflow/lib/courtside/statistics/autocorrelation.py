@@ -1,8 +1,8 @@
 """Shares and means of values that are correlated in time, with their uncertainty."""
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy import special
 
 LEVEL = 0.95  # of intervals, as is usual
 MOST_CORRELATED = 0.95  # beyond this a series is too short to tell from a drift
@@ -35,7 +35,7 @@ def interval(share: float, n_effective: float) -> tuple[float, float]:
     """
     if not n_effective > 0:
         return 0.0, 1.0
-    z = special.ndtri((1 + LEVEL) / 2)
+    z = scipy.special.ndtri((1 + LEVEL) / 2)
     middle = share + z**2 / (2 * n_effective)
     half = z * np.sqrt(share * (1 - share) / n_effective + z**2 / (4 * n_effective**2))
     scale = 1 + z**2 / n_effective

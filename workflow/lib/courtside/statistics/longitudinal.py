@@ -6,14 +6,14 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
-from scipy import special
+import scipy
 
 from courtside.study.errors import InputError, StrPath
 
 # What must not change unnoticed; the definition is checked beside them.
 CONDITIONS = ("model", "calibration")
 LEVEL = 0.95  # of detectable changes, as is usual
-FACTOR = special.ndtri(0.5 + LEVEL / 2)  # of the smallest detectable change of single takes
+FACTOR = scipy.special.ndtri(0.5 + LEVEL / 2)  # of the smallest detectable change of single takes
 REAL, WITHIN, UNTOLD, MIXED = "real", "within", "untold", "mixed"
 VALUES = [
     "measure", "unit", "session", "date", "order", "model", "calibration", "definition", "n_takes",
@@ -145,7 +145,7 @@ def changes(values: pd.DataFrame, errors: pd.DataFrame) -> pd.DataFrame:
     rows = []
     for measure, part in values.groupby("measure", sort=False):
         sem, freedom = errors.loc[measure, ["sem", "freedom"]]
-        factor = special.stdtrit(freedom, 0.5 + LEVEL / 2) if freedom > 0 else np.nan
+        factor = scipy.special.stdtrit(freedom, 0.5 + LEVEL / 2) if freedom > 0 else np.nan
         first = part.iloc[0]
         for _, row in part.iloc[1:].iterrows():
             change = row["value"] - first["value"]

@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import special
 
 STEPS = 12  # Newton steps at most; SMALLEST_S is usually reached earlier
 SMALLEST_S = 1e-5  # the adjustment ends with a smaller step: far below a millisecond
@@ -146,4 +146,4 @@ def _moves(slopes: NDArray, curvature: NDArray) -> NDArray:
 def student(freedom: float) -> float:
     """Return the ratio of Student's interval to the normal one."""
     tail = (1 + COVERAGE) / 2
-    return float(special.stdtrit(freedom, tail) / special.ndtri(tail))
+    return float(scipy.special.stdtrit(freedom, tail) / scipy.special.ndtri(tail))

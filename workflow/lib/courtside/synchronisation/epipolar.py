@@ -4,8 +4,8 @@ from collections.abc import Collection, Sequence
 from itertools import combinations, permutations
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from courtside.geometry import epipolar
 from courtside.geometry.camera import Camera
@@ -176,5 +176,5 @@ def _mean_loss(distance: NDArray, scale_px: float) -> NDArray:
 def _slow(values: NDArray, weight: NDArray, window: int) -> NDArray:
     """Return the weighted running mean over time of values (T, J)."""
     blur = {"size": window, "axis": 0, "mode": "constant"}
-    total = ndimage.uniform_filter1d(weight * values, **blur)
-    return total / np.maximum(ndimage.uniform_filter1d(weight, **blur), 1e-9)
+    total = scipy.ndimage.uniform_filter1d(weight * values, **blur)
+    return total / np.maximum(scipy.ndimage.uniform_filter1d(weight, **blur), 1e-9)

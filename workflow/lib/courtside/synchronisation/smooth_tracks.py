@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from courtside.geometry import interpolation
 
@@ -61,7 +61,7 @@ def _smoothed(values: NDArray, sigma: float, ahead: float) -> NDArray:
     weight = np.exp(-0.5 * ((np.arange(-reach, reach + 1) - ahead) / sigma) ** 2)
     weight[weight < np.exp(-0.5 * REACH**2)] = 0.0
     weight /= weight.sum()
-    return ndimage.correlate1d(values, weight, axis=1, mode="constant", cval=np.nan)
+    return scipy.ndimage.correlate1d(values, weight, axis=1, mode="constant", cval=np.nan)
 
 
 def _on_grid(time_s: NDArray, values: NDArray, uniform: NDArray, step_s: float) -> NDArray:

@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from courtside.calibration.boards import start
 from courtside.calibration.boards.board import Board
@@ -20,7 +19,7 @@ from courtside.calibration.boards.corners import Corners
 from courtside.calibration.bundle import problem, selection
 from courtside.calibration.bundle.problem import IMAGE, LENS, POSE, Network
 from courtside.geometry import camera as cameras
-from courtside.geometry import triangulation
+from courtside.geometry import rotations, triangulation
 from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError
 
@@ -303,7 +302,7 @@ def _moved(
     boards = state.boards.copy()
     for picture, (inverse, gradient, coupling) in normal.boards.items():
         own = -inverse @ (gradient + coupling.T @ part)
-        boards[picture, :, :3] = Rotation.from_rotvec(own[:3]).as_matrix() @ boards[picture, :, :3]
+        boards[picture, :, :3] = rotations.rotation_from_rodrigues(own[:3]) @ boards[picture, :, :3]
         boards[picture, :, 3] += own[3:]
     network = state.network.moved(step, np.zeros_like(state.network.xyz))
     return _placed(_State(network, boards), fixed)

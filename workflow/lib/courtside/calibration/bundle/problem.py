@@ -11,9 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial.transform import Rotation
 
-from courtside.geometry import camera
+from courtside.geometry import camera, rotations
 
 LENS = ("f_px", "aspect", "cx_px", "cy_px", "k1", "k2", "p1", "p2")
 POSE = ("rx_rad", "ry_rad", "rz_rad", "tx_m", "ty_m", "tz_m")
@@ -78,7 +77,7 @@ class Network:
         """Return the network after a step of its image and lens parameters, and of its points."""
         images, lenses = np.split(step, [IMAGE * len(self.cam_from_world)])
         images = images.reshape(-1, IMAGE)
-        turn = Rotation.from_rotvec(images[:, :3]).as_matrix()
+        turn = rotations.rotation_from_rodrigues(images[:, :3])
         pose = turn @ self.cam_from_world
         pose[:, :, 3] += images[:, 3:6]
         return replace(
@@ -96,7 +95,7 @@ class Network:
             "vij,vj->vi", turn, reference.cam_from_world[:, :, 3]
         )
         images = np.concatenate(
-            [Rotation.from_matrix(turn).as_rotvec(), shift, self.flex - reference.flex], axis=1
+            [rotations.rodrigues_from_rotation(turn), shift, self.flex - reference.flex], axis=1
         )
         return np.concatenate([images.ravel(), (self.lens - reference.lens).ravel()])
 

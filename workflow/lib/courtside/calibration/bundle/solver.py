@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import linalg, sparse
 
 from courtside.calibration.bundle import problem
 from courtside.calibration.bundle.problem import Network
@@ -106,8 +106,8 @@ def _descend(network, normal, quadratic, damping, hold) -> tuple[Network, float 
     information = normal.information + damping * np.diag(np.diag(normal.information) + 1e-12)
     with warnings.catch_warnings():
         # Without its damping the information of a free frame is singular.
-        warnings.simplefilter("ignore", linalg.LinAlgWarning)
-        part = linalg.solve(information, -normal.gradient, assume_a="sym")
+        warnings.simplefilter("ignore", scipy.linalg.LinAlgWarning)
+        part = scipy.linalg.solve(information, -normal.gradient, assume_a="sym")
     step = np.zeros(len(normal.active))
     step[normal.active] = part
     moved = network.moved(step, normal.back(part))
@@ -156,7 +156,7 @@ def _normal(network: Network, quadratic: Quadratic | None, total: float) -> Norm
     coupling = _coupling(network, root, by_point, by_camera)[:, active]
     scaled_gradient = np.einsum("nij,nj->ni", root, point_gradient)
     eliminated: Any = coupling.T @ coupling
-    if sparse.issparse(eliminated):
+    if scipy.sparse.issparse(eliminated):
         eliminated = eliminated.toarray()
     information = full[np.ix_(active, active)] - eliminated
     gradient = gradient[active] - coupling.T @ scaled_gradient.ravel()
@@ -246,7 +246,7 @@ def _sum_by(index: NDArray, values: NDArray, length: int) -> NDArray:
     return np.stack([np.bincount(index, column, minlength=length) for column in values.T], axis=1)
 
 
-def _coupling(network, root, by_point, by_camera) -> NDArray | sparse.csr_matrix:
+def _coupling(network, root, by_point, by_camera) -> "NDArray | scipy.sparse.csr_matrix":
     """Return root @ by_point.T @ by_camera, summed by point: (3 N, K); sparse where it is large."""
     block = np.einsum("mij,mrj,mrk->mik", root[network.point_idx], by_point, by_camera)
     rows = 3 * network.point_idx[:, None, None] + np.arange(3)[None, :, None]
@@ -257,4 +257,4 @@ def _coupling(network, root, by_point, by_camera) -> NDArray | sparse.csr_matrix
         whole = np.bincount(at, block.ravel(), minlength=n_rows * n_columns)
         return whole.reshape(n_rows, n_columns)
     at = (np.broadcast_to(rows, block.shape).ravel(), np.broadcast_to(columns, block.shape).ravel())
-    return sparse.csr_matrix((block.ravel(), at), shape=(n_rows, n_columns))
+    return scipy.sparse.csr_matrix((block.ravel(), at), shape=(n_rows, n_columns))

@@ -12,8 +12,8 @@ of freedom are the sum of both. Errors of a variance that is known so badly foll
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import special
 
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import problem, solver
@@ -64,7 +64,7 @@ class Factors:
         redundancy, over that of a normal distribution: 4 at 1.2 redundant observations, 1.1 at 20.
         """
         freedom = CLICKS_PRIOR + float(self.clicks_redundancy.sum())
-        student = AXES * special.fdtri(AXES, freedom, LEVEL)
+        student = AXES * scipy.special.fdtri(AXES, freedom, LEVEL)
         return float(student / point_covariance.ellipsoid(LEVEL))
 
 
@@ -159,7 +159,7 @@ def _consistency(loss_scale: NDArray) -> NDArray:
     Of two axes: s = x^2 + y^2 is exponential with mean 2; E[s / (1 + s / k^2)] / 2.
     """
     half = np.minimum(loss_scale, 30.0) ** 2 / 2  # beyond, the loss changes nothing
-    return half * (1 - half * np.exp(half) * special.exp1(half))
+    return half * (1 - half * np.exp(half) * scipy.special.exp1(half))
 
 
 def _of_ties(network, quadratic, covariance) -> tuple[float, float]:

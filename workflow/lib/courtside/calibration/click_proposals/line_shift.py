@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.special import erf
 
 from courtside.calibration.click_proposals.line_profiles import LEAST_SAMPLES, STEP_PX, Stretch
 
@@ -115,7 +115,7 @@ def _refine(stretch, offset, slope, polarity, sides, blur_px):
     rate = np.gradient(stretch.paint, STEP_PX, axis=1)
     floor = [np.ones(width), t / t[-1]]
     if stretch.width_px > 2:
-        floor.append(erf(t / blur_px / np.sqrt(2)))  # floors of two colours
+        floor.append(scipy.special.erf(t / blur_px / np.sqrt(2)))  # floors of two colours
     contrast, noise = _contrast(seen, np.array(floor), stretch.paint)
     median = np.median(np.abs(contrast) if polarity == 0 else contrast)
     typical = median if polarity == 0 else max(polarity * median, 0)

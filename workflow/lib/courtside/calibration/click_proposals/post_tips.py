@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import cv2
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import erf
 
 from courtside.calibration.click_proposals.view import NO_PLACE, Ray, View
 from courtside.calibration.court.court import Court
@@ -152,7 +152,7 @@ def _step(values, steps, reach, blur_px) -> tuple[float, float, float] | None:
     """Fit where values fall to 0; return place, sigma, share of variance explained, or None."""
     fits = []
     for place in np.arange(-reach, reach + 1e-9, 0.1):
-        below = (1 + erf((place - steps) / blur_px / np.sqrt(2))) / 2
+        below = (1 + scipy.special.erf((place - steps) / blur_px / np.sqrt(2))) / 2
         design = np.stack([below, np.ones_like(below)], axis=1)
         found = np.linalg.solve(design.T @ design, design.T @ values)
         fits.append((float(np.sum((values - design @ found) ** 2)), place, found))

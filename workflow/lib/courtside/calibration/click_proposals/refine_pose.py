@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera, project
@@ -51,7 +51,7 @@ def refine(
     def residuals(scaled: NDArray) -> NDArray:
         return np.concatenate([rest(scaled * PRIOR_SIGMA) / sigma, scaled])
 
-    found = least_squares(
+    found = scipy.optimize.least_squares(
         residuals, np.zeros(len(PRIOR_SIGMA)), loss="cauchy", f_scale=2.0, x_scale=1.0
     )
     return moved(camera, found.x * PRIOR_SIGMA), rest(found.x * PRIOR_SIGMA)

@@ -11,9 +11,8 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial.transform import Rotation
 
-from courtside.geometry import camera
+from courtside.geometry import camera, rotations
 
 # Focal lengths to start from, in picture widths (fields of view of 90 to 28 degrees), 20 % apart.
 FOCAL_WIDTHS = (0.5, 0.6, 0.72, 0.87, 1.05, 1.3, 1.6, 2.0)
@@ -32,7 +31,7 @@ class State:
 
     def moved(self, step: NDArray) -> "State":
         """Return the state after a step of the pose (from the left) and, if longer, f and k1."""
-        turn = Rotation.from_rotvec(step[:3]).as_matrix()
+        turn = rotations.rotation_from_rodrigues(step[:3])
         pose = turn @ self.cam_from_world
         pose[:, 3] += step[3:6]
         if len(step) == 6:
@@ -96,7 +95,7 @@ def _poses(clicks: Clicks, matrix: NDArray, dist: NDArray) -> list[NDArray]:
         clicks.xyz, clicks.xy, matrix, dist, flags=cv2.SOLVEPNP_SQPNP
     )
     return [
-        np.column_stack([Rotation.from_rotvec(turns[at].ravel()).as_matrix(), shifts[at].ravel()])
+        np.column_stack([rotations.rotation_from_rodrigues(turns[at].ravel()), shifts[at].ravel()])
         for at in range(count)
     ]
 

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from courtside.calibration.court import click_checks, joint_adjustment
 from courtside.calibration.court.court import ClickedPoints, Court, to_line_centres
 from courtside.calibration.point_covariance import ellipsoid, field, mahalanobis
 from courtside.calibration.records.support import Support
+from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError
 
@@ -210,7 +210,7 @@ def poses(cameras: Sequence[Camera], truth: Sequence[Camera]) -> dict[str, float
     for found, true in zip(cameras, truth, strict=True):
         place.append(np.linalg.norm(found.centre_in_world - true.centre_in_world))
         between = found.cam_from_world[:, :3] @ true.cam_from_world[:, :3].T
-        turn.append(np.degrees(Rotation.from_matrix(between).magnitude()))
+        turn.append(np.degrees(rotations.angles(between)))
         focal.append(abs(found.K[1, 1] / true.K[1, 1] - 1))
     return {
         "camera_position_cm": 100 * np.mean(place),

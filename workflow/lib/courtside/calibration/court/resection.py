@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy import linalg
 
 from courtside.calibration.bundle.problem import POSE
 from courtside.calibration.court import one_camera
@@ -164,12 +164,12 @@ def _magnification(xyz, from_xyz, normalised, extent, vectors) -> float:
 
 def _decompose(matrix: NDArray, size: tuple[int, int], name: str) -> Camera | None:
     """Return the `Camera` of a projection matrix without its skew, None if there is none."""
-    upper, rotation = linalg.rq(matrix[:, :3])
+    upper, rotation = scipy.linalg.rq(matrix[:, :3])
     signs = np.diag(np.sign(np.diag(upper)))
     upper, rotation = upper @ signs, signs @ rotation
     if not np.isfinite(upper).all() or np.linalg.det(rotation) < 0 or np.diag(upper).min() <= 0:
         return None
-    shift = linalg.solve_triangular(upper, matrix[:, 3])
+    shift = scipy.linalg.solve_triangular(upper, matrix[:, 3])
     upper = upper / upper[2, 2]
     upper[0, 1] = 0.0
     pose = np.column_stack([rotation, shift])

@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
-from scipy.spatial.transform import Rotation
 
+from courtside.geometry import rotations
 from courtside.geometry.camera import Camera, project
 
 # ASSUME: the ratios between sizes that cameras record and programs work with.
@@ -147,7 +147,7 @@ def _fit(
         return np.nan_to_num(project(change(camera, free), xyz) - xy, nan=1e3).ravel()
 
     scale_px = max(float(np.median(np.abs(residuals(np.zeros(n_free))))) / 3, 1.0)
-    found = least_squares(
+    found = scipy.optimize.least_squares(
         residuals, np.zeros(n_free), loss="soft_l1", f_scale=scale_px, max_nfev=30
     )
     return change(camera, found.x)
@@ -160,7 +160,7 @@ def _focal(camera: Camera, free: NDArray) -> Camera:
 
 
 def _turned(camera: Camera, free: NDArray) -> Camera:
-    rotation = Rotation.from_rotvec(free[:3]).as_matrix()
+    rotation = rotations.rotation_from_rodrigues(free[:3])
     return replace(camera, cam_from_world=rotation @ camera.cam_from_world)
 
 

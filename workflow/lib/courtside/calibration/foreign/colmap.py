@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from courtside.geometry import camera as camera_files
 from courtside.geometry import camera_fields
@@ -135,7 +135,9 @@ def _camera(folder: Path, image: Image, lenses: dict[int, Lens]) -> Camera:
     parameters = camera_fields.numbers(where, "lens", given, (MODELS[model],))
     table = _lens_table(model, parameters) | {
         "size": size,
-        "rotation": Rotation.from_quat(quaternion, scalar_first=True).as_matrix(),
+        "rotation": scipy.spatial.transform.Rotation.from_quat(
+            quaternion, scalar_first=True
+        ).as_matrix(),
         "translation": values[4:],
     }
     return camera_files.build(where, name, table, 1.0)
@@ -164,7 +166,9 @@ def texts(cameras: Sequence[Camera]) -> dict[str, str]:
         values = [*focal, *centre, *camera.dist[:4], *more]
         width, height = camera.size
         lenses.append(f"{number} {model} {width} {height} {_numbers(values)}")
-        turned = Rotation.from_matrix(camera.cam_from_world[:, :3]).as_quat(scalar_first=True)
+        turned = scipy.spatial.transform.Rotation.from_matrix(camera.cam_from_world[:, :3]).as_quat(
+            scalar_first=True
+        )
         pose = _numbers([*turned, *camera.cam_from_world[:, 3]])
         images += [f"{number} {pose} {number} {camera.name}.png", ""]
     return {

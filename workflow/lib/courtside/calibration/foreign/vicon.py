@@ -11,8 +11,8 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from courtside.calibration.foreign import inverse_lens, xml_fields
 from courtside.geometry import camera as camera_files
@@ -73,7 +73,7 @@ def _rotation(where: str, turned: NDArray) -> NDArray:
             f"{where}: expected ORIENTATION as a quaternion of length 1, found length "
             f"{np.linalg.norm(turned):.3g}; {camera_fields.EXPORT_AGAIN}"
         )
-    return Rotation.from_quat(turned).as_matrix()
+    return scipy.spatial.transform.Rotation.from_quat(turned).as_matrix()
 
 
 def _undistorted(xy: NDArray, matrix: NDArray, centre: NDArray, radial: NDArray) -> NDArray:

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline
 
 from courtside.geometry import camera as camera_models
 from courtside.geometry import rotations
@@ -79,7 +79,7 @@ def _measured(points_m: ArrayLike) -> tuple[NDArray, NDArray]:
     """Return `FINE` places along a smooth path through points, and how far along they are, m."""
     points_m = np.asarray(points_m, dtype=float)
     along = np.append(0, np.linalg.norm(np.diff(points_m, axis=0), axis=1).cumsum())
-    fine = CubicSpline(along, points_m)(np.linspace(0, along[-1], FINE))
+    fine = scipy.interpolate.CubicSpline(along, points_m)(np.linspace(0, along[-1], FINE))
     return fine, np.append(0, np.linalg.norm(np.diff(fine, axis=0), axis=1).cumsum())
 
 
@@ -104,9 +104,9 @@ def walked_cameras(
     length_m = _measured(way_m)[1][-1]
     knots = np.linspace(0, 1, max(4, round(length_m / STRAY_EVERY_M) + 1))
     stray_m = STRAY_M * np.random.default_rng(seed).standard_normal((len(knots), 3))
-    places = places_on_path(way_m, n_images, height_m) + CubicSpline(knots, stray_m)(
-        _shares(n_images)
-    )
+    places = places_on_path(way_m, n_images, height_m) + scipy.interpolate.CubicSpline(
+        knots, stray_m
+    )(_shares(n_images))
     rng = np.random.default_rng([seed, n_images])
     aims = np.asarray(aim_m, dtype=float) + MISS_M * rng.standard_normal((n_images, 3))
     rolls = np.radians(ROLL_DEG) * rng.standard_normal(n_images)

@@ -10,8 +10,8 @@ The camera's software (librealsense, `rsutil.h`) projects points of the z = 1 pl
 from collections.abc import Sequence
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import least_squares
 
 from courtside.geometry import camera
 from courtside.study.errors import InputError
@@ -63,7 +63,7 @@ def _fit(given: NDArray, K: NDArray, size: Sequence[int]) -> tuple[NDArray, floa
     def miss(dist: NDArray) -> NDArray:
         return ((camera.distort(dist, plane) - shown) * focal).ravel()
 
-    found = least_squares(miss, given).x
+    found = scipy.optimize.least_squares(miss, given).x
     return found, float(np.hypot(*miss(found).reshape(-1, 2).T).max())
 
 

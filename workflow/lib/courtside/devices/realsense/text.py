@@ -3,8 +3,8 @@
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from courtside.devices.realsense.rosbag import Bag
 from courtside.geometry import camera_fields
@@ -84,7 +84,7 @@ def place(where: str, message: Any) -> NDArray:
             turn, shift = message.rotation, message.translation
             quaternion = np.array([turn.x, turn.y, turn.z, turn.w])
             off = abs(np.linalg.norm(quaternion) - 1)
-            rotation = Rotation.from_quat(quaternion).as_matrix()
+            rotation = scipy.spatial.transform.Rotation.from_quat(quaternion).as_matrix()
             moved = np.array([shift.x, shift.y, shift.z])
         # ASSUME: rounding stays below 1e-3, and the sensors of one camera within 1 m.
         if not off < 1e-3 or np.linalg.det(rotation) < 0 or not np.abs(moved).max() < 1:

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import jsonschema
 import yaml
 
 from courtside.study.configuration import yaml_files
@@ -16,21 +15,18 @@ from courtside.study.errors import InputError, StrPath
 
 SCHEMAS = Path(__file__).parents[4] / "schemas"
 # JSON Schema lets 3.0 pass for an integer, and a comparison lets nan pass for any number.
-TYPES = jsonschema.Draft202012Validator.TYPE_CHECKER.redefine_many(
-    {
-        "integer": lambda _, value: isinstance(value, int) and not isinstance(value, bool),
-        "number": lambda _, value: (
-            isinstance(value, int | float)
-            and not isinstance(value, bool)
-            and abs(value) <= sys.float_info.max
-        ),
-    }
-)
+TYPES = {
+    "integer": lambda _, value: isinstance(value, int) and not isinstance(value, bool),
+    "number": lambda _, value: (
+        isinstance(value, int | float)
+        and not isinstance(value, bool)
+        and abs(value) <= sys.float_info.max
+    ),
+}
 REPLACED = {  # keys of former versions: what to use now
     "measure_kinematics": "remove it: kinematics are measured on the exported skeletons, whose "
     "filter and cut-offs are those of filter_motion"
 }
-VALIDATOR = jsonschema.validators.extend(jsonschema.Draft202012Validator, type_checker=TYPES)
 
 
 def read(path: StrPath, schema: str) -> Content:
@@ -65,8 +61,13 @@ def _rules(schema: str) -> Content:
 
 
 @functools.cache
-def _validator(schema: str) -> jsonschema.protocols.Validator:
+def _validator(schema: str) -> Any:
     """Return the validator of a kind of file; made once, as reading takes longer than checking."""
+    import jsonschema  # 0.08 s, which jobs that read no such file save
+
+    plain = jsonschema.Draft202012Validator
+    types = plain.TYPE_CHECKER.redefine_many(TYPES)
+    validator = jsonschema.validators.extend(plain, type_checker=types)
     rules = _rules(schema)
     if schema == "session":
         steps = _rules("config")
@@ -81,7 +82,7 @@ def _validator(schema: str) -> jsonschema.protocols.Validator:
             key: {"type": "array", "minItems": 1, "items": value}
             for key, value in virtual["properties"].items()
         }
-    return VALIDATOR(rules)
+    return validator(rules)
 
 
 def _overridable(steps: Content) -> Content:

@@ -7,8 +7,9 @@ import ast
 import contextlib
 import hashlib
 import json
+import os
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
 from pathlib import Path
 
@@ -29,13 +30,20 @@ def rule_digest(script: StrPath, library: StrPath, lock_text: str) -> str:
     lines, perhaps with markers) pins them: a new version of one reruns what imports it, a new
     version of a tool that no rule imports reruns nothing.
     """
-    packages = "\n".join(sorted(packages_of(script, library, lock_text)))
-    return f"{code_digest(script, library)}-{hashlib.sha256(packages.encode()).hexdigest()}"
+    return _rule_digest(_paths(script, library), lock_text)
+
+
+def _rule_digest(paths: Sequence[Path], lock_text: str) -> str:
+    packages = "\n".join(sorted(_packages(paths, lock_text)))
+    return f"{_code_digest(paths)}-{hashlib.sha256(packages.encode()).hexdigest()}"
 
 
 def packages_of(script: StrPath, library: StrPath, lock_text: str) -> set[str]:
     """Return the pins (`name==version` with marker) of the packages that a script imports."""
-    paths = [Path(script), *(_file(name, Path(library)) for name in modules_of(script, library))]
+    return _packages(_paths(script, library), lock_text)
+
+
+def _packages(paths: Sequence[Path], lock_text: str) -> set[str]:
     imported = {name for path in paths for name in _parsed(path)[2]}
     wanted = {package_name(INSTALLED_AS.get(name, name)) for name in imported}
     known = pins(lock_text)
@@ -62,14 +70,22 @@ def code_digest(script: StrPath, library: StrPath) -> str:
     It changes with the syntax trees, not with comments, docstrings or formatting. `library` is the
     folder that holds the packages of the library. A syntax error is an `InputError`.
     """
-    names = sorted(modules_of(script, library))
-    paths = [Path(script), *(_file(name, Path(library)) for name in names)]
+    return _code_digest(_paths(script, library))
+
+
+def _code_digest(paths: Sequence[Path]) -> str:
     return hashlib.sha256("\n".join(_parsed(path)[0] for path in paths).encode()).hexdigest()
 
 
 def modules_of(script: StrPath, library: StrPath) -> set[str]:
     """Return the full names of all library modules and packages that a file reaches."""
-    return _reached(Path(script), Path(library), lambda path: _parsed(path)[1], _file)
+    return set(_reached(Path(script), lambda path: _links(_parsed(path)[1], Path(library))))
+
+
+def _paths(script: StrPath, library: StrPath) -> list[Path]:
+    """Return a script and the files of the modules that it reaches, by their names."""
+    found = _reached(Path(script), lambda path: _links(_parsed(path)[1], Path(library)))
+    return [Path(script), *(found[name] for name in sorted(found))]
 
 
 class Remembered:
@@ -84,18 +100,18 @@ class Remembered:
         self._kept = _read(self._path)
         self._used: dict[str, str] = {}
         self._sha256 = cache(files.sha256)
-        self._file = cache(_file)
+        self._links = cache(lambda path, library: _links(self._imports(path), library))
         # Entries made by another version of this module, or with another lock, are not used.
         self._own = hashlib.sha256((files.sha256(__file__) + lock_text).encode()).hexdigest()
 
     def digest(self, script: StrPath, library: StrPath) -> str:
         """Return `rule_digest` of a script, from the file where its code was met before."""
         script, library = Path(script), Path(library)
-        names = sorted(_reached(script, library, self._imports, self._file))
-        paths = [script, *(self._file(name, library) for name in names)]
+        found = _reached(script, lambda path: self._links(path, library))
+        paths = [script, *(found[name] for name in sorted(found))]
         content = "\n".join([self._own, *map(self._sha256, paths)])
         key = hashlib.sha256(content.encode()).hexdigest()
-        return self._get(key, lambda: rule_digest(script, library, self._lock_text))
+        return self._get(key, lambda: _rule_digest(paths, self._lock_text))
 
     def save(self) -> None:
         """Write what this run used, if it is new and the file may be written."""
@@ -125,30 +141,31 @@ def _read(path: Path) -> dict[str, str]:
 
 
 def _reached(
-    script: Path,
-    library: Path,
-    imports_of: Callable[[Path], Iterable[str]],
-    find: Callable[[str, Path], Path | None],
-) -> set[str]:
-    found, waiting = set(), [script]
+    script: Path, links_of: Callable[[Path], Iterable[tuple[str, Path]]]
+) -> dict[str, Path]:
+    """Return {name: file} of all modules that a file reaches."""
+    found: dict[str, Path] = {}
+    waiting = [script]
     while waiting:
-        for name in imports_of(waiting.pop()):
-            parts = name.split(".")
-            for reached in (".".join(parts[: at + 1]) for at in range(len(parts))):
-                file = find(reached, library)
-                if file is not None and reached not in found:
-                    found.add(reached)
-                    waiting.append(file)
+        new = {name: file for name, file in links_of(waiting.pop()) if name not in found}
+        found |= new
+        waiting += new.values()
     return found
+
+
+def _links(imported: Iterable[str], library: Path) -> list[tuple[str, Path]]:
+    """Return (name, file) of the modules that imports name, and of the packages that hold them."""
+    parts = [name.split(".") for name in imported]
+    names = {".".join(one[: at + 1]) for one in parts for at in range(len(one))}
+    files = {name: _file(name, library) for name in names}
+    return [(name, file) for name, file in files.items() if file is not None]
 
 
 def _file(name: str, library: Path) -> Path | None:
     """Return the file of a module, None for a name that is not a module (a function, say)."""
-    base = library.joinpath(*name.split("."))
-    for file in (base.with_suffix(".py"), base / "__init__.py"):
-        if file.is_file():
-            return file
-    return None
+    base = os.path.join(library, *name.split("."))  # noqa: PTH118  many times as fast as `Path`
+    candidates = f"{base}.py", f"{base}{os.sep}__init__.py"
+    return next((Path(one) for one in candidates if os.path.isfile(one)), None)  # noqa: PTH113
 
 
 @cache
