@@ -28,6 +28,7 @@ PLACES = {
     "plans/*/growth.csv": [f"{FIGURES} | plans/\\<plan>/growth"],
     "plans/*/map.csv": [f"{FIGURES} | error_map"],
     "*/calibration/file/check.csv": ["Columns of the check of a calibration file"],
+    "*/calibration/*/refinement.csv": ["Columns of the refinement by people"],
     "*/calibration/*/proposals.csv": [": `calibration/<calibration>/proposals.csv`: `camera`"],
     "*/sfm/*.csv": [": `sfm/features.csv`:"],
     "*/frames/*.csv": [FRAMES],

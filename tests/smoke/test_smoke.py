@@ -32,7 +32,7 @@ LARGER_STUDY = {
     "evaluate_joint_offsets",
     "evaluate_skin_depths",
 }
-LARGER_STUDY |= {"compare_networks", "draw_agreement"}
+LARGER_STUDY |= {"compare_networks", "draw_agreement", "refine_cameras"}
 # Devices beside fixed cameras need a take of both; keypoints of other programs, own networks and
 # boards are in test_other_sessions.py.
 LARGER_STUDY |= {"select_person", "import_pose2d", "import_pose3d", "check_network"}

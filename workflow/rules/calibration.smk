@@ -5,7 +5,7 @@ or these alone.
 Outputs: results/{session}/calibration/{calibration}/, results/{session}/pages/clicking.html.
 Steps: import_cameras (`file`), check_cameras (by static points and people), calibrate_cameras (`sfm-n40`, the default), align_cameras
 (`paper-n40`, `paper-global-n40`, `sim3-n40`), calibrate_lens and resect_cameras (`known18`,
-`known8-board`, `dlt18`), resect_together (`known`: all points, all cameras), calibrate_boards (`board`); propose_court_points (where the points probably are), build_clicking_page;
+`known8-board`, `dlt18`), resect_together (`known`: all points, all cameras), calibrate_boards (`board`), refine_cameras (`file-people` and the like); propose_court_points (where the points probably are), build_clicking_page;
 export_cameras (for EasyMocap and COLMAP, by request).
 """
 
@@ -179,6 +179,37 @@ rule export_cameras:
         code=code("export_cameras.py"),
     script:
         "../scripts/export_cameras.py"
+
+
+rule refine_cameras:
+    input:
+        cameras=of_job(calibration.of_base, paths.CAMERAS),
+        covariance=of_job(calibration.base_covariance),
+        calibration=of_job(calibration.base_file),
+        clicks=lambda w: session_of(w).placed and [] or session_of(w).court_points or [],
+        court=of_job(Job.court_file),
+        static=lambda w: session_of(w).static_points or [],
+        seen=of_job(calibration.refining_files),
+    output:
+        cameras_toml=paths.CAMERAS,
+        covariance_npz=paths.CAMERA_COVARIANCE,
+        quality_json=paths.CALIBRATION_QUALITY,
+        table_csv=paths.REFINEMENT,
+    log:
+        "results/{session}/logs/refine_cameras/{calibration}.log",
+    wildcard_constraints:
+        calibration="[a-z0-9-]+-people",
+    params:
+        code=code("refine_cameras.py"),
+        names=lambda w: session_of(w).calibration_camera_names(),
+        override=lambda w: session_of(w).calibration_override,
+        unit=lambda w: session_of(w).calibration_unit,
+        takes=of_job(calibration.refining),
+        weights=of_job(calibration.clicks),
+        views=step("triangulate"),
+        step=step("refine_cameras"),
+    script:
+        "../scripts/refine_cameras.py"
 
 
 rule propose_court_points:

@@ -22,22 +22,49 @@ from courtside.study.methods import Calibration, Fusion, Variant
         ("known18", Calibration("known18", "known", n_points=18)),
         ("known8-board", Calibration("known8-board", "known", n_points=8, board=True)),
         ("dlt18", Calibration("dlt18", "dlt", n_points=18)),
+        ("file-people", Calibration("file-people", "people", base="file")),
+        (
+            "sfm-n40-o1-people",
+            Calibration("sfm-n40-o1-people", "people", Variant("global", 40, 1), base="sfm-n40-o1"),
+        ),
     ],
 )
 def test_a_calibration_is_parsed_from_its_name(name, expected):
     assert Calibration.parse(name) == expected
 
 
-@pytest.mark.parametrize("name", ["", "sfm", "sfm-n", "sfm-global-n40", "known-n8", "n40", "file2"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "",
+        "-people",
+        "file-people-people",
+        "sfm",
+        "sfm-n",
+        "sfm-global-n40",
+        "known-n8",
+        "n40",
+        "file2",
+    ],
+)
 def test_a_name_of_no_calibration_is_an_error_with_examples(name):
     with pytest.raises(InputError, match="such as file, sfm-n40 or known18, found"):
         Calibration.parse(name)
 
 
 def test_adjusting_all_cameras_together_gives_a_covariance():
-    names = ["file", "sfm-n40", "sim3-n40", "paper-n40", "paper-global-n40", "known18", "dlt18"]
+    names = [
+        "file",
+        "file-people",
+        "sfm-n40",
+        "sim3-n40",
+        "paper-n40",
+        "paper-global-n40",
+        "known18",
+        "dlt18",
+    ]
     found = [name for name in [*names, "known", "board"] if Calibration.parse(name).has_covariance]
-    assert found == ["sfm-n40", "known", "board"]
+    assert found == ["file-people", "sfm-n40", "known", "board"]
 
 
 def test_a_structure_from_motion_is_parsed_and_named():

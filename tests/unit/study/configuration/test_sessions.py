@@ -166,3 +166,11 @@ def test_choices_of_images_that_are_the_same_are_made_once(tmp_path):
     virtual = session(parameters=parameters, walks={"walk": "w.mp4"}, virtual={"walk_frames": 20})
     found = [variant.name for variant in virtual.variants() if variant.n_images == 11]
     assert found == ["global-n11-o0", "global-n11-o1"]
+
+
+def test_people_refine_a_calibration_that_the_session_has_where_takes_are_filmed():
+    ways = ["file", "file-people", "sfm-n40-people"]
+    filmed = {"t": sessions.Take("t", {"a": "a.mp4"}, ())}
+    made = {"parameters": {"calibrations": ways}, "calibration_file": "c.toml"}
+    assert session(**made, takes=filmed).calibrations() == ["file", "file-people"]
+    assert session(**made).calibrations() == ["file"]

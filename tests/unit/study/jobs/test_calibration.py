@@ -141,3 +141,29 @@ def test_scales_are_those_of_cameras_whose_videos_are_scaled(job):
     one.session.cameras["cam03"] = replace(one.session.cameras["cam03"], scale=0.5)
     assert calibration.scales(one) == {"cam03": 0.5}
     one.session.cameras["cam03"] = replace(one.session.cameras["cam03"], scale=1.0)
+
+
+def test_cameras_refined_by_people_rest_on_their_base_and_its_people(job, study):
+    one = job(session="walk-4cams-tiny", calibration="file-people")
+    base = "results/walk-4cams-tiny/calibration/file/cameras.toml"
+    assert calibration.of_base(one, paths.CAMERAS) == base
+    assert calibration.base_covariance(one) == []
+    assert calibration.base_file(one) == study.sessions["walk-4cams-tiny"].calibration_file
+    (take,) = calibration.refining(one)
+    assert take["people"].endswith("/balancing/people/file/blazepose-full.found.npz")
+    assert calibration.refining_files(one) == [*take["pose2d"], take["sync"], take["people"]]
+    adjusted = job(session="players-tiny", calibration="known-people")
+    assert calibration.base_file(adjusted) == []
+    assert calibration.base_covariance(adjusted).endswith("/calibration/known/covariance.npz")
+    takes = {take["sync"].split("/")[3] for take in calibration.refining(adjusted)}
+    assert takes == {"shot", "rally"}
+
+
+def test_takes_that_refine_cameras_must_be_filmed(job, study):
+    session = study.sessions["players-tiny"]
+    step = {**session.parameters["refine_cameras"], "takes": ["shot", "nothing"]}
+    asking = replace(session, parameters={**session.parameters, "refine_cameras": step})
+    one = job(replace(study, sessions={"players-tiny": asking}), session="players-tiny")
+    one = replace(one, wildcards={**one.wildcards, "calibration": "known-people"})
+    with pytest.raises(InputError, match=r"expected filmed takes of .* found \['nothing'\]"):
+        calibration.refining(one)

@@ -1,6 +1,7 @@
 """From 2D keypoints of several cameras to 3D: clocks applied, sides, fusion, shake, correction.
 
 resampling: `common_times`, `resample`, `nearest`: each camera's clock applied
+common_views: `of_takes`: limb joints of everybody in several takes
 person_height: `in_pictures`: the height of a person in each picture, for limits in shares of it
 left_right: `swapped_views`, `apply_swaps`: sides that a network confused
 fusion: `triangulate_take`, `merge`, `with_cameras`: half bodies, the cameras' covariance

@@ -1,7 +1,7 @@
 """Methods of the study, parsed from their names: calibration, structure from motion, fusion."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from courtside.study.errors import InputError
 
@@ -11,6 +11,7 @@ CALIBRATION = re.compile(
     r"|(?P<kind>sfm|sim3|paper)(?P<mapped>-global)?-n(?P<n_images>[0-9]+)(-o(?P<offset>[0-9]+))?"
 )
 VARIANT = re.compile(r"(?P<mapper>[a-z]+)-n(?P<n_images>[0-9]+)-o(?P<offset>[0-9]+)")
+PEOPLE = "-people"  # behind the name of a calibration: refined by people
 IMPORTED = "imported"  # in place of a calibration: 3D joints are another program's
 HALFBODY = "halfbody"  # the paper's rule for three cameras
 OFFSETS = 3  # choices of so many bridging images: they start thirds of their spacing late
@@ -69,22 +70,27 @@ class Calibration:
     """A way to find the fixed cameras of a session."""
 
     # `file`, `known`, `board`, `sfm-n40`, `sfm-n40-o1`, `sim3-n40`, `paper-n40`,
-    # `paper-global-n40`, `known18`, `known8-board`, `dlt18` and the like
+    # `paper-global-n40`, `known18`, `known8-board`, `dlt18`, `file-people` and the like
     name: str
     # `file` (made elsewhere); from structure from motion: `sfm` (ties and clicks adjusted
     # together), `sim3` (one similarity), `paper` (the paper's alignment); from clicks alone:
     # `known` (resection; without a number all points, all cameras together), `dlt`; from a board
-    # that several cameras see: `board`
+    # that several cameras see: `board`; `people`: another calibration, refined by people in takes
     kind: str
     # The structure from motion that it rests on. Only `paper-n40` is mapped incrementally, as in
     # the paper
     variant: Variant | None = None
     n_points: int | None = None  # number of clicked points, where they are all that it rests on
     board: bool = False  # whether lenses come from pictures of a chessboard
+    base: str | None = None  # the calibration that people refine, of kind `people`
 
     @classmethod
     def parse(cls, name: str) -> "Calibration":
         """Parse a name of the configuration's `calibrations`."""
+        if name.endswith(PEOPLE):
+            of = cls.parse(name.removesuffix(PEOPLE))
+            if of.base is None:
+                return replace(of, name=name, kind="people", base=of.name)
         found = CALIBRATION.fullmatch(name)
         if found is None or (found["mapped"] and found["kind"] != "paper"):
             raise InputError(
@@ -103,7 +109,7 @@ class Calibration:
     @property
     def has_covariance(self) -> bool:
         """Whether the covariance of the cameras is known."""
-        return self.kind == "sfm" or self.name in ("known", "board")
+        return self.kind in ("sfm", "people") or self.name in ("known", "board")
 
 
 @dataclass(frozen=True)

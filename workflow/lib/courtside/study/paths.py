@@ -66,6 +66,7 @@ CAMERAS = CALIBRATION + "/cameras.toml"
 CAMERA_COVARIANCE = CALIBRATION + "/covariance.npz"
 CALIBRATION_QUALITY = CALIBRATION + "/quality.json"
 CAMERA_EXPORT = CALIBRATION + "/other_programs"
+REFINEMENT = CALIBRATION + "/refinement.csv"
 CALIBRATION_CHECK = SESSION + "/calibration/file/check.{suffix}"  # json or csv
 COURT_PROPOSALS = CALIBRATION + "/proposals.csv"
 LENS = SESSION + "/calibration/lens/{camera}.toml"

@@ -62,6 +62,7 @@ class Verdict:
     faults: list[Fault]
     px: dict[str, float]  # how far views disagree, by `static` and `people`
     mended_px: dict[str, float]  # the same without the faults
+    cameras: tuple[Camera, ...] = ()  # without the faults; none if there are no faults
 
 
 @dataclass(frozen=True)
@@ -91,7 +92,7 @@ def judge(cameras: Sequence[Camera], seen: Seen, person_px: float = np.inf) -> V
         causes = ", ".join(f"{one.what} ({one.advice})" for one in order)
         left = " and ".join(f"{px:.1f} px" for px in after.values())
         line = f"the cameras of the file disagree: {far}; probably {causes}; then {left} are left"
-        return Verdict([line], order, before, after)
+        return Verdict([line], order, before, after, best.cameras)
     if _within(before, limits_px):
         return Verdict([], [], before, before)
     line = f"the cameras of the file disagree: {far}; no single fault of it explains this"

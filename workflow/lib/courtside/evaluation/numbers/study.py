@@ -39,7 +39,7 @@ MEASURED = (  # of the results of a default run
 STATED = (
     *("real-checks", "markers", "hall-points", "device-checks", "stated-errors", "flags", "crowd"),
     *("file-evidence", "file-mended", "networks"),
-    *("file-faults", "mapping-checks", "click-model", "click-alarms", "worlds"),
+    *("file-faults", "refined-people", "mapping-checks", "click-model", "click-alarms", "worlds"),
     *("halls", "halls-strengths"),
     *("speed", "costs", "stages", "faults", "trust"),
 )

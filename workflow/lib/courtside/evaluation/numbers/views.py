@@ -323,6 +323,19 @@ VIEWS = {
             "with": "{static.command}",
         },
     ),
+    "refined-people": View(
+        "refined-people",
+        {
+            "cameras": "{row}",
+            "before": "{before}",
+            "taken": "{taken}",
+            "shape before": "{shape_before}",
+            "shape taken": "{shape}",
+            "in 90 % ellipsoids": "{coverage}",
+            "by": "{taken.origin}",
+            "with": "{taken.command}",
+        },
+    ),
     **{
         name: View(
             name,

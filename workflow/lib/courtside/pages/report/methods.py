@@ -36,6 +36,8 @@ CALIBRATED = {  # by the kind of a calibration
     "places of the board adjusted together",
     "dlt": "calibrated from clicked court points alone, by the linear method (DLT)",
     "file": "taken from a calibration made elsewhere",
+    "people": "calibrated in another way and refined by the people in takes, where people and "
+    "points that the adjustment did not see say that this is better",
 }
 FUSED = {  # by the rule of a fusion
     "robust": "views are weighted, and those that contradict the others lose their weight",

@@ -140,12 +140,17 @@ class Session:
             "sim3": walked and clicked,
             "paper": walked and clicked,
         }
+        filmed = any(take.cameras for take in self.takes.values())
+
+        def allowed(way: Calibration) -> bool:
+            if way.base:
+                return filmed and allowed(Calibration.parse(way.base))
+            return (
+                alone if way.name == "known" else possible[way.kind] and (boards or not way.board)
+            )
+
         ways = map(Calibration.parse, self.parameters["calibrations"])
-        return [
-            way.name
-            for way in ways
-            if (alone if way.name == "known" else possible[way.kind] and (boards or not way.board))
-        ]
+        return [way.name for way in ways if allowed(way)]
 
     def take_calibrations(self) -> list[str]:
         """Return the session's calibrations that its takes are measured with."""

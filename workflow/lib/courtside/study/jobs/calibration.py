@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from courtside.study import paths
+from courtside.study.errors import InputError
 from courtside.study.jobs import recordings, takes
 from courtside.study.jobs.job import Job
 from courtside.study.methods import IMPORTED, Calibration
@@ -55,23 +56,66 @@ def scales(job: Job) -> dict[str, float]:
 
 
 def checked(job: Job) -> list[dict[str, Any]]:
-    """Return of each filmed take the files that check a calibration file: what cameras see.
+    """Return of each filmed take the files that check a calibration file: what cameras see."""
+    return _seen(job, "file", [name for name, take in job.session.takes.items() if take.cameras])
 
-    `pose2d` of each camera by the session's first network, `sync` and `people`.
-    """
+
+def refining(job: Job) -> list[dict[str, Any]]:
+    """Return of each take whose people refine cameras the files of what cameras see."""
+    filmed = [name for name, take in job.session.takes.items() if take.cameras]
+    wanted = job.step("refine_cameras")["takes"] or filmed
+    if missing := [name for name in wanted if name not in filmed]:
+        raise InputError(
+            f"{job.session.file}: refine_cameras: takes: expected filmed takes of {filmed}, found "
+            f"{missing}; name others, or null for all"
+        )
+    return _seen(job, _base(job)["calibration"], wanted)
+
+
+def of_base(job: Job, pattern: str) -> str:
+    """Return a file of the calibration that people refine."""
+    return _base(job).fill(pattern)
+
+
+def base_covariance(job: Job) -> str | list:
+    """Return its covariance where it has one."""
+    return covariance(_base(job))
+
+
+def base_file(job: Job) -> str | list:
+    """Return the file that it was read from, where it was."""
+    return job.session.calibration_file or [] if _way(job).base == "file" else []
+
+
+def _base(job: Job) -> Job:
+    return Job(job.study, {**job.wildcards, "calibration": _way(job).base or ""})
+
+
+def _seen(job: Job, way: str, names: list[str]) -> list[dict[str, Any]]:
+    """Return `pose2d` of each camera by the session's first network, `sync` and `people`."""
     model, found = job.session.parameters["models"][0], []
-    for name in (name for name, take in job.session.takes.items() if take.cameras):
-        known = {**job.wildcards, "take": name, "model": model, "calibration": "file"}
+    for name in names:
+        known = {**job.wildcards, "take": name, "model": model, "calibration": way}
         one = Job(job.study, known)
         files = {"sync": one.fill(paths.CAMERA_CLOCKS), "people": one.fill(paths.FOUND_PEOPLE)}
         found.append({"pose2d": takes.keypoints_2d(one), **files})
     return found
 
 
-def checked_files(job: Job) -> list[str]:
+def files_of(takes_seen: list[dict[str, Any]]) -> list[str]:
     """Return these files in one list."""
-    every = [[*one["pose2d"], one["sync"], one["people"]] for one in checked(job)]
+    every = [[*one["pose2d"], one["sync"], one["people"]] for one in takes_seen]
     return [path for files in every for path in files]
+
+
+def checked_files(job: Job) -> list[str]:
+    """Return the files of `checked` in one list."""
+    return files_of(checked(job))
+
+
+def refining_files(job: Job) -> list[str]:
+    """Return the files of `refining` in one list."""
+    return files_of(refining(job))
 
 
 def ties(job: Job) -> str:

@@ -1,0 +1,72 @@
+"""Verdicts by what a fit did not see: better, worse, and no difference where there is none."""
+
+import numpy as np
+import pytest
+
+from courtside.calibration.people import held_out, prior
+from courtside.calibration.people.adjustment import Clicks, Limits
+from courtside.calibration.people.held_out import Points
+from courtside.geometry import camera as cameras
+from fixtures.cameras import corner_cameras, walkers
+
+TRUE = corner_cameras.four_cameras()
+LIMITS = Limits(score=0.05, limit=0.05, fade=0.067)
+KNOWN = prior.stated(
+    TRUE, rotation_deg=0.3, position_m=0.03, focal_percent=0.5, principal_point_percent=0.3, k1=0.01
+)
+WRONG = walkers.disturbed(TRUE, KNOWN, 1)
+STATIC = corner_cameras.seen_points(TRUE, 8, 0.5, seed=2)
+PLACES = np.array([[x, y, 0.0] for x in (-2, 0, 2) for y in (-2, 0, 2)])
+
+
+def court():
+    xy = np.stack([cameras.project(one, PLACES) for one in TRUE])
+    return Clicks(PLACES, np.full(9, 1e-3), xy, np.full(4, 1.0), np.zeros(4), 4.0)
+
+
+@pytest.fixture(scope="module")
+def scores():
+    seen = walkers.seen(TRUE, walkers.joints(64))
+    points = Points(STATIC, court())
+    ways = {"true": TRUE, "wrong": WRONG}
+    return {
+        name: held_out.score(lambda *_, way=way: way, seen, points, LIMITS)
+        for name, way in ways.items()
+    }
+
+
+def test_true_cameras_are_better_and_wrong_ones_worse(scores):
+    better = held_out.verdicts(scores["wrong"], scores["true"])
+    assert better == dict.fromkeys(("joints", "court", "static"), "better")
+    assert held_out.better(better)
+    worse = held_out.verdicts(scores["true"], scores["wrong"])
+    assert set(worse.values()) == {"worse"} and not held_out.better(worse)
+
+
+def test_the_same_cameras_are_not_better(scores):
+    same = held_out.verdicts(scores["true"], scores["true"])
+    assert set(same.values()) == {"not better"} and not held_out.better(same)
+
+
+def test_one_verdict_against_is_enough():
+    assert not held_out.better({"joints": "better", "court": "not better"})
+    assert held_out.better({"joints": "better"})
+
+
+def test_residuals_are_per_axis_and_court_points_are_at_their_places(scores):
+    assert scores["true"].rms_px("court") == pytest.approx(0, abs=1e-9)
+    assert 0.2 < scores["true"].rms_px("static") < 0.6  # 0.5 px, less three unknowns of 8
+    assert np.median(list(scores["true"].share.values())) == pytest.approx(0.0032, rel=0.25)
+    assert (scores["true"].accepted_percent() > 99).all()
+
+
+def test_half_of_all_blocks_and_court_points_are_held_out_in_turn():
+    seen, given = walkers.seen(TRUE, walkers.joints(64)), []
+
+    def fit(part, clicks):
+        given.append((len(part.track), np.isfinite(clicks.xy[0, :, 0])))
+        return TRUE
+
+    held_out.score(fit, seen, Points(court=court(), fitted=True), LIMITS)
+    assert [rows for rows, _ in given] == [32, 32]
+    assert (given[0][1] ^ given[1][1]).all()

@@ -1,0 +1,49 @@
+"""What is known of cameras before: stated numbers, and a covariance turned into a `Quadratic`."""
+
+import numpy as np
+import pytest
+
+from courtside.calibration.people import prior
+from fixtures.cameras import corner_cameras
+
+CAMERAS = corner_cameras.four_cameras()
+STATED = {
+    "rotation_deg": 0.3,
+    "position_m": 0.03,
+    "focal_percent": 0.5,
+    "principal_point_percent": 0.3,
+    "k1": 0.01,
+}
+
+
+def test_stated_numbers_are_standard_deviations_with_units():
+    found = prior.stated(CAMERAS, **STATED)
+    sigma = np.sqrt(np.diag(found.covariance)).reshape(4, -1)
+    expected = [*[np.radians(0.3)] * 3, *[0.03] * 3, 7.0, 0, 5.76, 5.76, 0.01, 0, 0, 0]
+    np.testing.assert_allclose(sigma, [expected] * 4)
+
+
+def test_knowledge_is_the_inverse_of_what_is_not_fixed():
+    known = prior.stated(CAMERAS, **STATED)
+    mixed = np.random.default_rng(0).normal(size=(len(known.covariance),) * 2) * 0.1
+    mixed += np.eye(len(mixed))
+    whole = mixed @ known.covariance @ mixed.T
+    fixed = np.diag(known.covariance) == 0
+    whole[fixed], whole[:, fixed] = 0.0, 0.0
+    given = type(known)(known.cameras, whole)
+    quadratic = prior.knowledge(CAMERAS, given)
+    columns, free = given.of_columns(), np.diag(quadratic.information) > 0
+    assert free.sum() == (~fixed).sum()
+    product = quadratic.information[np.ix_(free, free)] @ columns[np.ix_(free, free)]
+    np.testing.assert_allclose(product, np.eye(free.sum()), atol=1e-6)
+    assert not quadratic.gradient.any()
+    free_lens = np.isinf(prior.lens_sigma(quadratic))
+    assert free_lens.tolist() == [[True, False, True, True, True, False, False, False]] * 4
+
+
+def test_cameras_are_taken_by_name():
+    known = prior.stated(CAMERAS, **STATED)
+    with pytest.raises(ValueError, match="c9"):
+        known.of(["c9"])
+    turned = prior.knowledge(CAMERAS[::-1], known)
+    assert turned.reference.cam_from_world[0] == pytest.approx(CAMERAS[3].cam_from_world)

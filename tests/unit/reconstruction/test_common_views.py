@@ -1,0 +1,52 @@
+"""Limb joints of everybody in several takes, at common times, by camera."""
+
+import numpy as np
+
+from courtside.geometry import camera as camera_models
+from courtside.reconstruction import common_views
+from courtside.records.devices import clocks as sync
+from courtside.records.keypoints import keypoints, people, skeleton
+from fixtures.cameras import scene
+from fixtures.people import found as people_found
+from fixtures.people import walker
+
+CAMERAS = scene.ring(3)
+
+
+def written(folder, shown):
+    """Write a take that some of the cameras film, and return its record and its files."""
+    folder.mkdir()
+    record = walker.points(n_frames=12, n_persons=2)
+    paths = [folder / f"{camera.name}.npz" for camera in shown]
+    for path, view in zip(paths, walker.views(record, shown), strict=True):
+        keypoints.write_2d(path, view)
+    index = {camera.name: np.tile([[0], [1]], (1, 12)) for camera in shown}
+    people.write(
+        folder / "people.npz", people_found.people(index, record.person_id, model=record.model)
+    )
+    sync.write(folder / "sync.json", "c0", {camera.name: sync.Clock() for camera in CAMERAS})
+    return record, {
+        "pose2d": paths,
+        "people": folder / "people.npz",
+        "sync": folder / "sync.json",
+    }
+
+
+def test_all_takes_are_joined_and_cameras_that_do_not_film_one_see_nobody_there(tmp_path):
+    camera_models.write_toml(tmp_path / "cameras.toml", CAMERAS, source="made")
+    record, whole = written(tmp_path / "a", CAMERAS)
+    _, part = written(tmp_path / "b", CAMERAS[:2])
+    names = ["c2", "c0", "c1"]
+    found = common_views.of_takes(tmp_path / "cameras.toml", names, [whole, part])
+    assert found.xy.shape == (3, 48, 12, 2) and found.score.shape == (3, 48, 12)
+    assert found.track.tolist() == [0] * 12 + [1] * 12 + [2] * 12 + [3] * 12
+    at = [list(record.joints).index(name) for name in skeleton.JOINTS]
+    expected = camera_models.project(CAMERAS[0], record.xyz[:, :, at]).reshape(24, 12, 2)
+    known = np.isfinite(expected)
+    np.testing.assert_allclose(found.xy[1, :24][known], expected[known], atol=1e-6)
+    assert np.isnan(found.score[0, 24:]).all() and np.isfinite(found.height_px).all()
+    assert np.isfinite(found.score[1:, 24:]).mean() > 0.9
+
+
+def test_no_take_shows_nobody(tmp_path):
+    assert common_views.of_takes(tmp_path / "cameras.toml", ["c0"], []) is None

@@ -1,0 +1,8 @@
+"""Cameras refined by the people that they film.
+
+views: `Seen`, `joined`, `placed`, `check`: joints at common times, blocks of time, bad input
+prior: `stated`, `knowledge`: what is known of cameras before
+adjustment: `refine`, `Clicks`, `court_clicks`, `Limits`: cameras and joints adjusted together
+held_out: `score`, `verdicts`, `better`: whether cameras are better, by what the fit did not see
+refinement: `refine`, `unchanged`: which cameras are taken, what was wrong, the table
+"""

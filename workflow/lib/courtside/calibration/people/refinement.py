@@ -1,0 +1,192 @@
+"""A calibration refined by people, beside the one that it began from: taken only where better."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+from scipy.spatial.transform import Rotation
+
+from courtside.calibration.file_check import residuals, verdict
+from courtside.calibration.people import adjustment, held_out, prior, views
+from courtside.calibration.people.adjustment import Limits
+from courtside.calibration.people.held_out import Points, Score
+from courtside.calibration.people.views import Seen
+from courtside.calibration.records import covariance as camera_covariance
+from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance
+from courtside.geometry.camera import Camera, in_other_picture
+
+NAMED = 3.0  # stated standard deviations by which a number must change to be called wrong
+LENS = ("f_px", "cx_px", "cy_px", "k1")
+# ASSUME: of rows of a track that err on their own. With 2.5 (a person on a treadmill for a second)
+# held-out joints were better and points at rest worse; with 7 both were better.
+FEWEST_DIFFERENT = 4.0
+COLUMNS = ("what", "camera", "base", "mended", "refined", "sigma")
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What came of it."""
+
+    cameras: list[Camera]
+    covariance: CameraCovariance
+    taken: str  # `base`, `mended` (without named faults) or `refined`
+    line: str  # why, in one line
+    verdicts: dict[str, dict[str, str]]  # of `mended` against base, of `refined` against these
+    wrong: list[str]  # the numbers of the base that people contradict
+    table: pd.DataFrame  # `COLUMNS`: held-out measures, then each camera's numbers
+
+
+def refine(
+    cameras: Sequence[Camera],
+    known: CameraCovariance,
+    seen: Seen,
+    limits: Limits,
+    points: Points,
+    *,
+    calibrated: Sequence[Camera] | None = None,
+) -> Found:
+    """Refine cameras by people, and judge this by what the fit did not see.
+
+    Faults that files usually have (`file_check.faults`) are looked for first, where `calibrated`
+    has the cameras of the file, in their own pictures; what is left is adjusted. Each step must be
+    better in all `held_out.verdicts`. Raises `InputError` of bad input (`views.check`).
+    """
+    views.check(cameras, seen, limits.score)
+    wrong, mended = _mended(cameras, calibrated, seen)
+    knowledge = prior.knowledge(mended, known)
+    clicks = points.court if points.fitted else None
+    last: list[adjustment.Refined] = []
+
+    def fit(part: Seen, some: adjustment.Clicks | None) -> list[Camera]:
+        last.append(adjustment.refine(mended, part, knowledge, limits, some))
+        return last[-1].cameras
+
+    scores = {"base": held_out.score(lambda *_: cameras, seen, points, limits)}
+    if wrong:
+        scores["mended"] = held_out.score(lambda *_: mended, seen, points, limits)
+    scores["refined"] = held_out.score(fit, seen, points, limits)
+    refined = fit(seen, clicks)
+    ways = {"base": list(cameras), "mended": mended, "refined": refined}
+    taken, verdicts = "base", {}
+    for way in list(scores)[1:]:
+        verdicts[way] = held_out.verdicts(scores[taken], scores[way])
+        if way == "refined" and list(verdicts[way]) == ["joints"]:
+            verdicts[way] |= _alone(seen, last[-1].alike)
+        taken = way if held_out.better(verdicts[way]) else taken
+    spread = camera_covariance.of_network([c.name for c in cameras], last[-1].covariance)
+    table = pd.concat([_measures(cameras, scores), _numbers(ways, spread)])
+    wrong = [*wrong, *_named(mended, refined, known)] if taken == "refined" else wrong
+    line = _line(taken, verdicts)
+    return Found(
+        ways[taken], spread if taken == "refined" else known, taken, line, verdicts, wrong, table
+    )
+
+
+def unchanged(cameras: Sequence[Camera], known: CameraCovariance, why: str) -> Found:
+    """Return cameras as they were, because people cannot refine them."""
+    line = f"cameras kept as before: {why}"
+    return Found(list(cameras), known, "base", line, {}, [], pd.DataFrame(columns=list(COLUMNS)))
+
+
+def _mended(cameras, calibrated, seen: Seen) -> tuple[list[str], list[Camera]]:
+    """Return the faults that explain how people's joints disagree, and the cameras without them."""
+    if calibrated is None:
+        return [], list(cameras)
+    pairs = list(zip(calibrated, cameras, strict=True))
+    views = [
+        in_other_picture(shown, whole, xy)
+        for (whole, shown), xy in zip(pairs, seen.xy, strict=True)
+    ]
+    joints = verdict.Seen(people=residuals.of_people(views))
+    said = verdict.judge(calibrated, joints, residuals.height_px(views))
+    if not said.faults:
+        return [], list(cameras)
+    lines = [f"{one.what} ({one.advice})" for one in said.faults]
+    return lines, [
+        replace(one, size=shown.size, K=shown.K @ np.linalg.inv(whole.K) @ one.K)
+        for one, (whole, shown) in zip(said.cameras, pairs, strict=True)
+    ]
+
+
+def _alone(seen: Seen, alike: float) -> dict[str, str]:
+    """Return that joints alone say too little, where the same errors last through all blocks."""
+    n_rows = min(len(seen.track), views.MOST_ROWS) / len(np.unique(seen.track))
+    if n_rows >= FEWEST_DIFFERENT * alike:
+        return {}
+    return {"variety of what people do": "not better (click points at rest or of the court)"}
+
+
+def _line(taken: str, verdicts: dict[str, dict[str, str]]) -> str:
+    """Return which cameras are taken, and why, in one line."""
+    said = "; ".join(
+        f"{way} cameras: " + ", ".join(f"{what} {word}" for what, word in found.items())
+        for way, found in verdicts.items()
+    )
+    kept = {"base": "kept as before", "mended": "mended, not adjusted", "refined": "refined"}
+    return f"cameras {kept[taken]}: held out, {said}"
+
+
+def _named(base: Sequence[Camera], refined: Sequence[Camera], known: CameraCovariance) -> list[str]:
+    """Return the numbers of lenses that changed by more than is stated of them."""
+    found = []
+    for at, (old, new) in enumerate(zip(base, refined, strict=True)):
+        for name, before, after in zip(LENS, _lens(old), _lens(new), strict=True):
+            sigma = _sigma(known, at, name)
+            if sigma and abs(after - before) > NAMED * sigma:
+                found.append(
+                    f"{name} of camera {old.name}: expected {before:.5g} to {sigma:.2g}, as stated "
+                    f"of it, found {after:.5g}"
+                )
+    return found
+
+
+def _lens(camera: Camera) -> tuple[float, ...]:
+    return camera.K[1, 1], camera.K[0, 2], camera.K[1, 2], camera.dist[0]
+
+
+def _sigma(known: CameraCovariance, at: int, name: str) -> float:
+    column = len(PARAMETERS) * at + PARAMETERS.index(name)
+    return float(np.sqrt(known.covariance[column, column]))
+
+
+def _measures(cameras: Sequence[Camera], scores: dict[str, Score]) -> pd.DataFrame:
+    """Return the held-out measures of all cameras, by camera where they have one."""
+    rows: list[dict] = []
+    for what in ("court_px", "static_px"):
+        of = {way: one.rms_px(what[:-3]) for way, one in scores.items()}
+        rows += [{"what": what, "camera": "all", **of}] * bool(np.isfinite(of["base"]))
+    of = {way: 1000 * float(np.median(list(s.share.values()))) for way, s in scores.items()}
+    rows.append({"what": "joints_permille", "camera": "all", **of})
+    each = {way: one.accepted_percent() for way, one in scores.items()}
+    for at, camera in enumerate(cameras):
+        of = {way: shares[at] for way, shares in each.items()}
+        rows.append({"what": "accepted_percent", "camera": camera.name, **of})
+    return pd.DataFrame(rows, columns=list(COLUMNS))
+
+
+def _numbers(ways: dict[str, list[Camera]], spread: CameraCovariance) -> pd.DataFrame:
+    """Return each camera's numbers; `turned_deg` and `moved_cm` are from those of the base."""
+    rows: list[dict] = []
+    for at, base in enumerate(ways["base"]):
+        here = {way: cameras[at] for way, cameras in ways.items()}
+        sigma = [_sigma(spread, at, name) for name in PARAMETERS]
+        turned = {
+            way: np.degrees(
+                Rotation.from_matrix(
+                    one.cam_from_world[:, :3] @ base.cam_from_world[:, :3].T
+                ).magnitude()
+            )
+            for way, one in here.items()
+        }
+        moved = {
+            way: 100 * np.linalg.norm(one.centre_in_world - base.centre_in_world)
+            for way, one in here.items()
+        }
+        of = {"what": "turned_deg", **turned, "sigma": np.degrees(np.linalg.norm(sigma[:3]))}
+        rows += [of, {"what": "moved_cm", **moved, "sigma": 100 * np.linalg.norm(sigma[3:6])}]
+        for number, name in enumerate(LENS):
+            of = {way: _lens(one)[number] for way, one in here.items()}
+            rows.append({"what": name, **of, "sigma": _sigma(spread, at, name)})
+        rows = [{"camera": base.name, **row} for row in rows]
+    return pd.DataFrame(rows, columns=list(COLUMNS))

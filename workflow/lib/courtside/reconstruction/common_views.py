@@ -1,0 +1,44 @@
+"""The limb joints of everybody in several takes, at common times, as all cameras see them."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from courtside.calibration.people.views import Seen, joined
+from courtside.reconstruction import person_height, resampling
+from courtside.records.cameras import footage
+from courtside.records.keypoints import skeleton
+from courtside.study.errors import StrPath
+
+
+def of_takes(
+    cameras_toml: StrPath, names: Sequence[str], takes: Sequence[Mapping[str, Any]]
+) -> Seen | None:
+    """Return what the cameras `names` saw of everybody in takes, None without takes.
+
+    `takes` have the files `pose2d` (a list), `people` and `sync`, as for `footage.read`. A camera
+    that does not film a take sees nobody there.
+    """
+    parts = [_of_take(cameras_toml, names, take) for take in takes]
+    return joined(parts) if parts else None
+
+
+def _of_take(cameras_toml: StrPath, names: Sequence[str], take: Mapping[str, Any]) -> Seen:
+    seen = footage.read(cameras_toml, take["pose2d"], take["people"], take["sync"])
+    each, clocks = [one.view for one in seen], [one.clock for one in seen]
+    time_s = resampling.common_times(each, clocks)
+    joints = [list(each[0].joints).index(name) for name in skeleton.JOINTS]
+    cut = [resampling.resample(v, time_s, c) for v, c in zip(each, clocks, strict=True)]
+    xy, score = (np.stack(part)[:, :, :, joints] for part in zip(*cut, strict=True))
+    cameras = [one.camera for one in seen]
+    height_px = person_height.in_pictures(cameras, xy, score, skeleton.JOINTS)
+    n_people, n_times = score.shape[1:3]
+    rows = [names.index(camera.name) for camera in cameras]
+    whole = {"xy": xy, "score": score, "height_px": height_px}
+    for key, values in whole.items():
+        flat = values.reshape(len(cameras), n_people * n_times, *values.shape[3:])
+        fill = person_height.LEAST_PX if key == "height_px" else np.nan
+        whole[key] = np.full((len(names), *flat.shape[1:]), fill)
+        whole[key][rows] = flat
+    return Seen(**whole, track=np.repeat(np.arange(n_people), n_times))

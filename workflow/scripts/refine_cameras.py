@@ -1,0 +1,87 @@
+"""Refine cameras by the people in takes: cameras, keypoints, clicks -> cameras, where better."""
+
+import numpy as np
+
+from courtside.calibration import file_formats
+from courtside.calibration.court import court as court_files
+from courtside.calibration.people import adjustment, prior, refinement
+from courtside.calibration.people.adjustment import Limits
+from courtside.calibration.people.held_out import Points
+from courtside.calibration.records import covariance as camera_covariance
+from courtside.geometry import camera as camera_models
+from courtside.reconstruction import common_views
+from courtside.records import tables
+from courtside.records.cameras import clicks
+from courtside.study.errors import InputError
+from courtside.study.execution import log
+from courtside.study.execution.files import write_json
+from courtside.study.execution.script import run
+
+
+def main(
+    paths,
+    cameras_toml,
+    covariance_npz,
+    quality_json,
+    table_csv,
+    *,
+    calibration,
+    names,
+    override,
+    takes,
+    weights,
+    views,
+    step,
+    unit=None,
+):
+    base = camera_models.read_toml(paths.cameras)
+    stated = {key: value for key, value in step.items() if key != "takes"}
+    known = prior.stated(base, **stated)
+    if paths.covariance:
+        known = camera_covariance.read(paths.covariance).of([camera.name for camera in base])
+    report = {"calibration": calibration, "takes": [take["sync"] for take in takes]}
+    try:
+        seen = common_views.of_takes(paths.cameras, [camera.name for camera in base], takes)
+        told = seen, limits(views), points(paths, base, weights)
+        theirs = in_file(paths.calibration, names, override, unit)
+        found = refinement.refine(base, known, *told, calibrated=theirs)
+    except InputError as error:
+        found = refinement.unchanged(base, known, str(error))
+    for line in (found.line, *found.wrong):
+        log.logger.warning("%s", line)
+    report |= {"taken": found.taken, "verdicts": found.verdicts, "wrong": found.wrong}
+    report["warnings"] = [found.line, *found.wrong]
+    camera_models.write_toml(cameras_toml, found.cameras, source=f"{calibration}, {found.taken}")
+    camera_covariance.write(covariance_npz, found.covariance)
+    tables.write(table_csv, found.table, float_format="%.4f")
+    write_json(quality_json, report)
+
+
+def limits(views):
+    """Return which views count, as for the triangulation."""
+    return Limits(views["min_score"], views["max_error_share"], views["fade_share"])
+
+
+def in_file(path, names, override, unit):
+    """Return the cameras of a calibration file in their own pictures, None of another base."""
+    if not path:
+        return None
+    found = file_formats.rename(file_formats.read(path, unit), names)
+    return file_formats.with_principal_points(found, override.get("principal_point_px", {}))
+
+
+def points(paths, base, weights):
+    """Return points at rest and the court's clicks; these are fitted where the base is a file."""
+    names, static, court = [camera.name for camera in base], None, None
+    if paths.static:
+        _, by_camera = clicks.read_static(paths.static, names)
+        static = np.stack(list(by_camera))
+    if paths.clicks and paths.court:
+        lines = court_files.read(paths.court)
+        marked = clicks.read(paths.clicks, names, list(lines.points))
+        court = adjustment.court_clicks(lines, marked, base, **weights)
+    return Points(static, court, fitted=bool(paths.calibration))
+
+
+if __name__ == "__main__":
+    run(main, snakemake)
