@@ -67,6 +67,7 @@ CAMERA_COVARIANCE = CALIBRATION + "/covariance.npz"
 CALIBRATION_QUALITY = CALIBRATION + "/quality.json"
 CALIBRATION_CHECK = SESSION + "/calibration/file/check.{suffix}"  # json or csv
 COURT_PROPOSALS = CALIBRATION + "/proposals.csv"
+FOUND_COURT = SESSION + "/calibration/court_lines/{part}"  # found.json or proposals.csv
 LENS = SESSION + "/calibration/lens/{camera}.toml"
 CLICKS = "data/{session}/court_points.csv"  # where clicks are saved if the session does not say it
 CLICKING_PAGE = SESSION + "/pages/clicking.html"
