@@ -335,6 +335,26 @@ def test_proposals_wait_for_a_key(open_page, make, court, views):
         np.testing.assert_allclose(xy, true[point], atol=1e-3)
 
 
+@pytest.mark.parametrize("first", ["p01", "p16"])
+def test_one_mark_says_which_end_of_the_court_is_meant(open_page, make, court, views, first):
+    true = truth(court, views, "back")
+    turned = {"p01": "p16", "p02": "p03", "p04": "p07", "p05": "p06"}
+    turned |= {other: name for name, other in turned.items()}
+    hollow = {p: {"x": true[p][0], "y": true[p][1], "sigma_px": 0.3} for p in turned if p in true}
+    hollow = {p: {**place, "either": True} for p, place in hollow.items()}
+    page = open_page(make(proposals={"back": hollow}, clicks={"back": {first: true["p01"]}}))
+    assert "not which end" in page.inner_text("#said")
+    choose(page, "p04" if first == "p01" else "p07")
+    page.keyboard.press("Enter")
+    page.keyboard.press("Enter")
+    found = marked(page)["back", "p04" if first == "p01" else "p07"]
+    np.testing.assert_allclose(found, true["p04"], atol=1e-3)
+    page = open_page(make(name="unmarked", proposals={"back": hollow}))
+    choose(page, "p04")
+    page.keyboard.press("Enter")
+    assert "no proposal for p04" in page.inner_text("#said") and marked(page) == {}
+
+
 def test_work_is_kept_by_the_browser_and_can_be_forgotten(open_page, make):
     page = open_page(make())
     page.keyboard.press("Space")

@@ -5,7 +5,7 @@ or these alone.
 Outputs: results/{session}/calibration/{calibration}/, results/{session}/pages/clicking.html.
 Steps: import_cameras (`file`), check_cameras (by static points and people), calibrate_cameras (`sfm-n40`, the default), align_cameras
 (`paper-n40`, `paper-global-n40`, `sim3-n40`), calibrate_lens and resect_cameras (`known18`,
-`known8-board`, `dlt18`), resect_together (`known`: all points, all cameras), calibrate_boards (`board`), refine_cameras (`file-people` and the like); propose_court_points (where the points probably are), build_clicking_page;
+`known8-board`, `dlt18`), resect_together (`known`: all points, all cameras), calibrate_boards (`board`), refine_cameras (`file-people` and the like); propose_court_points (where the points probably are), find_court (the same without a click), build_clicking_page;
 export_cameras (for EasyMocap and COLMAP, by request).
 """
 
@@ -227,6 +227,23 @@ rule propose_court_points:
         step=step("propose_court_points"),
     script:
         "../scripts/propose_court_points.py"
+
+
+rule find_court:
+    input:
+        pictures=of_job(calibration.each_fixed, paths.STATIC),
+        court_yaml=of_job(Job.court_file),
+    output:
+        proposals_csv=paths.part(paths.FOUND_COURT, part="proposals.csv"),
+        found_json=paths.part(paths.FOUND_COURT, part="found.json"),
+    log:
+        "results/{session}/logs/find_court/all.log",
+    params:
+        code=code("find_court.py"),
+        names=lambda w: list(session_of(w).cameras),
+        step=step("propose_court_points"),
+    script:
+        "../scripts/find_court.py"
 
 
 rule build_clicking_page:

@@ -32,6 +32,14 @@ def test_what_is_written_is_read(tmp_path):
     assert len(path.read_text().splitlines()) == 7
 
 
+def test_a_proposal_may_be_of_either_end(tmp_path):
+    given = some()
+    given["left"].reason = (click_proposals.EITHER, "not seen", click_proposals.EITHER)
+    click_proposals.write(tmp_path / "either.csv", {"left": given["left"]}, POINTS)
+    read = click_proposals.read(tmp_path / "either.csv", ["left"], POINTS)
+    assert [place["either"] for place in read["left"].values()] == [True, True]
+
+
 def test_proposals_are_not_clicks(tmp_path):
     path = tmp_path / "proposals.csv"
     click_proposals.write(path, some(), POINTS)

@@ -107,6 +107,13 @@ def test_court_points_are_proposed_by_cameras_that_were_adjusted(job):
     assert calibration.proposals(job(session="players-tiny")) == []
 
 
+def test_before_the_first_click_painted_lines_propose_points(job, study):
+    waiting = replace(study.sessions["plain-tiny"], court_points=None, unclicked="mine.csv")
+    one = job(replace(study, sessions={"plain-tiny": waiting}), **PLAIN)
+    found = calibration.proposals(one)
+    assert found == "results/plain-tiny/calibration/court_lines/proposals.csv"
+
+
 def test_clicks_are_saved_where_the_session_says_or_in_its_folder_of_data(job, study):
     found = calibration.clicking(job(**PLAIN))
     assert found == {

@@ -1,6 +1,7 @@
 """Calibration of fixed cameras: files of other programs, chessboards, and the rooms below.
 
-The rooms: boards, court, bundle, planning, click_proposals, file_check, foreign, people, records.
+The rooms: boards, court, court_lines, bundle, planning, click_proposals, file_check, foreign,
+people, records.
 
 file_formats: read, rename, with_principal_points: calibrations by other programs
 chessboard: find, calibrate: a lens from pictures of a chessboard

@@ -69,6 +69,7 @@ CAMERA_EXPORT = CALIBRATION + "/other_programs"
 REFINEMENT = CALIBRATION + "/refinement.csv"
 CALIBRATION_CHECK = SESSION + "/calibration/file/check.{suffix}"  # json or csv
 COURT_PROPOSALS = CALIBRATION + "/proposals.csv"
+FOUND_COURT = SESSION + "/calibration/court_lines/{part}"  # found.json or proposals.csv
 LENS = SESSION + "/calibration/lens/{camera}.toml"
 CLICKS = "data/{session}/court_points.csv"  # where clicks are saved if the session does not say it
 CLICKING_PAGE = SESSION + "/pages/clicking.html"

@@ -61,13 +61,13 @@ def propose(
 
     The camera is known from two or three clicks: the court it expects may be `search_px` off in its
     static picture (H, W, 3) uint8. A point whose expected error is above `max_sigma_px` is not
-    proposed. Against the floor the lines are "light" or "dark". Raises `ValueError` if the picture
-    has not the camera's size.
+    proposed. Against the floor the lines are "light", "dark" or "any". Raises `ValueError` if the
+    picture has not the camera's size.
     """
     if image.shape[1::-1] != tuple(camera.size):
         raise ValueError(f"expected a picture of {camera.size} px, found {image.shape[1::-1]}")
     blur_px = BLUR[0] * max(1.0, camera.size[0] / BLUR[1])
-    polarity = {"light": 1, "dark": -1}[lines]
+    polarity = {"light": 1, "dark": -1, "any": 0}[lines]
     view = View(image.mean(axis=2).astype(np.float32), camera, court, blur_px, polarity)
     view, reason = register(view, search_px)
     n = len(court.points)

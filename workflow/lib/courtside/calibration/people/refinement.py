@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
-from scipy.spatial.transform import Rotation
 
 from courtside.calibration.file_check import residuals, verdict
 from courtside.calibration.people import adjustment, held_out, prior, views
@@ -14,6 +13,7 @@ from courtside.calibration.people.held_out import Points, Score
 from courtside.calibration.people.views import Seen
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance
+from courtside.geometry import rotations
 from courtside.geometry.camera import Camera, in_other_picture
 
 NAMED = 3.0  # stated standard deviations by which a number must change to be called wrong
@@ -173,9 +173,7 @@ def _numbers(ways: dict[str, list[Camera]], spread: CameraCovariance) -> pd.Data
         sigma = [_sigma(spread, at, name) for name in PARAMETERS]
         turned = {
             way: np.degrees(
-                Rotation.from_matrix(
-                    one.cam_from_world[:, :3] @ base.cam_from_world[:, :3].T
-                ).magnitude()
+                rotations.angles(one.cam_from_world[:, :3] @ base.cam_from_world[:, :3].T)
             )
             for way, one in here.items()
         }

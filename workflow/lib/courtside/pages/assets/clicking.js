@@ -20,7 +20,24 @@
   const items = (one) => (isTake(one) ? ends : court.points);
   const markOf = (one, name) => marks[one.id][name] || null;
   const placed = (mark) => mark && !mark.hidden;
-  const proposalOf = (one, name) => (one.proposals || {})[name] || null;
+  // Where half a turn of a symmetric court brings a point.
+  const turned = Object.fromEntries(court.points.map(({ name, xyz: [x, y, z] }) => {
+    const there = [court.size_m[0] - x, court.size_m[1] - y, z];
+    const other = court.points.find((point) => Math.hypot(...point.xyz.map((value, axis) => value - there[axis])) < 0.001);
+    return [name, other ? other.name : null];
+  }));
+  const eitherEnd = (one) => Object.values(one.proposals || {}).some((proposal) => proposal.either);
+  // Which end the marks say, where the lines leave that open: 1 as proposed, -1 half a turn on, 0 not yet.
+  function endOf(one) {
+    const off = (mark, proposal) => (proposal ? Math.hypot(mark.x - proposal.x, mark.y - proposal.y) : 1e4);
+    const nearer = Object.entries(marks[one.id]).filter(([, mark]) => placed(mark)).map(([name, mark]) =>
+      off(mark, one.proposals[turned[name]]) - off(mark, one.proposals[name]));
+    return Math.sign(nearer.reduce((sum, value) => sum + value, 0));
+  }
+  function proposalOf(one, name) {
+    const end = eitherEnd(one) ? endOf(one) : 1;
+    return (end && (one.proposals || {})[end > 0 ? name : turned[name]]) || null;
+  }
   const rounded = (value) => Math.round(value * 1000) / 1000;
 
   // ---- pictures ----
@@ -412,7 +429,8 @@
       for (const one of frames) if (kept.marks[one.id]) marks[one.id] = kept.marks[one.id];
       const time = new Date(kept.time);
       say(`Your work of ${Number.isNaN(time.getTime()) ? "last time" : time.toLocaleString()} is here again.`);
-    } else if (frames.some((one) => Object.keys(one.proposals).length)) say("Hollow marks are proposals: look at each close up, then press Enter, or click the right place.");
+    } else if (frames.some(eitherEnd)) say("The court was found, but not which end is which: mark one point in each picture, then the others are proposed.");
+    else if (frames.some((one) => Object.keys(one.proposals).length)) say("Hollow marks are proposals: look at each close up, then press Enter, or click the right place.");
     else say("Choose a point, zoom in, click where its edges meet.");
     if (frames.length < 2) byId("tabs").hidden = true;
     const first = items(frames[0]).find((item) => !markOf(frames[0], item.name)) || items(frames[0])[0];

@@ -15,6 +15,7 @@ COLUMNS = (
 )  # fmt: skip
 NUMBERS = ("x_px", "y_px", "sigma_px")
 WHAT = "a table of proposed court points"
+EITHER = "either end of the court fits: one click in this picture says which"
 
 
 def write(path: StrPath, proposals: Mapping[str, Any], points: Sequence[str]) -> None:
@@ -33,11 +34,12 @@ def write(path: StrPath, proposals: Mapping[str, Any], points: Sequence[str]) ->
 
 def read(
     path: StrPath, cameras: Sequence[str], points: Sequence[str]
-) -> dict[str, dict[str, dict[str, float]]]:
+) -> dict[str, dict[str, dict[str, float | bool]]]:
     """Read proposals as the page for clicking shows them: `x`, `y`, `sigma_px` by camera and point.
 
-    Points without a proposal are left out. An `InputError` if the file is no such table, or names
-    unknown cameras or points.
+    Points without a proposal are left out. `either` is true where the point may as well be the one
+    that half a turn of the court brings to its place. An `InputError` if the file is no such table,
+    or names unknown cameras or points.
     """
 
     def fault(table: pd.DataFrame) -> str:
@@ -51,7 +53,8 @@ def read(
     table = tables.read(path, WHAT, fault, dtype={"camera": str, "point": str})
     table = table.astype(dict.fromkeys(NUMBERS, float))
     given = table[np.isfinite(table["x_px"]) & np.isfinite(table["y_px"])]
-    found: dict[str, dict[str, dict[str, float]]] = {camera: {} for camera in cameras}
+    found: dict[str, dict[str, dict[str, float | bool]]] = {camera: {} for camera in cameras}
     for row in given.itertuples():
-        found[row.camera][row.point] = {"x": row.x_px, "y": row.y_px, "sigma_px": row.sigma_px}
+        place = {"x": row.x_px, "y": row.y_px, "sigma_px": row.sigma_px}
+        found[row.camera][row.point] = place | ({"either": True} if row.reason == EITHER else {})
     return found

@@ -174,7 +174,12 @@ def board_pictures(job: Job) -> list[str]:
 
 
 def proposals(job: Job) -> str | list:
-    """Return proposed court points, of a session whose cameras were found from some clicks."""
+    """Return proposed court points.
+
+    Of a session whose cameras were found from some clicks, or, by painted lines, without any.
+    """
+    if job.session.unclicked and job.court_file():
+        return job.fill(paths.FOUND_COURT, part="proposals.csv")
     ways = [way for way in job.session.calibrations() if Calibration.parse(way).kind == "sfm"]
     if not (job.session.court_points and ways):
         return []

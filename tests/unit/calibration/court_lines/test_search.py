@@ -1,0 +1,41 @@
+"""Cameras found in drawn pictures of a court, with nothing known of them."""
+
+import numpy as np
+import pytest
+
+from courtside.calibration.court_lines import floor_frames, search, views
+from courtside.geometry import camera as cameras
+from fixtures.cameras import court_pictures
+
+
+@pytest.fixture
+def few(monkeypatch):
+    """Search less widely, to be quick."""
+    monkeypatch.setattr(floor_frames, "FOCAL_WIDTHS", np.array([0.75, 0.95, 1.2]))
+    monkeypatch.setattr(search, "REFINED", 8)
+    monkeypatch.setattr(search, "SHORTLIST", 500)
+
+
+@pytest.mark.parametrize("view", [0, 1])
+def test_the_camera_is_found_without_a_click(few, view):
+    court, camera = court_pictures.badminton(), court_pictures.pair()[view]
+    found = search.find(court_pictures.draw(camera, court, noise=3, seed=view), court)
+    best = found.candidates[0]
+    floor = court.xyz[court.xyz[:, 2] == 0]
+    exact = cameras.project(camera, floor)
+    ways = best.view, views.half_turned(best.view, court)
+    off = [np.linalg.norm(way.project(floor[:, :2])[0] - exact, axis=1) for way in ways]
+    assert min(np.median(way) for way in off) < 1.0
+    assert best.score > 4 * search.SURE and np.nanmin(best.lines) > 0.3
+    assert all(one.score < 0.8 * best.score for one in found.candidates[1:])
+    assert abs(best.view.centre[0, 2] - camera.centre_in_world[2]) < 0.15
+
+
+def test_a_picture_without_lines_has_no_candidates(few):
+    image = np.full((540, 960, 3), 120, np.uint8)
+    assert search.find(image, court_pictures.badminton()).candidates == []
+
+
+def test_large_pictures_are_made_smaller(few):
+    found = search.find(np.full((300, 2400, 3), 120, np.uint8), court_pictures.badminton())
+    assert found.image.shape[1] == search.WIDEST_PX and found.scale == 1.5

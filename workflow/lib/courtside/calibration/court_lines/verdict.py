@@ -1,0 +1,196 @@
+"""Whether a court was found in a picture: found, ambiguous or not found, and why."""
+
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import erf
+
+from courtside.calibration.click_proposals import proposals
+from courtside.calibration.click_proposals.proposals import Proposals
+from courtside.calibration.court import line_edges
+from courtside.calibration.court.court import Court
+from courtside.calibration.court_lines import refinement, search, views
+from courtside.calibration.court_lines.refinement import Uncertainty
+from courtside.calibration.court_lines.search import Candidate, Found
+from courtside.geometry.camera import Camera
+from courtside.records.cameras.click_proposals import EITHER
+
+FOUND, AMBIGUOUS, NOT_FOUND = "found", "ambiguous", "not found"
+# ASSUME: all of these are tuned by hand on development sessions.
+LEAST_SCORE = 100.0  # log likelihood ratio; lines of other things reached 70 to 110
+LEAST_LINE, LEAST_LINES = 0.3, 0.7  # share of a line, and share of the lines in view seen so
+FEWEST_LINES = 3  # along each axis
+MOST_RIVAL, LEAST_MARGIN = 0.92, 30.0  # of the next best: share of the score, and difference
+POSE = np.eye(4)[:3]  # of a camera that was not found
+LIKE_SCORE, WHITER, LEAST_WHITE = 0.4, 1.3, 0.3  # score and whiteness of like courts
+
+BLUR_PX = 0.8  # of pictures, standard deviation
+SAME_TURN, SAME_ZOOM = 0.08, 0.12  # rotations and logarithms of focal lengths of one camera
+
+
+@dataclass(frozen=True, eq=False)
+class Verdict:
+    """What a picture says about its camera."""
+
+    outcome: str  # `FOUND`, `AMBIGUOUS` or `NOT_FOUND`
+    reason: str  # in one sentence; empty where found
+    camera: Camera | None  # the best one, None where nothing is found
+    score: float  # log likelihood ratio of the best against chance
+    rival: float  # the next best one's score; 0 without
+    uncertainty: Uncertainty | None
+    symmetric: bool  # half a turn of the court gives the same lines: which end is not said
+
+
+def judge(found: Found, court: Court, name: str, size: tuple[int, int], lines: str) -> Verdict:
+    """Say whether the best candidate is the camera of a picture of a size (width, height) px.
+
+    A court is found where most lines in view are seen, in both directions, and no other place of
+    the camera explains nearly as much. Lines asked for as "light" are white: of like courts side by
+    side the whiter one is meant, and if both are alike, it is ambiguous which.
+    """
+    symmetric = views.is_symmetric(court)
+    if not found.candidates:
+        reason = "no lines that fit the court"
+        return Verdict(NOT_FOUND, reason, None, 0.0, 0.0, None, symmetric)
+    paint = np.ones(len(found.candidates))
+    if lines == "light":
+        paint = np.array([max(whiteness(found, one, court), 1e-3) for one in found.candidates])
+    value = np.array([one.score for one in found.candidates]) * paint
+    first = int(np.argmax(value))
+    best = found.candidates[first]
+    rival = np.delete(value, first).max(initial=0.0) / paint[first]
+    outcome, reason = FOUND, ""
+    if fault := _fault(best, court):
+        outcome, reason = NOT_FOUND, fault
+    elif lines == "light" and paint[first] < LEAST_WHITE:
+        outcome, reason = AMBIGUOUS, "the lines that fit the court are not white"
+    elif _has_like(found.candidates, best, paint, court):
+        outcome, reason = AMBIGUOUS, "a like court beside it fits as well: which one is meant"
+    elif rival > MOST_RIVAL * best.score or best.score - rival < LEAST_MARGIN:
+        outcome, reason = AMBIGUOUS, "another place of the camera explains the lines nearly as well"
+    camera = views.to_camera(best.view, name, size, found.scale)
+    along = views.samples(court, search.FINE_M)
+    sure = refinement.uncertainty(found.seen, best.view, along, np.array([*court.size_m / 2, 0]))
+    return Verdict(outcome, reason, camera, best.score, rival, sure, symmetric)
+
+
+def _fault(best: Candidate, court: Court) -> str:
+    """Return why a candidate is not believed, empty if it is."""
+    if best.score < LEAST_SCORE:
+        return f"the best camera explains too little (score {best.score:.0f} of {LEAST_SCORE:.0f})"
+    low, high = court.line_corners()
+    axis = np.argmin(high - low, axis=1)
+    shown = np.isfinite(best.lines)
+    good = shown & (np.nan_to_num(best.lines) >= LEAST_LINE)
+    if good.sum() < LEAST_LINES * shown.sum():
+        return f"only {good.sum()} of {shown.sum()} lines in view are seen"
+    for number, along in enumerate("yx"):
+        # A court of fewer lines than that along an axis cannot show them.
+        if good[axis == number].sum() < min(FEWEST_LINES, (axis == number).sum()):
+            return f"too few lines along {along} are seen"
+    return ""
+
+
+def _has_like(candidates: list[Candidate], best: Candidate, paint: NDArray, court: Court) -> bool:
+    """Say whether a court beside the best one fits too, and its lines are nearly as white."""
+    own = paint[candidates.index(best)]
+    return any(
+        one.score > LIKE_SCORE * best.score
+        and white * WHITER > own
+        and _is_beside(one, best, court)
+        and not _fault(one, court)
+        for one, white in zip(candidates, paint, strict=True)
+    )
+
+
+def _is_beside(one: Candidate, other: Candidate, court: Court) -> bool:
+    """Say whether two candidates see courts that lie side by side, with nearly the same camera."""
+    a, b = one.view, other.view
+    zoom = np.abs(np.log([a.f_px[0] / b.f_px[0], a.centre[0, 2] / b.centre[0, 2]])).max()
+    for way in (b, views.half_turned(b, court)):
+        turned = np.linalg.norm(a.rotation[0] - way.rotation[0])
+        away = np.abs(a.centre[0, :2] - way.centre[0, :2])
+        if turned < SAME_TURN and zoom < SAME_ZOOM and (away > 0.95 * court.size_m).any():
+            return True
+    return False
+
+
+def whiteness(found: Found, one: Candidate, court: Court) -> float:
+    """Return how much of the way from the floor's colour to white lines go, median over them.
+
+    The least of the three colours: yellow paint leaves blue as it is.
+    """
+    along, image = views.samples(court, search.FINE_M / 2), found.image.astype(np.float32)
+    place = one.view.project(along.place)[0]
+    tangent = (one.view.project(along.place + along.half) - one.view.project(along.place))[0]
+    normal = np.column_stack([-tangent[:, 1], tangent[:, 0]])
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True) + 1e-9
+    across = np.array([line_edges.middle_line(court, line)[1][:2] for line in along.line])
+    ends = [one.view.project(along.place + by * across)[0] for by in (-1, 1)]
+    width = np.abs(np.sum((ends[1] - ends[0]) * normal, axis=1))
+    size = np.array(image.shape[1::-1])
+    inside = ((place > 8) & (place < size - 9)).all(axis=1)
+    if not inside.any():
+        return 0.0
+
+    def colour(xy: NDArray) -> NDArray:
+        x, y = xy[inside].astype(np.float32).T
+        return cv2.remap(image, x[:, None], y[:, None], cv2.INTER_LINEAR)[:, 0]
+
+    away = max(3.0, 4.0 * size[0] / 1280)
+    floor = (colour(place + away * normal) + colour(place - away * normal)) / 2
+    # A thin line covers a part of a pixel's blurred surroundings.
+    cover = np.maximum(erf(width[inside] / (2 * np.sqrt(2) * BLUR_PX)), 0.05)[:, None]
+    contrast = np.median((colour(place) - floor) / cover, axis=0)
+    return float((contrast / np.maximum(np.median(255 - floor, axis=0), 20)).min())
+
+
+def proposed(
+    verdict: Verdict,
+    image: NDArray,
+    court: Court,
+    *,
+    search_px: float,
+    max_sigma_px: float = 1.0,
+    lines: str = "light",
+) -> Proposals:
+    """Propose the court's points where the camera was found, else nothing, and say why.
+
+    As `click_proposals.proposals.propose`. Of a symmetric court each reason is `EITHER`: a point
+    may as well be that which half a turn brings there.
+    """
+    n = len(court.points)
+    if verdict.outcome != FOUND or verdict.camera is None:
+        nothing, reason = np.full(n, np.nan), f"court {verdict.outcome}: {verdict.reason}"
+        camera = verdict.camera or Camera("", image.shape[1::-1], np.eye(3), np.zeros(5), POSE)
+        return Proposals(np.full((n, 2), np.nan), nothing, np.zeros(n), (reason,) * n, camera)
+    found = proposals.propose(
+        verdict.camera, image, court, search_px=search_px, max_sigma_px=max_sigma_px, lines=lines
+    )
+    if not verdict.symmetric:
+        return found
+    return replace(found, reason=tuple(reason or EITHER for reason in found.reason))
+
+
+def report(verdict: Verdict, found: Proposals) -> dict:
+    """Return a verdict as a table of JSON: the camera with how surely floor lines give it."""
+    said: dict = {
+        "outcome": verdict.outcome,
+        "reason": verdict.reason,
+        "score": verdict.score,
+        "next_best_score": verdict.rival,
+        "either_end": verdict.symmetric,
+        "n_proposed": int(np.isfinite(found.xy[:, 0]).sum()),
+    }
+    if verdict.outcome == FOUND and verdict.uncertainty is not None:
+        sure = verdict.uncertainty
+        said |= {
+            "f_px": float(found.camera.K[0, 0]),
+            "f_sigma_px": sure.f_share * float(found.camera.K[0, 0]),
+            "centre_m": found.camera.centre_in_world.tolist(),
+            "height_sigma_m": sure.height_m,
+            "distance_sigma_m": sure.distance_m,
+        }
+    return said

@@ -1,0 +1,113 @@
+"""Many cameras at once, and points along the lines of a court."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.calibration.court import line_edges
+from courtside.calibration.court.court import Court
+from courtside.geometry.camera import Camera
+
+NEAREST_M = 0.3  # ASSUME: nothing nearer is seen
+LEAST_SLOPE = 0.2  # of the lens model: beyond, it soon folds back
+
+
+@dataclass(frozen=True, eq=False)
+class Views:
+    """Cameras (B) with square pixels, one principal point and k1 alone."""
+
+    rotation: NDArray  # (B, 3, 3): from the world
+    centre: NDArray  # (B, 3): in the world, m
+    f_px: NDArray  # (B,)
+    k1: NDArray  # (B,)
+    principal: NDArray  # (2,): px
+
+    def __getitem__(self, which: NDArray | slice | list[int]) -> "Views":
+        """Return some of the cameras."""
+        return Views(
+            self.rotation[which], self.centre[which], self.f_px[which], self.k1[which],
+            self.principal,
+        )  # fmt: skip
+
+    def __len__(self) -> int:
+        """Return how many cameras there are."""
+        return len(self.f_px)
+
+    def project(self, floor: NDArray) -> NDArray:
+        """Return px (B, N, 2) of points of the floor (N, 2) m; NaN where they are not seen."""
+        away = floor - self.centre[:, None, :2]
+        in_cam = np.einsum("bij,bnj->bni", self.rotation[:, :, :2], away)
+        in_cam -= (self.rotation[:, :, 2] * self.centre[:, 2:])[:, None]
+        depth = np.where(in_cam[..., 2:] > NEAREST_M, in_cam[..., 2:], np.nan)
+        place = in_cam[..., :2] / depth
+        bent = self.k1[:, None, None] * np.sum(place**2, axis=-1, keepdims=True)
+        place = np.where(1 + 3 * bent > LEAST_SLOPE, place * (1 + bent), np.nan)
+        return place * self.f_px[:, None, None] + self.principal
+
+
+def join(views: list[Views]) -> Views:
+    """Return all cameras of several `Views` of one picture."""
+    rows = ("rotation", "centre", "f_px", "k1")
+    rotation, centre, f_px, k1 = (
+        np.concatenate([getattr(one, row) for one in views]) for row in rows
+    )
+    return Views(rotation, centre, f_px, k1, views[0].principal)
+
+
+def of_camera(camera: Camera) -> Views:
+    """Return a camera as `Views` of one: its first focal length and k1."""
+    return Views(
+        camera.cam_from_world[None, :, :3],
+        camera.centre_in_world[None],
+        camera.K[:1, 0],
+        camera.dist[:1],
+        camera.K[:2, 2],
+    )
+
+
+def to_camera(view: Views, name: str, size: tuple[int, int], scale: float = 1.0) -> Camera:
+    """Return the only camera of `Views` for a picture of a size, `scale` times larger."""
+    matrix = np.diag([view.f_px[0] * scale, view.f_px[0] * scale, 1.0])
+    matrix[:2, 2] = (view.principal + 0.5) * scale - 0.5
+    rotation = view.rotation[0]
+    pose = np.column_stack([rotation, -rotation @ view.centre[0]])
+    return Camera(name, size, matrix, np.array([view.k1[0], 0, 0, 0, 0]), pose)
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """Points along the middle of a court's painted lines."""
+
+    place: NDArray  # (N, 2): m
+    half: NDArray  # (N, 2): half the way to the next point, m
+    line: NDArray  # (N,) int: row of the court's `lines_m`
+
+
+def samples(court: Court, step_m: float) -> Samples:
+    """Return points about `step_m` apart along all lines of a court."""
+    line, ends = line_edges.stretches(court, step_m)
+    return Samples(ends.mean(axis=1)[:, :2], (ends[:, 1] - ends[:, 0])[:, :2] / 2, line)
+
+
+def is_symmetric(court: Court, tolerance_m: float = 0.001) -> bool:
+    """Say whether half a turn about its middle leaves a court's lines as they are."""
+    low, high = court.line_corners()
+    rows = np.column_stack([low, high])
+    turned = np.column_stack([court.size_m - high, court.size_m - low])
+    apart = np.abs(rows[:, None] - turned).max(axis=2)
+    return bool((apart.min(axis=1) < tolerance_m).all())
+
+
+def half_turned(view: Views, court: Court) -> Views:
+    """Return cameras that see a court turned by half a turn about its middle as these see it."""
+    turn = np.diag([-1.0, -1.0, 1.0])
+    centre = view.centre @ turn + np.array([*court.size_m, 0])
+    return Views(view.rotation @ turn, centre, view.f_px, view.k1, view.principal)
+
+
+def outline(view: Views, court: Court) -> NDArray:
+    """Return px (B, 9, 2) of the court's corners, middles of sides and middle."""
+    x, y = court.size_m
+    grid = np.array([[i * x / 2, j * y / 2] for j in range(3) for i in range(3)])
+    return view.project(grid)
