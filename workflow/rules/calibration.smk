@@ -3,10 +3,12 @@
 Inputs: a calibration made elsewhere, or ties from structure from motion and clicked court points,
 or these alone.
 Outputs: results/{session}/calibration/{calibration}/, results/{session}/pages/clicking.html.
-Steps: import_cameras (`file`), check_cameras (by static points and people), calibrate_cameras (`sfm-n40`, the default), align_cameras
-(`paper-n40`, `paper-global-n40`, `sim3-n40`), calibrate_lens and resect_cameras (`known18`,
-`known8-board`, `dlt18`), resect_together (`known`: all points, all cameras), calibrate_boards (`board`), refine_cameras (`file-people` and the like); propose_court_points (where the points probably are), find_court (the same without a click), build_clicking_page;
-export_cameras (for EasyMocap and COLMAP, by request).
+Steps: import_cameras (`file`), check_cameras (by static points and people), calibrate_cameras
+(`sfm-n40`, the default), align_cameras (`paper-n40`, `paper-global-n40`, `sim3-n40`),
+calibrate_lens and resect_cameras (`known18`, `known8-board`, `dlt18`), resect_together (`known`:
+all points, all cameras), calibrate_boards (`board`), refine_cameras (`file-people` and the like);
+propose_court_points (where the points probably are), find_court (the same without a click),
+build_clicking_page; export_cameras (for EasyMocap and COLMAP, by request).
 """
 
 

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
+
+from courtside.geometry import rotations
 
 # ASSUME: all of these are tuned by hand on development sessions.
 FOCAL_WIDTHS = 0.5 * 1.13 ** np.arange(14)  # of the picture: fields of view of 90 to 16 degrees
@@ -100,14 +101,14 @@ def _polish(axes: NDArray, f_px: float, pieces: _Pieces) -> NDArray:
         off = _off(axes, f_px, pieces)
         scale = np.sqrt(pieces.weight) / pieces.tolerance * np.array([[1.0], [1.0], [0.7]])
         scale = np.where(np.abs(off) < wide * pieces.tolerance, scale, 0)
-        turns = Rotation.from_rotvec(small * np.eye(3)).as_matrix()
+        turns = rotations.rotation_from_rodrigues(small * np.eye(3))
         slopes = [(_off(axes @ turn.T, f_px, pieces) - off) / small * scale for turn in turns]
         columns = np.stack([slope.ravel() for slope in slopes], axis=1)
         normal = columns.T @ columns
         step = np.linalg.solve(
             normal + 1e-6 * (np.trace(normal) + 1) * np.eye(3), -columns.T @ (off * scale).ravel()
         )
-        axes = axes @ Rotation.from_rotvec(step).as_matrix().T
+        axes = axes @ rotations.rotation_from_rodrigues(step).T
     return axes
 
 

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 
 from courtside.calibration.court_lines.evidence import SAMPLE_PX, Fields
 from courtside.calibration.court_lines.views import Samples, Views
@@ -38,7 +38,7 @@ def refine(seen: Fields, view: Views, along: Samples) -> Views | None:
             if found is None:
                 return None
             residuals = _residuals(view, along, found, max(0.25 * reach * scale, 0.5), k1)
-            change = least_squares(
+            change = scipy.optimize.least_squares(
                 residuals, np.zeros(8), loss="soft_l1", x_scale=STEPS, max_nfev=8
             )
             view = moved(view, change.x)

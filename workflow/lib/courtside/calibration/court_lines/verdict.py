@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.special import erf
 
 from courtside.calibration.click_proposals import proposals
 from courtside.calibration.click_proposals.proposals import Proposals
@@ -142,7 +142,7 @@ def whiteness(found: Found, one: Candidate, court: Court) -> float:
     away = max(3.0, 4.0 * size[0] / 1280)
     floor = (colour(place + away * normal) + colour(place - away * normal)) / 2
     # A thin line covers a part of a pixel's blurred surroundings.
-    cover = np.maximum(erf(width[inside] / (2 * np.sqrt(2) * BLUR_PX)), 0.05)[:, None]
+    cover = np.maximum(scipy.special.erf(width[inside] / (2 * np.sqrt(2) * BLUR_PX)), 0.05)[:, None]
     contrast = np.median((colour(place) - floor) / cover, axis=0)
     return float((contrast / np.maximum(np.median(255 - floor, axis=0), 20)).min())
 
