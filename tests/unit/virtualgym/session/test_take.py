@@ -2,7 +2,6 @@
 
 import csv
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -75,9 +74,7 @@ def assert_shown(image, xy):
     np.testing.assert_allclose([columns[black].mean(), rows[black].mean()], xy, atol=0.6)
 
 
-def test_a_take_has_its_files_which_do_not_depend_on_the_number_of_processes(tmp_path, monkeypatch):
-    coarse = partial(session.hall.build, floor_texel_m=0.1)
-    monkeypatch.setattr(session.hall, "build", coarse)
+def test_a_take_has_its_files_which_do_not_depend_on_the_number_of_processes(tmp_path):
     anny = mannequin.folder()
     one, two = tmp_path / "one" / "shot", tmp_path / "two" / "shot"
     take = replace(TAKE, devices={"suit": SUIT})

@@ -1,7 +1,6 @@
 """Devices of a take: settings, files, clocks; recordings show the truth, which covers all."""
 
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -34,9 +33,7 @@ TAKE = take.TakeSettings(
 def recorded(tmp_path_factory):
     """A take with a depth camera and a suit, filmed by two processes, in a coarse hall."""
     folder = tmp_path_factory.mktemp("take") / "claps"
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(session.hall, "build", partial(session.hall.build, floor_texel_m=0.1))
-        worn = take.simulate_take(SESSION, TAKE, COURT, mannequin.folder(), folder, threads=2)
+    worn = take.simulate_take(SESSION, TAKE, COURT, mannequin.folder(), folder, threads=2)
     return folder, worn, take_truth.read(folder / "truth.npz")
 
 
