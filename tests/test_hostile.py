@@ -72,12 +72,16 @@ def unquoted(rules):
     return [block.strip() for block in fields if re.search(r"\{[^{}]*(?<!:q)\}", block)]
 
 
+# What a pickle may do there, and the classes that it may name, stand in two short lists.
+GUARDED = {"workflow/lib/courtside/calibration/foreign/opencap.py": ["pickle"]}
+
+
 def test_no_module_runs_what_it_reads():
     found = {
         path.relative_to(ROOT).as_posix(): forbidden(path.read_text()) for path in files(".py")
     }
     assert len(found) > 200
-    assert {name: what for name, what in found.items() if what} == {}
+    assert {name: what for name, what in found.items() if what} == GUARDED
 
 
 @pytest.mark.parametrize(

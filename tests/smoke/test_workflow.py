@@ -41,6 +41,8 @@ DOWNSTREAM_OF_3D = {
     "judge_take": 3,
     "evaluate_fusions": 4,
     "evaluate_round_trip": 1,
+    "evaluate_networks": 1,
+    "draw_networks": 1,
     "compare_views": 1,
     "export_overlay_video": 4,
     **{f"draw_{name}": 1 for name in TAKE_FIGURES + PAPER_FIGURES},
