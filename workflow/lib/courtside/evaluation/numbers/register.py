@@ -39,7 +39,7 @@ class Number:
     n_failed: int | None  # trials without a value
     origin: str  # one of `ORIGINS`
     command: str  # that measured a number by hand; where a published one stands
-    sha256: str  # of the source, its first digits
+    sha256: str  # first digits: of the source, or of the row of a stated number
 
     @property
     def name(self) -> str:

@@ -1,15 +1,17 @@
 """Numbers that no study makes: measured by hand or by a benchmark, or published by others."""
 
 import csv
+import hashlib
 import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from courtside.evaluation.numbers.register import ORIGINS, STUDY, Number, Source
+from courtside.evaluation.numbers.register import DIGITS, ORIGINS, STUDY, Number, Source
 from courtside.study.errors import InputError, StrPath
 
 FOLDER = "docs/numbers"  # of their tables, one for each command that writes one, and one by hand
 COLUMNS = ("table", "row", "part", "printed", "unit", "sessions", "n", "n_failed", "origin")
+SELECTOR = "its row"
 
 
 def numbers(documents: Source, table: str) -> list[Number]:
@@ -25,7 +27,7 @@ def numbers(documents: Source, table: str) -> list[Number]:
             raise InputError(f"{file}: expected columns {sorted(missing)}, found none; add them")
         for at, row in enumerate(rows.to_dict("records"), start=2):
             if row["table"] == table:
-                found.append(_number(documents, file, at, row))
+                found.append(_number(file, at, row))
     return found
 
 
@@ -37,7 +39,7 @@ def write(path: StrPath, rows: Iterable[Sequence[object]]) -> None:
         table.writerows(rows)
 
 
-def _number(documents: Source, file: str, line: int, row: dict[str, str]) -> Number:
+def _number(file: str, line: int, row: dict[str, str]) -> Number:
     if row["origin"] not in set(ORIGINS) - {STUDY} or not row["command"]:
         raise InputError(
             f"{file}, line {line}: expected an origin of {ORIGINS[1:]}, and the command or place "
@@ -49,11 +51,15 @@ def _number(documents: Source, file: str, line: int, row: dict[str, str]) -> Num
         **{key: row[key] for key in ("origin", "command")},
         value=_value(row["printed"]),
         source=Path(file).as_posix(),
-        selector=f"line {line}",
+        selector=SELECTOR,
         n=counts["n"],
         n_failed=counts["n_failed"],
-        sha256=documents.sha256(file),
+        sha256=_checksum(row),
     )
+
+
+def _checksum(row: dict[str, str]) -> str:
+    return hashlib.sha256("\n".join(map(str, row.values())).encode()).hexdigest()[:DIGITS]
 
 
 def _value(printed: str) -> float:
