@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from courtside.geometry import rotations
 from fixtures.people import mannequin
-from virtualgym.body import pose_bones, racket, stance
+from virtualgym.body import pose_bones, racket, rotations, stance
 from virtualgym.body.stance import SIDES
 
 BODY = "f2"

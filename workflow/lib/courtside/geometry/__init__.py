@@ -3,7 +3,7 @@
 camera: `Camera`, `project`, `undistort`, `crop`, `scaled`, `check_size`, `read_toml`, `write_toml`
 picture_size: `relation`, `scaled_size`, `advice`: a video's size against the calibrated one
 camera_fields: checked numbers of calibration files (`numbers`, `pose`, `five_coefficients`)
-rotations: `rotation_from_rodrigues`, `rodrigues_from_rotation`, `interpolate`, `swing`, `twist`
+rotations: `rotation_from_rodrigues`, `rodrigues_from_rotation`, `interpolate`, `invert`
 similarity: `Sim3`, `umeyama`, `robust_umeyama`, `kabsch`
 interpolation: `linear`, `shares`
 epipolar: `straight_px`, `relative_pose`, `fundamental`, `lines`, `distance_px`

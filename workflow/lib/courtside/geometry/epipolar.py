@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from courtside.geometry.camera import Camera, undistort
-from courtside.geometry.rotations import skew
+from courtside.geometry.rotations import cross_matrices
 
 TINY = 1e-12  # keeps divisions finite; far below any distance in px
 
@@ -38,7 +38,7 @@ def fundamental(camera_a: Camera, camera_b: Camera) -> NDArray:
         np.diag([1 / focal_px(camera), 1 / focal_px(camera), 1.0])
         for camera in (camera_a, camera_b)
     )
-    matrix = to_plane_b @ skew(shift) @ b_from_a @ to_plane_a
+    matrix = to_plane_b @ cross_matrices(shift) @ b_from_a @ to_plane_a
     return matrix / np.linalg.norm(matrix)
 
 

@@ -5,6 +5,7 @@
 - shapes: `Shape`, `BODIES`, `figure`
 - stance: `Stance`, `Proportions`, `joints`, `mirrored`, `moved`
 - pose_bones: `pose`, `Skeleton`, `bent`, `grip`
+- rotations: `swing`, `twist`, `about_axis`, `shares`: of one bone at a time
 - makehuman: `Archive`, `Figure`
 - clothing: `dress`
 - racket: `build`, `place`

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.geometry import rotations
+from virtualgym.body import rotations
 from virtualgym.body.makehuman import Figure
 from virtualgym.body.stance import SIDES, Stance
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.geometry import rotations
+from virtualgym.body import rotations
 from virtualgym.body.mesh import Mesh, join
 
 LENGTH_M = 0.674  # the Laws of Badminton allow 680 mm

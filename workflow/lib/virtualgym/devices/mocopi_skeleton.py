@@ -10,9 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.geometry import rotations
 from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy
-from virtualgym.body import pose_bones
+from virtualgym.body import pose_bones, rotations
 from virtualgym.body.pose_bones import Posed, Skeleton
 from virtualgym.body.stance import SIDES
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from courtside.geometry import camera as camera_models
 from courtside.geometry import epipolar, triangulation
 from courtside.geometry.camera import Camera
-from courtside.geometry.rotations import skew
+from courtside.geometry.rotations import cross_matrices
 
 # ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
 GATE = 4.0  # standard deviations: a view further off does not see this person
@@ -270,7 +270,7 @@ def epipolar_distance(first: Camera, second: Camera, one: NDArray, other: NDArra
     (P, N, J, 2) and `other` (Q, N, J, 2) are on the undistorted, normalised plane; NaN if missing.
     """
     rotation, shift = epipolar.relative_pose(first, second)
-    essential = skew(shift) @ rotation
+    essential = cross_matrices(shift) @ rotation
     # Epipolar lines of one view's joints in the other view.
     in_second = one @ essential[:, :2].T + essential[:, 2]
     in_first = other @ essential[:2] + essential[2]
