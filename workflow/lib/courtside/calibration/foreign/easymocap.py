@@ -30,11 +30,8 @@ def read(folder: Path, texts: tuple[str, str]) -> list[Camera]:
             f"{folder / INTRINSIC}: expected names of cameras, found none; write it with "
             "EasyMocap again"
         )
-    return [_camera(folder, _name(one), lenses, places) for one in names]
-
-
-def _name(value: Any) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    written = [f"{name:g}" if isinstance(name, float) else str(name) for name in names]
+    return [_camera(folder, name, lenses, places) for name in written]
 
 
 def _camera(folder: Path, name: str, lenses: Any, places: Any) -> Camera:

@@ -51,21 +51,17 @@ def opened(path: Path, text: str) -> tuple[cv2.FileStorage, cv2.FileNode]:
 def read(path: Path, text: str) -> list[Camera]:
     """Return the camera of a file, or its cameras by the names of its maps."""
     _kept, root = opened(path, text)
-    _check_single(path, list(root.keys()) if root.isMap() else [])
-    if child(root, KEYS["matrix"]) is not None:
-        return [_camera(path, root, path.stem, root)]
-    maps = [(key, root.getNode(key)) for key in (root.keys() if root.isMap() else ())]
-    maps = [(key, node) for key, node in maps if node.isMap() and child(node, ("data",)) is None]
-    if not maps:
-        found = ", ".join(root.keys()[:6]) if root.isMap() else "nothing"
-        raise known.refused(path, f"no camera_matrix among: {found or 'nothing'}", "check it")
-    return [_camera(path, node, key, root) for key, node in maps]
-
-
-def _check_single(path: Path, keys: Sequence[str]) -> None:
-    """Raise `InputError` for a stereo pair, which is not one camera each."""
+    keys = list(root.keys()) if root.isMap() else []
     if any(pair <= {key.lower() for key in keys} for pair in STEREO):
         raise known.refused(path, f"a stereo pair ({', '.join(keys[:4])} ...)", PAIR)
+    if child(root, KEYS["matrix"]) is not None:
+        return [_camera(path, root, path.stem, root)]
+    maps = [(key, root.getNode(key)) for key in keys]
+    maps = [(key, node) for key, node in maps if node.isMap() and child(node, ("data",)) is None]
+    if not maps:
+        found = ", ".join(keys[:6]) or "nothing"
+        raise known.refused(path, f"no camera_matrix among: {found}", "check it")
+    return [_camera(path, node, key, root) for key, node in maps]
 
 
 def _camera(path: Path, node: Any, name: str, root: Any) -> Camera:

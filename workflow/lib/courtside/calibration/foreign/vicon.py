@@ -41,7 +41,8 @@ def _camera(path: Path, element: ElementTree.Element) -> Camera:
             "export the calibration of a static trial"
         )
     frame = frames[0]
-    aspect = float(camera_fields.numbers(where, "PIXEL_ASPECT_RATIO", _aspect(element), ()))
+    stated = element.get("PIXEL_ASPECT_RATIO", "1")
+    aspect = float(camera_fields.numbers(where, "PIXEL_ASPECT_RATIO", stated, ()))
     focal = float(camera_fields.numbers(where, "FOCAL_LENGTH", frame.get("FOCAL_LENGTH"), ()))
     if min(aspect, focal) <= 0:
         raise InputError(
@@ -84,10 +85,6 @@ def _undistorted(xy: NDArray, matrix: NDArray, centre: NDArray, radial: NDArray)
     power = (offset**2).sum(axis=-1, keepdims=True)
     scale = 1 + power * (radial[0] + power * (radial[1] + power * radial[2]))
     return (offset * scale + (centre - matrix[:2, 2]) * square) / focal
-
-
-def _aspect(element: ElementTree.Element) -> str:
-    return element.get("PIXEL_ASPECT_RATIO", "1")
 
 
 def _radial(where: str, frame: ElementTree.Element, centre: NDArray) -> tuple[NDArray, NDArray]:
