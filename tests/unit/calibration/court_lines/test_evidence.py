@@ -19,7 +19,7 @@ def seen(court):
 
 
 def test_the_right_camera_explains_most(court, seen):
-    view = views.of_camera(court_pictures.pair()[1])
+    view = court_pictures.view_of(court_pictures.pair()[1])
     shift = np.array([[0, 0, 0], [0.3, 0, 0], [0, 1.0, 0], [0, 0, 0.4], [0, 300.0, 0]])
     many = view[np.zeros(5, dtype=int)]
     many = views.Views(many.rotation, many.centre + shift, many.f_px, many.k1, many.principal)
@@ -43,5 +43,5 @@ def test_chance_alone_scores_little(court):
     rng = np.random.default_rng(0)
     on = rng.random((540, 960)) < 0.02
     seen = evidence.fields(ridges.Ridges(on, rng.uniform(0, np.pi, on.shape)))
-    view = views.of_camera(court_pictures.pair()[1])
+    view = court_pictures.view_of(court_pictures.pair()[1])
     assert evidence.score(seen, view, views.samples(court, 0.3), 3.0).score[0] < 10

@@ -23,7 +23,7 @@ def seen(court):
 def test_lines_bring_the_camera_back(court, seen, seed):
     camera, along = court_pictures.pair()[1], views.samples(court, 0.3)
     change = np.random.default_rng(seed).normal(0, 0.3, 8) * refinement.STEPS
-    start = refinement.moved(views.of_camera(camera), change)
+    start = refinement.moved(court_pictures.view_of(camera), change)
     found = refinement.refine(seen, start, along)
     floor = court.xyz[court.xyz[:, 2] == 0]
     exact = cameras.project(camera, floor)
@@ -41,6 +41,6 @@ def test_lines_bring_the_camera_back(court, seen, seed):
 
 def test_without_ridges_there_is_no_camera(court):
     empty = evidence.fields(ridges.Ridges(np.zeros((540, 960), bool), np.zeros((540, 960))))
-    view, along = views.of_camera(court_pictures.pair()[1]), views.samples(court, 0.3)
+    view, along = court_pictures.view_of(court_pictures.pair()[1]), views.samples(court, 0.3)
     assert refinement.refine(empty, view, along) is None
     assert refinement.uncertainty(empty, view, along, np.zeros(3)) is None

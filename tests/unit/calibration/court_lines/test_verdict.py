@@ -37,7 +37,7 @@ def judged(image, court, lines="light"):
 def made(image, court, shifts):
     """Return what a search would give that found the true camera moved by some m along x."""
     seen = evidence.fields(ridges.find(image, "light"))
-    view, found = views.of_camera(CAMERA), []
+    view, found = court_pictures.view_of(CAMERA), []
     for shift in shifts:
         moved = replace(view, centre=view.centre + np.array([shift, 0, 0]))
         found.append(search._candidate(seen, court, views.samples(court, 0.3), moved))

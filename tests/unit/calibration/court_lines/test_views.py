@@ -26,7 +26,7 @@ def both():
 
 def test_projection_is_that_of_the_cameras(court):
     given = both()
-    many = views.join([views.of_camera(camera) for camera in given])
+    many = views.join([court_pictures.view_of(camera) for camera in given])
     floor = court.xyz[court.xyz[:, 2] == 0]
     found = many.project(floor[:, :2])
     for at, camera in enumerate(given):
@@ -38,13 +38,13 @@ def test_projection_is_that_of_the_cameras(court):
 
 def test_a_larger_picture_has_a_larger_camera(court):
     (camera, _) = both()
-    large = views.to_camera(views.of_camera(camera), "a", (1920, 1080), 2.0)
+    large = views.to_camera(court_pictures.view_of(camera), "a", (1920, 1080), 2.0)
     xy, wide = (cameras.project(one, court.xyz) for one in (camera, large))
     np.testing.assert_allclose(wide, 2 * (xy + 0.5) - 0.5, atol=1e-9)
 
 
 def test_half_a_turn_shows_a_symmetric_court_alike(court):
-    view = views.of_camera(both()[1])
+    view = court_pictures.view_of(both()[1])
     turned = views.half_turned(view, court)
     shown = views.outline(view, court)
     np.testing.assert_allclose(views.outline(turned, court)[0, ::-1], shown[0], atol=1e-9)

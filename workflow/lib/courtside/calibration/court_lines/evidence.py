@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration.court_lines.ridges import Ridges
+from courtside.calibration.court_lines.ridges import Ridges, direction_off
 from courtside.calibration.court_lines.views import Samples, Views
 
 # ASSUME: all of these are tuned by hand on development sessions.
@@ -53,8 +53,7 @@ def fields(ridges: Ridges) -> Fields:
     """Return the distances to ridges by direction, up to `FARTHEST_PX`."""
     distance = np.empty((DIRECTIONS, *ridges.on.shape), np.float32)
     for number in range(DIRECTIONS):
-        turned = ridges.angle - number * np.pi / DIRECTIONS
-        near = np.abs((turned + np.pi / 2) % np.pi - np.pi / 2) < OFF_RAD
+        near = direction_off(ridges.angle, number * np.pi / DIRECTIONS) < OFF_RAD
         mask = (~(ridges.on & near)).astype(np.uint8)
         distance[number] = np.minimum(
             cv2.distanceTransform(mask, cv2.DIST_L2, cv2.DIST_MASK_PRECISE), FARTHEST_PX

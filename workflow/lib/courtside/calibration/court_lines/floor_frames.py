@@ -34,7 +34,8 @@ def find(ends: NDArray, width: float, rng: np.random.Generator) -> list[FloorFra
     length = np.hypot(*(ends[:, 2:] - ends[:, :2]).T)
     if len(ends) < 4:
         return []
-    weight, found = np.minimum(length, 0.15 * width), []
+    weight = np.minimum(length, 0.15 * width)
+    found: list[FloorFrame] = []
     pieces = _Pieces(
         (ends[:, :2] + ends[:, 2:]) / 2,
         (ends[:, 2:] - ends[:, :2]) / length[:, None],
@@ -49,10 +50,8 @@ def find(ends: NDArray, width: float, rng: np.random.Generator) -> list[FloorFra
         axes = _upright(*(planes[row] for row in chosen))
         if not len(axes):
             continue
-        fit = sum(
-            np.maximum(np.maximum(agree[:, 0], agree[:, 1]), 0.5 * agree[:, 2]) @ weight
-            for agree in [(np.abs(_off(axes, f_px, pieces)) < pieces.tolerance).astype(float)]
-        )
+        agree = (np.abs(_off(axes, f_px, pieces)) < pieces.tolerance).astype(float)
+        fit = np.maximum(np.maximum(agree[:, 0], agree[:, 1]), 0.5 * agree[:, 2]) @ weight
         kept: list[NDArray] = []
         for at in np.argsort(-fit)[: 20 * KEPT]:
             polished = _polish(axes[at], f_px, pieces)

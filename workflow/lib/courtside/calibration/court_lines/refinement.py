@@ -7,6 +7,7 @@ import scipy
 from numpy.typing import NDArray
 
 from courtside.calibration.court_lines.evidence import SAMPLE_PX, Fields
+from courtside.calibration.court_lines.ridges import direction_off
 from courtside.calibration.court_lines.views import Samples, Views
 from courtside.geometry import rotations
 
@@ -97,7 +98,7 @@ def _targets(seen: Fields, view: Views, along: Samples, reach_px: float) -> _Tar
     around = place[at, None] + steps[:, None] * normal[:, None]
     x, y = np.clip(np.round(around), 0, size - 1).astype(int).transpose(2, 0, 1)
     angle = np.arctan2(tangent[at, 1], tangent[at, 0])[:, None]
-    off = np.abs((seen.ridges.angle[y, x] - angle + np.pi / 2) % np.pi - np.pi / 2)
+    off = direction_off(seen.ridges.angle[y, x], angle)
     cost = np.where(seen.ridges.on[y, x] & (off < OFF_RAD), np.abs(steps), np.inf)
     if not len(at):
         return None

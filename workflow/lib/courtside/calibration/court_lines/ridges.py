@@ -85,8 +85,7 @@ def segments(ridges: Ridges) -> NDArray:
     angle, found = ridges.angle[ridges.on], []
     width = np.pi / DIRECTIONS
     for number in range(DIRECTIONS):
-        off = np.abs((angle - number * width + np.pi / 2) % np.pi - np.pi / 2)
-        chosen = off < 0.9 * width
+        chosen = direction_off(angle, number * width) < 0.9 * width
         mask = np.zeros(ridges.on.shape, np.uint8)
         mask[y[chosen], x[chosen]] = 1
         n, label = cv2.connectedComponents(mask, connectivity=8)
@@ -94,6 +93,11 @@ def segments(ridges: Ridges) -> NDArray:
         found.append(_straight(place, label[y[chosen], x[chosen]], n))
     ends = np.concatenate(found)
     return ends[np.argsort(-np.hypot(*(ends[:, 2:] - ends[:, :2]).T), kind="stable")]
+
+
+def direction_off(angle: NDArray, direction: NDArray | float) -> NDArray:
+    """Return by how much directions of lines differ from others, radians in 0..pi/2."""
+    return np.abs((angle - direction + np.pi / 2) % np.pi - np.pi / 2)
 
 
 def _straight(place: NDArray, label: NDArray, n: int) -> NDArray:

@@ -1,6 +1,6 @@
 """The cameras that explain the lines of a picture best."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -142,13 +142,13 @@ def _possible(view: Views, court: Court) -> bool:
 
 
 def _beside(view: Views) -> Views:
-    """Return cameras moved along the court's axes: they take a like court beside it for this."""
+    """Return cameras moved along the court's axes, to look for a like court beside it."""
     steps = np.arange(-BESIDE_M, BESIDE_M + BESIDE_STEP_M, BESIDE_STEP_M)
     steps = steps[np.abs(steps) > 0.3]
     shift = np.zeros((2 * len(steps), 3))
     shift[: len(steps), 0] = shift[len(steps) :, 1] = steps
     many = view[np.zeros(len(shift), dtype=int)]
-    return Views(many.rotation, many.centre + shift, many.f_px, many.k1, many.principal)
+    return replace(many, centre=many.centre + shift)
 
 
 def _different(found: list[Candidate], court: Court, width: float) -> list[Candidate]:

@@ -1,6 +1,6 @@
 """Many cameras at once, and points along the lines of a court."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,7 @@ from courtside.geometry.camera import Camera
 
 NEAREST_M = 0.3  # ASSUME: nothing nearer is seen
 LEAST_SLOPE = 0.2  # of the lens model: beyond, it soon folds back
+ALIKE_M = 0.001  # rounding: lines nearer than this, after half a turn of the court, are one
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,17 +56,6 @@ def join(views: list[Views]) -> Views:
     return Views(rotation, centre, f_px, k1, views[0].principal)
 
 
-def of_camera(camera: Camera) -> Views:
-    """Return a camera as `Views` of one: its first focal length and k1."""
-    return Views(
-        camera.cam_from_world[None, :, :3],
-        camera.centre_in_world[None],
-        camera.K[:1, 0],
-        camera.dist[:1],
-        camera.K[:2, 2],
-    )
-
-
 def to_camera(view: Views, name: str, size: tuple[int, int], scale: float = 1.0) -> Camera:
     """Return the only camera of `Views` for a picture of a size, `scale` times larger."""
     matrix = np.diag([view.f_px[0] * scale, view.f_px[0] * scale, 1.0])
@@ -90,20 +80,20 @@ def samples(court: Court, step_m: float) -> Samples:
     return Samples(ends.mean(axis=1)[:, :2], (ends[:, 1] - ends[:, 0])[:, :2] / 2, line)
 
 
-def is_symmetric(court: Court, tolerance_m: float = 0.001) -> bool:
+def is_symmetric(court: Court) -> bool:
     """Say whether half a turn about its middle leaves a court's lines as they are."""
     low, high = court.line_corners()
     rows = np.column_stack([low, high])
     turned = np.column_stack([court.size_m - high, court.size_m - low])
     apart = np.abs(rows[:, None] - turned).max(axis=2)
-    return bool((apart.min(axis=1) < tolerance_m).all())
+    return bool((apart.min(axis=1) < ALIKE_M).all())
 
 
 def half_turned(view: Views, court: Court) -> Views:
     """Return cameras that see a court turned by half a turn about its middle as these see it."""
     turn = np.diag([-1.0, -1.0, 1.0])
     centre = view.centre @ turn + np.array([*court.size_m, 0])
-    return Views(view.rotation @ turn, centre, view.f_px, view.k1, view.principal)
+    return replace(view, rotation=view.rotation @ turn, centre=centre)
 
 
 def outline(view: Views, court: Court) -> NDArray:
