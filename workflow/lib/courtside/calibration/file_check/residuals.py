@@ -60,12 +60,16 @@ def left_out(cameras: Sequence[Camera], xy: NDArray) -> NDArray:
     From projection to keypoint. NaN where the camera or fewer than two others see the point.
     """
     found = np.full(xy.shape, np.nan)
-    for at, camera in enumerate(cameras):
-        others = [k for k in range(len(cameras)) if k != at]
-        if len(others) >= 2:
-            xyz = triangulate_all([cameras[k] for k in others], xy[others])
-            found[at] = xy[at] - project(camera, xyz)
+    if len(cameras) >= 3:
+        for at, camera in enumerate(cameras):
+            found[at] = xy[at] - project(camera, placed_by_others(cameras, xy, at))
     return found
+
+
+def placed_by_others(cameras: Sequence[Camera], xy: NDArray, at: int) -> NDArray:
+    """Return the points (N, 3) that all cameras but one place."""
+    others = [k for k in range(len(cameras)) if k != at]
+    return triangulate_all([cameras[k] for k in others], xy[others])
 
 
 def rms_px(residuals: NDArray) -> float:

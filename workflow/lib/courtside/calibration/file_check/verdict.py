@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from courtside.calibration.file_check import faults, residuals
 from courtside.calibration.file_check.faults import Fault
 from courtside.geometry.camera import Camera
-from courtside.geometry.triangulation import triangulate_all
 
 FEWEST_STATIC, FEWEST_JOINTS = 4, 60  # ASSUME: fewer say nothing
 FLOOR_PX = 0.5  # ASSUME: below, residuals say nothing: clicks and networks are no better
@@ -176,8 +175,7 @@ def _fitted(start: _Explained, seen: Seen) -> list[_Explained]:
     """Return explanations by one camera whose numbers are fitted to what the others see."""
     xy, found, cameras = seen.views(), [], start.cameras
     for at in range(len(cameras) if len(cameras) >= 3 else 0):
-        others = [k for k in range(len(cameras)) if k != at]
-        xyz = triangulate_all([cameras[k] for k in others], xy[others])
+        xyz = residuals.placed_by_others(cameras, xy, at)
         for one in faults.fitted(cameras, at, xyz, xy[at]):
             score = seen.cost(one.cameras) + PRICE[one.n_free]
             found.append(_Explained(one.cameras, score, [one]))
