@@ -32,6 +32,11 @@ class Mark:
     to_s: float | None
     where: str
 
+    @property
+    def bounded(self) -> bool:
+        """Whether it states from when or until when it holds."""
+        return self.from_s is not None or self.to_s is not None
+
 
 def locate(
     sighting: Sighting, found: People, seen: Sequence[Footage], subjects: Sequence[str]
@@ -146,7 +151,7 @@ def timelines(found: People, marks: Sequence[Mark], n_subjects: int) -> tuple[ND
         own = sorted((m for m in marks if m.person == person), key=lambda m: m.time_s)
         owner[person] = _runs(time_s, own, [m.subject for m in own], _split_of(found, person))
         for mark in own:
-            if mark.from_s is not None or mark.to_s is not None:
+            if mark.bounded:
                 owner[person, _span(time_s, mark)] = mark.subject
         _leave(owner[person], time_s, own)
     for subject in range(n_subjects):
@@ -154,14 +159,14 @@ def timelines(found: People, marks: Sequence[Mark], n_subjects: int) -> tuple[ND
         if own:
             used[subject] = _runs(time_s, own, [m.person for m in own], _join_of(found))
         for mark in own:
-            if mark.from_s is not None or mark.to_s is not None:
+            if mark.bounded:
                 used[subject, _span(time_s, mark)] = mark.person
     return owner, used
 
 
 def _leave(owner: NDArray, time_s: NDArray, own: Sequence[Mark]) -> None:
     """Take away what lies outside the bounds of a person whose every mark has bounds."""
-    if own and all(m.from_s is not None or m.to_s is not None for m in own):
+    if own and all(mark.bounded for mark in own):
         owner[~np.logical_or.reduce([_span(time_s, mark) for mark in own])] = -1
 
 
@@ -187,10 +192,15 @@ def _split_of(found: People, person: int) -> Change:
     def change(before: Mark, after: Mark) -> float:
         if before.subject == after.subject:
             return after.time_s
-        bounds = [b for b in (before.to_s, after.from_s) if b is not None]
-        return bounds[-1] if bounds else _exchange_s(found, person, before, after)
+        bound_s = _bound_s(before, after)
+        return _exchange_s(found, person, before, after) if bound_s is None else bound_s
 
     return change
+
+
+def _bound_s(before: Mark, after: Mark) -> float | None:
+    """Return when one mark gives way to the next as they state it, None if neither does."""
+    return before.to_s if after.from_s is None else after.from_s
 
 
 def _exchange_s(found: People, person: int, before: Mark, after: Mark) -> float:
@@ -232,10 +242,10 @@ def _join_of(found: People) -> Change:
     def change(before: Mark, after: Mark) -> float:
         if before.person == after.person:
             return after.time_s
-        bounds = [b for b in (before.to_s, after.from_s) if b is not None]
         _one_place(found, before, after)
-        if bounds:
-            return bounds[-1]
+        bound_s = _bound_s(before, after)
+        if bound_s is not None:
+            return bound_s
         between = (found.time_s >= before.time_s) & (found.time_s <= after.time_s)
         at, path = found.time_s[between], found.path[:, between]
         apart = np.linalg.norm(path[before.person] - path[after.person], axis=-1)
