@@ -118,7 +118,7 @@ def _calibrated(
         return
     if theirs != camera:
         yield f"name_in_calibration: {_quoted(theirs)}", "the same name there"
-    size = next((t[camera].size for t in guess.takes.values() if camera in t), None)
+    size = next((film.size for film in guess.films(camera)), None)
     if size and tuple(size) != tuple(calibrated[theirs]):
         yield from _resized(calibrated[theirs], size)
 
@@ -374,7 +374,7 @@ def _translated(guess: Guess) -> list[str]:
     """Return a line on names that stand for words of another script; empty where there are none."""
     said = []
     for camera in guess.cameras:
-        films = [take[camera] for take in guess.takes.values() if camera in take]
+        films = guess.films(camera)
         said += [f"camera {camera} ({r.path})" for r in films[:1] if not r.path.isascii()]
     for name, take in guess.takes.items():
         films = [r for r in take.values() if not r.path.isascii()]
@@ -385,8 +385,7 @@ def _translated(guess: Guess) -> list[str]:
 def _odd(guess: Guess) -> Iterator[str]:
     """Yield unusual sizes, rates and lengths."""
     for camera in guess.cameras:
-        films = [take[camera] for take in guess.takes.values() if camera in take]
-        films += filter(None, [guess.static.get(camera)])
+        films = [*guess.films(camera), *filter(None, [guess.static.get(camera)])]
         sizes = sorted({film.size for film in films if film.size is not None})
         if len(sizes) > 1:
             found = " and ".join(f"{width}x{height}" for width, height in sizes)

@@ -96,6 +96,10 @@ class Guess:
     calibration: Recording | None = None
     unused: list[tuple[Recording, str]] = field(default_factory=list)  # with the reason
 
+    def films(self, camera: str) -> list[Recording]:
+        """Return a camera's recordings of takes."""
+        return [take[camera] for take in self.takes.values() if camera in take]
+
 
 def guess(recordings: Sequence[Recording]) -> Guess:
     """Guess what each recording, in name order, is; every one is in the guess once."""
@@ -111,9 +115,7 @@ def guess(recordings: Sequence[Recording]) -> Guess:
     _group(found, rest)
     _place_keypoints(found, recordings, own, cameras)
     found.cameras = [
-        name
-        for name in [*cameras, *found.numbered]
-        if name in found.static or any(name in take for take in found.takes.values())
+        name for name in [*cameras, *found.numbered] if name in found.static or found.films(name)
     ]
     _keep_serials(found)
     for camera in [name for name in found.boards if name not in found.cameras]:
@@ -334,8 +336,8 @@ def _shared_name(take: Take) -> str:
 def _pair(found: Guess, left: Mapping[str, Sequence[Recording]]) -> None:
     """Make recordings of one time one take, if all names tell it; else those of one order."""
     every = [recording for own in left.values() for recording in own]
+    camera_of = {recording.path: camera for camera, own in left.items() for recording in own}
     if all(recording.device and recording.device.begun for recording in every):
-        camera_of = {recording.path: camera for camera, own in left.items() for recording in own}
         for group in _moments(every):
             take = {camera_of[recording.path]: recording for recording in group}
             if len(take) == len(group) > 1:
@@ -347,7 +349,6 @@ def _pair(found: Guess, left: Mapping[str, Sequence[Recording]]) -> None:
             name = distinct(f"take{at}", found.takes)
             found.takes[name] = dict(zip(left, together, strict=True))
     else:
-        camera_of = {recording.path: camera for camera, own in left.items() for recording in own}
         _leave(found, every, camera_of)
 
 
@@ -359,7 +360,7 @@ def _leave(found: Guess, recordings: Iterable[Recording], camera_of: Mapping[str
 
 def _keep_serials(found: Guess) -> None:
     for camera in found.cameras:
-        films = [take[camera] for take in found.takes.values() if camera in take]
+        films = found.films(camera)
         if films and films[0].device and films[0].device.serial:
             found.serials[camera] = films[0].device.serial
 
@@ -367,7 +368,7 @@ def _keep_serials(found: Guess) -> None:
 def _stand_in(found: Guess) -> None:
     """Use the first take for missing static recordings: a walk is tied to them."""
     for camera in found.cameras:
-        films = [take[camera] for take in found.takes.values() if camera in take]
+        films = found.films(camera)
         if camera not in found.static and films and films[0].kind == "video":
             found.static[camera] = films[0]
             found.stand_ins.append(camera)
@@ -410,12 +411,8 @@ def _rename(found: Guess) -> None:
     takes: dict[str, str] = {}
     for at, take in enumerate(found.takes, start=1):
         takes[take] = distinct(names.name(take, f"take{at}"), takes.values())
-    found.takes = {
-        takes[key]: {cameras[camera]: r for camera, r in take.items()}
-        for key, take in found.takes.items()
-    }
-    found.keypoints = {
-        takes[key]: {cameras[camera]: r for camera, r in take.items()}
-        for key, take in found.keypoints.items()
-    }
+    found.takes, found.keypoints = (
+        {takes[key]: {cameras[c]: r for c, r in take.items()} for key, take in kind.items()}
+        for kind in (found.takes, found.keypoints)
+    )
     found.devices = [(takes.get(take, ""), device, r) for take, device, r in found.devices]

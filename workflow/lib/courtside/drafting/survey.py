@@ -18,13 +18,8 @@ from courtside.video import walk_frames
 VIDEOS = {".mp4", ".mov", ".m4v", ".avi", ".mkv", ".mts", ".m2ts", ".ts", ".mpg", ".mpeg"}
 VIDEOS |= {".webm", ".wmv", ".3gp"}
 BAGS = {".bag", ".db3"}
-CALIBRATIONS = {
-    ".toml",
-    ".txt",
-    ".xml",
-    ".xcp",
-    ".mcal",
-}  # a YAML file in a folder of recordings may be anything
+# A YAML file in a folder of recordings may be anything.
+CALIBRATIONS = {".toml", ".txt", ".xml", ".xcp", ".mcal"}
 CLICKED = {"camera", "x_px", "y_px"}
 RACKET = {"take", "camera", "frame_idx", "end"}
 
@@ -101,12 +96,8 @@ def _keypoints(path: Path) -> dict[str, Any] | None:
     """Describe a folder of 2D keypoints of another program; None if its files are others."""
     if not openpose.is_one(next(iter(sorted(path.glob("*.json"))))):
         return None
-    skeletons = openpose.skeletons(path)
-    return {
-        "kind": "keypoints",
-        "n_frames": len(frame_numbers.numbered(path)),
-        "skeleton": skeletons,
-    }
+    skeletons, n_files = openpose.skeletons(path), len(frame_numbers.numbered(path))
+    return {"kind": "keypoints", "n_frames": n_files, "skeleton": skeletons}
 
 
 def _table(path: Path) -> dict[str, Any] | None:
@@ -131,10 +122,8 @@ def _calibration(path: Path) -> dict[str, Any] | None:
         cameras = file_formats.read(path)
     except InputError:  # any other text file
         return None
-    return {
-        "kind": "calibration",
-        "cameras": {camera.name: tuple(camera.size) for camera in cameras},
-    }
+    sizes = {camera.name: tuple(camera.size) for camera in cameras}
+    return {"kind": "calibration", "cameras": sizes}
 
 
 READERS: dict[str, Callable[[Path], dict[str, Any] | None]] = {  # by the ending of a file
