@@ -1,6 +1,6 @@
 """Cameras and sizes of pictures against the calibration file, and against each other."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
@@ -8,7 +8,7 @@ from pathlib import Path
 from courtside.calibration import file_formats
 from courtside.calibration.file_check import verdict
 from courtside.geometry import camera as geometry
-from courtside.geometry import picture_size
+from courtside.geometry import camera_fields, picture_size
 from courtside.geometry.camera import Camera
 from courtside.records.cameras import clicks
 from courtside.study.configuration.sessions import Session
@@ -111,7 +111,7 @@ def _mixed(sizes: Sizes) -> Iterator[str]:
     for name, files in sizes.items():
         by_size: dict[str, str] = {}
         for path, size in files.items():
-            by_size.setdefault(_times(size), path)
+            by_size.setdefault(camera_fields.times(size), path)
         if len(by_size) > 1:
             found = " and ".join(f"{size} px ({path})" for size, path in by_size.items())
             yield (
@@ -127,7 +127,7 @@ def _wrong_sizes(
     wrong = {name: size for name, (_, size) in video.items() if size != shown[name].size}
     for name, size in wrong.items():
         path, calibrated = video[name][0], there[name].size
-        expected = _times(shown[name].size)
+        expected = camera_fields.times(shown[name].size)
         declared = "" if shown[name].size == calibrated else " as the session file declares"
         at = f"{path}: expected {expected} px{declared}"
         at += "" if declared else f", the size that camera {name} was calibrated at"
@@ -136,8 +136,8 @@ def _wrong_sizes(
         if other:
             advice = f"cameras {name} and {other} seem to be exchanged: exchange their videos"
         elif declared and size != calibrated:
-            advice = f"of the calibrated {_times(calibrated)} px {advice}"
-        yield f"{at}, found {_times(size)}; {advice}"
+            advice = f"of the calibrated {camera_fields.times(calibrated)} px {advice}"
+        yield f"{at}, found {camera_fields.times(size)}; {advice}"
 
 
 def _exchanged(
@@ -146,7 +146,3 @@ def _exchanged(
     """Return the one camera whose picture has the size expected here, and the other way round."""
     others = [o for o in wrong if wrong[o] == shown[name].size and wrong[name] == shown[o].size]
     return others[0] if len(others) == 1 else None
-
-
-def _times(size: Sequence[int]) -> str:
-    return f"{size[0]}x{size[1]}"

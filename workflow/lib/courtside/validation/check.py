@@ -14,8 +14,6 @@ from courtside.validation import calibrated, keypoint_folders, lengths, views
 from courtside.validation.remembered import Remembered
 from courtside.video.glance import Glance
 
-Looks = dict[str, dict[str, Glance]]  # by camera and file
-
 
 def check(study: Study, remembered: Remembered) -> list[str]:
     """Check every recorded session; return what is worth a look, one line each.
