@@ -142,8 +142,13 @@ def _picture(frame: av.VideoFrame, reformatter: VideoReformatter, matrix: NDArra
     stored = reformatter.reformat(
         frame, format="bgr24", interpolation=Interpolation.BICUBIC, threads=1
     ).to_ndarray()
+    return upright(stored, matrix)
+
+
+def upright(stored: NDArray, matrix: NDArray) -> NDArray:
+    """Turn a stored picture (H, W, ...) as its display matrix says (`display_matrix`)."""
     x_sign, y_sign = matrix.sum(axis=0)
-    turned = stored if matrix[0, 0] else stored.transpose(1, 0, 2)
+    turned = stored if matrix[0, 0] else stored.swapaxes(0, 1)
     return np.ascontiguousarray(turned[::y_sign, ::x_sign])
 
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from courtside.study.errors import InputError, StrPath
 from courtside.video import images, walk_frames
-from courtside.video.decoder import display_matrix
+from courtside.video.decoder import display_matrix, upright
 from courtside.video.packets import MEND, list_packets, opened
 
 SMALL_PX = (96, 54)  # width and height of the small picture, whatever the shape of the large
@@ -54,11 +54,8 @@ def glance(path: StrPath, *, stop_s: float | None = None) -> Glance:
         matrix, picture = _first_picture(path, container, stream)
     if times is None:
         times = _read(path, stop_s)
-    x_sign, y_sign = matrix.sum(axis=0)
-    upright = picture if matrix[0, 0] else picture.T
-    upright = np.ascontiguousarray(upright[::y_sign, ::x_sign])
-    size = (upright.shape[1], upright.shape[0])
-    return Glance(size, _small(upright), *_rate(times))
+    picture = upright(picture, matrix)
+    return Glance((picture.shape[1], picture.shape[0]), _small(picture), *_rate(times))
 
 
 def _first_picture(path: Path, container, stream) -> tuple[NDArray, NDArray]:
@@ -77,14 +74,13 @@ def _indexed(container, stream, n_bytes: int) -> NDArray | None:
     """Return the times (T,) s of frames by an MP4's index; None where it is not whole."""
     if "mov" not in container.format.name:
         return None
-    entries = [(entry.timestamp, entry.pos + entry.size) for entry in stream.index_entries]
-    if not entries or len(entries) != stream.frames or max(entries, key=_end)[1] > n_bytes:
+    ticks, ends = [], []
+    for entry in stream.index_entries:
+        ticks.append(entry.timestamp)
+        ends.append(entry.pos + entry.size)
+    if not ends or len(ends) != stream.frames or max(ends) > n_bytes:
         return None
-    return np.sort([ticks for ticks, _ in entries]) * float(stream.time_base)
-
-
-def _end(entry: tuple[int, int]) -> int:
-    return entry[1]
+    return np.sort(ticks) * float(stream.time_base)
 
 
 def _read(path: Path, stop_s: float | None) -> NDArray | None:
