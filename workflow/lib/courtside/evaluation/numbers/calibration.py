@@ -99,21 +99,25 @@ def calibrations(source: Source) -> list[Number]:
     for session, of in rows.groupby("session", sort=False):
         cut = Cut(source, f"{session}/evaluation/*.csv", "in-sample, N = 40", str(session))
         for part, group in of.groupby("part", sort=False):
-            _one(build, label(of), str(part), group, cut)
+            _one_way(build, label(of), (part, f"{part}_p95", f"{part}_points"), group, cut)
         _difference(build, label(of), of, cut)
     cut = Cut(source, "*/evaluation/*.csv", "in-sample, N = 40", " ".join(named))
     _together(build, f"all {rows['hall'].nunique()} halls", rows, cut)
     return build.numbers
 
 
-def _one(build: Builder, row: str, part: str, of: pd.DataFrame, cut: Cut) -> None:
-    found = calibration.spread(of["value"])
+def _one_way(
+    build: Builder, row: str, names: tuple[str, str, str], of: pd.DataFrame, cut: Cut
+) -> Settings:
+    """Add median, 95 % and points of a way under these names; return how they were counted."""
+    found, part = calibration.spread(of["value"]), of["part"].iloc[0]
     count: Settings = {"n": found["n"], "n_failed": len(of) - found["n"], "unit": "cm"}
+    median, p95, points = names
     where = f"{part}, volume_rms_cm"
-    build.add(row, part, found["median"], cut, f"{where}: median of trials", **count)
-    build.add(row, f"{part}_p95", found["p95"], cut, f"{where}: 95 % of trials", **count)
-    points = of["points"].median()
-    build.add(row, f"{part}_points", points, cut, f"{part}, volume_p95_cm: median", **count)
+    build.add(row, median, found["median"], cut, f"{where}: median of trials", **count)
+    build.add(row, p95, found["p95"], cut, f"{where}: 95 % of trials", **count)
+    build.add(row, points, of["points"].median(), cut, f"{part}, volume_p95_cm: median", **count)
+    return count
 
 
 def differences(rows: pd.DataFrame, part: str = "walk18") -> pd.DataFrame:
@@ -168,18 +172,10 @@ def ways(source: Source) -> list[Number]:
     for part, words in WORDS.items():
         for session, of in rows[rows["part"] == part].groupby("session", sort=False):
             cut = Cut(source, f"{session}/evaluation/*.csv", "in-sample, N = 40", str(session))
-            _one_way(build, f"{words}; `{session}`", part, of, cut)
+            row = f"{words}; `{session}`"
+            count = _one_way(build, row, ("median", "p95", "points"), of, cut)
+            build.add(row, "xy", of["xy_cm"].median(), cut, f"{part}, xy_cm: median", **count)
     return build.numbers
-
-
-def _one_way(build: Builder, row: str, part: str, of: pd.DataFrame, cut: Cut) -> None:
-    found = calibration.spread(of["value"])
-    count: Settings = {"n": found["n"], "n_failed": len(of) - found["n"], "unit": "cm"}
-    where = f"{part}, volume_rms_cm"
-    build.add(row, "median", found["median"], cut, f"{where}: median of trials", **count)
-    build.add(row, "p95", found["p95"], cut, f"{where}: 95 % of trials", **count)
-    build.add(row, "points", of["points"].median(), cut, f"{part}, volume_p95_cm: median", **count)
-    build.add(row, "xy", of["xy_cm"].median(), cut, f"{part}, xy_cm: median", **count)
 
 
 def growth(source: Source) -> list[Number]:
@@ -221,9 +217,9 @@ def strengths(source: Source) -> list[Number]:
             cut = Cut(source, TABLE, f"{row['session']}, {part}, N = 40, in-sample", row["session"])
             name = f"`{row['session']}`, scatter x{row['strength']:g}"
             count: Settings = {"n": row["n"], "n_failed": row["n_failed"]}
-            for end in ("median", "p95"):
-                column = f"volume_rms_cm_{end}"
-                build.add(name, f"{part}_{end}", row[column], cut, column, unit="cm", **count)
+            ends = ("median", "p95")
+            shown = {f"{part}_{end}": (f"volume_rms_cm_{end}", 2, "cm") for end in ends}
+            build.add_columns(name, row, shown, cut, **count)
             more: Settings = {**count, "decimals": 0, "unit": "%"}
             covered = 100 * row["coverage90"]
             build.add(name, f"{part}_coverage", covered, cut, "coverage90", **more)
@@ -240,7 +236,7 @@ def capture(source: Source) -> list[Number]:
             setting = ", ".join(f"{name} {row[name]}" for name in varied)
             way = f"{row['way']}{'' if row['in_sample'] else ' (scored points left out)'}"
             cut = Cut(source, file, f"{setting}, way {way}", f"{file.split('/')[-1][:-4]}-*")
-            count: Settings = {"n": row["n"], "n_failed": row["n_failed"], "unit": "cm"}
-            for part in ("median", "p95"):
-                build.add(f"{setting}: {way}", part, row[part], cut, part, **count)
+            shown = {part: (part, 2, "cm") for part in ("median", "p95")}
+            count: Settings = {"n": row["n"], "n_failed": row["n_failed"]}
+            build.add_columns(f"{setting}: {way}", row, shown, cut, **count)
     return build.numbers

@@ -1,6 +1,6 @@
 """Numbers of one camera and devices: errors of inertial suits and depth, as they are, corrected."""
 
-from courtside.evaluation.numbers.register import Builder, Cut, Number, Settings, Source, listed
+from courtside.evaluation.numbers.register import Builder, Cut, Number, Source, listed
 
 ALIGNMENTS = {"body_frame": "body", "root_relative": "root"}  # of the evaluation: part
 
@@ -18,10 +18,9 @@ def sources(source: Source) -> list[Number]:
             where = f"source {row['source']}, alignment {row['alignment']}, joint all"
             cut = Cut(source, file, where, parts[0])
             name = f"`{parts[0]}/{parts[3]}`: `{row['source']}`"
-            for part in ("median", "p95"):
-                column, key = f"{part}_mm", f"{ALIGNMENTS[row['alignment']]}_{part}"
-                more: Settings = {"decimals": 0, "unit": "mm", "n": row["n"]}
-                build.add(name, key, row[column], cut, column, **more)
+            aligned = ALIGNMENTS[row["alignment"]]
+            shown = {f"{aligned}_{part}": (f"{part}_mm", 0, "mm") for part in ("median", "p95")}
+            build.add_columns(name, row, shown, cut, n=row["n"])
     return build.numbers
 
 

@@ -1,7 +1,7 @@
 """Numbers of joints: corrected, real beside virtual; one by one; of fewer cameras."""
 
 from courtside.evaluation.numbers import players, stated
-from courtside.evaluation.numbers.register import Builder, Cut, Number, Settings, Source
+from courtside.evaluation.numbers.register import Builder, Cut, Number, Source
 from courtside.evaluation.tables.players import STAGES
 from courtside.records.keypoints import skeleton
 
@@ -9,6 +9,12 @@ TABLE = "footage"
 # Takes shown beside real footage: the longest of those reported, and one of another layout.
 VIRTUAL = (("players-b", "footwork"), ("players-a", "shot"))
 CONVENTION = "true joint centres of the rig"
+PER_JOINT = ("median", "p95", "coverage")  # of `players.PER_STAGE`
+PER_VIEWS = {  # part: column, decimals, unit
+    "median": ("median_mm", 0, "mm"),
+    "p95": ("p95_mm", 0, "mm"),
+    "exchanged": ("exchanged_percent", 0, "%"),
+}
 
 
 def corrections(source: Source, documents: Source) -> list[Number]:
@@ -21,10 +27,10 @@ def corrections(source: Source, documents: Source) -> list[Number]:
             where = f"{session}/{take}, {players.OURS}, stage {row['stage']}"
             cut = Cut(source, players.TABLE, where, session)
             name = f"virtual, `{session}/{take}`, against {CONVENTION}"
-            for part in ("median", "p95"):
-                column, key = f"{part}_mm", f"{row['stage']}_{part}"
-                more: Settings = {"decimals": 1, "unit": "mm", "n": row["n"]}
-                build.add(name, key, row[column], cut, column, **more)
+            shown = {
+                f"{row['stage']}_{part}": (f"{part}_mm", 1, "mm") for part in ("median", "p95")
+            }
+            build.add_columns(name, row, shown, cut, n=row["n"])
     return [*build.numbers, *stated.numbers(documents, TABLE)]
 
 
@@ -36,12 +42,7 @@ def views(source: Source) -> list[Number]:
         for _, row in table[table["joint"] == "limbs"].iterrows():
             cut = Cut(source, file, f"fusion {row['fusion']}, joint limbs", parts[0])
             name = f"`{parts[0]}/{parts[2]}`: {players.words(row['fusion'])}"
-            more: Settings = {"decimals": 0, "unit": "mm", "n": row["n"]}
-            build.add(name, "median", row["median_mm"], cut, "median_mm", **more)
-            build.add(name, "p95", row["p95_mm"], cut, "p95_mm", **more)
-            more |= {"unit": "%"}
-            swapped = row["exchanged_percent"]
-            build.add(name, "exchanged", swapped, cut, "exchanged_percent", **more)
+            build.add_columns(name, row, PER_VIEWS, cut, n=row["n"])
     return build.numbers
 
 
@@ -56,10 +57,6 @@ def joints(source: Source) -> list[Number]:
             stage = STAGES[row["stage"]]
             cut = Cut(source, file, f"{players.OURS}, {stage}, {row['joint']}", session)
             name = f"{row['joint'].replace('_', ' ')}, `{session}/{take}`"
-            more: Settings = {"decimals": 0, "n": row["n"]}
-            for part in ("median", "p95"):
-                column = f"{part}_mm"
-                build.add(name, f"{stage}_{part}", row[column], cut, column, unit="mm", **more)
-            held = "coverage_90_percent"
-            build.add(name, f"{stage}_coverage", row[held], cut, held, unit="%", **more)
+            shown = {f"{stage}_{part}": players.PER_STAGE[part] for part in PER_JOINT}
+            build.add_columns(name, row, shown, cut, n=row["n"])
     return build.numbers

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 
 from courtside.evaluation.numbers.register import Builder, Cut, Number, Settings, Source
+from courtside.evaluation.tables.players import furthest
 
 TABLE, ANGLES = "figures/players.csv", "figures/angles.csv"
 STAGES = ("raw", "filtered", "corrected")
@@ -51,10 +52,8 @@ def takes(source: Source) -> list[Number]:
         for _, one in of.iterrows():
             where = f"{session}/{take}, {calibration}, {model}, {fusion}, stage {one['stage']}"
             cut = Cut(source, TABLE, where, session)
-            for part, (column, decimals, unit) in PER_STAGE.items():
-                name = f"{one['stage']}_{part}"
-                more: Settings = {"decimals": decimals, "unit": unit}
-                build.add(row, name, one[column], cut, column, n=one["n"], **more)
+            shown = {f"{one['stage']}_{part}": how for part, how in PER_STAGE.items()}
+            build.add_columns(row, one, shown, cut, n=one["n"])
     return build.numbers
 
 
@@ -148,17 +147,11 @@ def measures(source: Source) -> list[Number]:
         for point, of in rows.groupby("point", sort=False):
             for part, (column, decimals, unit) in PATHS.items():
                 cut = Cut(source, file, f"{point}, furthest person", session)
-                value = of[column].min() if part == "held" else _furthest(of[column])
+                value = of[column].min() if part == "held" else furthest(of[column])
                 more: Settings = {"decimals": decimals, "unit": unit, "n": of["n"].sum()}
                 build.add(row, f"{point}_{part}", value, cut, column, **more)
         same = (table["session"] == session) & (table["take"] == take) & (table["fusion"] == fusion)
         for _, one in table[same & table["clock_error_ms"].notna()].iterrows():
             cut = Cut(source, TABLE, f"{session}/{take}, {fusion}, raw", session)
-            for part, (column, decimals, unit) in CLOCKS.items():
-                build.add(row, part, one[column], cut, column, decimals=decimals, unit=unit)
+            build.add_columns(row, one, CLOCKS, cut)
     return build.numbers
-
-
-def _furthest(values: pd.Series) -> float:
-    known = values.dropna()
-    return float(known.loc[known.abs().idxmax()]) if len(known) else float("nan")

@@ -67,9 +67,11 @@ def _again(build: Builder, name: str, source: Source, session: str, n_images: fl
     for part, wanted in ways.items():
         for _, row in table[way == wanted].iterrows():
             cut = Cut(source, calibration.TABLE, f"{session}, {wanted}, N = {n_images}", session)
-            count: Settings = {"n": row["n"], "n_failed": row["n_failed"], "unit": "cm"}
-            for what, column in (("xy", "xy_cm_median"), ("volume", "volume_rms_cm_median")):
-                build.add(name, f"{part}_{what}", row[column], cut, column, **count)
+            shown = {
+                f"{part}_xy": ("xy_cm_median", 2, "cm"),
+                f"{part}_volume": ("volume_rms_cm_median", 2, "cm"),
+            }
+            build.add_columns(name, row, shown, cut, n=row["n"], n_failed=row["n_failed"])
 
 
 def racket(source: Source) -> list[Number]:
@@ -91,9 +93,8 @@ def _ways(build: Builder, name: str, source: Source, part: pd.DataFrame) -> None
     for _, row in part.iterrows():
         where = f"mean_abs_mm, {row['session']}, {row['tip_sigma_px']:g} px, way {row['way']}"
         cut = Cut(source, RACKET, where, row["session"])
-        count: Settings = {"n": row["n"], "n_failed": row["n_failed"]}
-        build.add(name, row["way"], row["mean"], cut, "mean", decimals=1, unit="mm", **count)
-        build.add(name, f"{row['way']}_ratio", row["ratio"], cut, "ratio", **count)
+        shown = {row["way"]: ("mean", 1, "mm"), f"{row['way']}_ratio": ("ratio", 2, "")}
+        build.add_columns(name, row, shown, cut, n=row["n"], n_failed=row["n_failed"])
 
 
 def round_trip(source: Source) -> list[Number]:
@@ -105,8 +106,8 @@ def round_trip(source: Source) -> list[Number]:
             where = f"row {row['row']}, joint all, cameras {row['cameras']}"
             name = f"`{parts[0]}/{parts[3]}`, {row['n_cameras']} cameras: {ROWS[row['row']]}"
             cut = Cut(source, file, where, parts[0])
-            for part in ("mean", "sd"):
-                build.add(name, part, row[part], cut, part, unit=row["unit"], n=row["n"])
+            shown = {part: (part, 2, row["unit"]) for part in ("mean", "sd")}
+            build.add_columns(name, row, shown, cut, n=row["n"])
     return build.numbers
 
 

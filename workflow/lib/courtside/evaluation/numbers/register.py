@@ -4,7 +4,7 @@ import csv
 import hashlib
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -18,6 +18,7 @@ STUDY, BENCHMARK, BY_HAND, PUBLISHED = "study", "benchmark", "by hand", "publish
 ORIGINS = (STUDY, BENCHMARK, BY_HAND, PUBLISHED)
 MISSING = "-"  # printed where there is no value
 Settings: TypeAlias = dict[str, Any]  # named arguments of `Builder.add`
+Parts: TypeAlias = Mapping[str, tuple[str, int, str]]  # column, decimals and unit of each part
 KEPT = 8  # digits of an exact value
 DIGITS = 16  # of a checksum
 
@@ -184,21 +185,25 @@ class Builder:
             )
         )
 
+    def add_columns(
+        self, row: str, values: pd.Series, parts: Parts, cut: Cut, **counts: Any
+    ) -> None:
+        """Add the columns of one row of a source; `counts` are `n` and `n_failed` of them all."""
+        for part, (column, decimals, unit) in parts.items():
+            how: Settings = {"decimals": decimals, "unit": unit, **counts}
+            self.add(row, part, values[column], cut, column, **how)
 
-def listed(
-    cut: Cut, table: str, rows: Mapping[str, pd.Series], parts: Mapping[str, tuple[str, int, str]]
-) -> list[Number]:
+
+def listed(cut: Cut, table: str, rows: Mapping[str, pd.Series], parts: Parts) -> list[Number]:
     """Return the numbers of a summary table: `rows` by their labels, all of one source.
 
-    `parts` maps each part to its column, decimals and unit; n and n_failed are those of the row,
-    where it has them.
+    n and n_failed are those of the row, where it has them.
     """
     build = Builder(table)
     for label, row in rows.items():
         counts = {key: row[key] for key in ("n", "n_failed") if key in row}
-        for part, (column, decimals, unit) in parts.items():
-            more: Settings = {"decimals": decimals, "unit": unit, **counts}
-            build.add(label, part, row[column], cut, f"{label}; {column}", **more)
+        own = replace(cut, rows=f"{cut.rows}; {label}")
+        build.add_columns(label, row, parts, own, **counts)
     return build.numbers
 
 

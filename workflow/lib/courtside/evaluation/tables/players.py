@@ -126,8 +126,7 @@ def _kinematics(rows: pd.DataFrame) -> pd.DataFrame:
     found = {"kinematics_seconds": rows.groupby(key)["seconds"].min()}
     for point in POINTS:
         groups = rows[rows["point"] == point].groupby(key)
-        furthest = groups["distance_error_percent"].agg(_furthest)
-        found[f"{point}_distance_error_percent"] = furthest
+        found[f"{point}_distance_error_percent"] = groups["distance_error_percent"].agg(furthest)
         found[f"{point}_speed_rmse_m_s"] = groups["speed_rmse_m_s"].max()
     return pd.DataFrame(found).reset_index()
 
@@ -142,13 +141,13 @@ def _clocks(rows: pd.DataFrame) -> pd.DataFrame:
         "n_clocks": rows.groupby(TAKE).size(),
         "n_clocks_found": groups.size(),
         "n_clocks_within": groups["within"].sum(),
-        "clock_error_ms": groups["worst_error_ms"].agg(_furthest),
+        "clock_error_ms": groups["worst_error_ms"].agg(furthest),
     }
     whole = pd.DataFrame(found).reset_index()
     return whole.fillna({"n_clocks_found": 0, "n_clocks_within": 0})
 
 
-def _furthest(values: pd.Series) -> float:
+def furthest(values: pd.Series) -> float:
     """Return the value that is furthest from zero, with its sign; NaN if none is known."""
     known = values.dropna().to_numpy(dtype=float)
     return known[np.abs(known).argmax()] if len(known) else np.nan
