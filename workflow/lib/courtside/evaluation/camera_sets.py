@@ -7,7 +7,6 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from courtside.evaluation import joints
-from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.statistics import moving_blocks
 
@@ -100,11 +99,7 @@ def _same(records: dict[str, Keypoints3D]) -> None:
 
 
 def _groups(names: list[str]) -> dict[str, list[int]]:
-    groups = {}
-    for label in SETS:
-        sides = joints.SETS[label]
-        of = [name for name in skeleton.JOINTS if name.startswith(sides)]
-        groups[label] = [names.index(name) for name in of if name in names]
+    groups = {label: joints.of_set(names, label) for label in SETS}
     groups |= {name: [at] for at, name in enumerate(names)}
     return {label: of for label, of in groups.items() if of}
 

@@ -13,12 +13,12 @@ from courtside.evaluation import joints as pose_errors
 from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
 from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
 
-TOLERANCE = (
-    0.2  # of the torso's length (`torso_px`): PCK@0.2, the usual threshold (Yang & Ramanan 2013)
-)
+# Of the torso's length (`torso_px`): PCK@0.2, the usual threshold (Yang & Ramanan 2013).
+TOLERANCE = 0.2
 TRUNK = ("left_shoulder", "right_shoulder", "left_hip", "right_hip")
 EDGE_S = 1e-3  # a frame this little outside the truth's span, by rounding, counts as its end
 COLUMNS = [
@@ -151,7 +151,7 @@ def _assign(rows: NDArray, true: NDArray, torso: NDArray, trunk: list[int]) -> N
 
 def _table(view, joints, known, detected, true, torso):
     names, frames, time_s, strokes = known  # persons, frames, times, (P, F) in a stroke
-    other = [list(joints).index(_other_side(joint)) for joint in joints]
+    other = skeleton.mirror(list(joints))
     error = np.linalg.norm(detected - true, axis=-1)
     share = error / torso[..., None]
     crossed = np.linalg.norm(detected[:, :, other] - true, axis=-1) / torso[..., None]
@@ -184,8 +184,3 @@ def _strokes(events: dict[str, float], time_s: NDArray) -> NDArray:
         if name.endswith("_start") and stop_s is not None:
             inside |= (time_s >= start_s) & (time_s <= stop_s)
     return inside
-
-
-def _other_side(joint: str) -> str:
-    side, _, rest = joint.partition("_")
-    return {"left": "right_", "right": "left_"}[side] + rest

@@ -100,11 +100,8 @@ def table(
     unbiased_... are of the distances once the row's mean error is taken off: for a set of joints
     that is a shift of the whole skeleton, most of which the calibration makes.
     """
-    groups = {name: [names.index(name)] for name in names}
-    for label, sides in SETS.items():
-        groups[label] = [
-            names.index(name) for name in limbs.JOINTS if name in names and name.startswith(sides)
-        ]
+    groups = {name: [at] for at, name in enumerate(names)}
+    groups |= {label: of_set(names, label) for label in SETS}
     persons = {str(name): [at] for at, name in enumerate(person_id)}
     if len(persons) > 1:
         persons["all"] = list(chain.from_iterable(persons.values()))
@@ -119,6 +116,12 @@ def table(
         if at
     ]
     return pd.DataFrame(rows, columns=COLUMNS)
+
+
+def of_set(names: list[str], label: str) -> list[int]:
+    """Return the indices of a set of limb joints (`SETS`) in `names`, those that are there."""
+    wanted = (name for name in limbs.JOINTS if name.startswith(SETS[label]))
+    return [names.index(name) for name in wanted if name in names]
 
 
 def _summary(error: NDArray, covariance: NDArray) -> dict:

@@ -132,8 +132,6 @@ def _errors(part: pd.DataFrame, point: str, path: "scipy.interpolate.CubicSpline
     speed, sigma = _speed_errors(part, point, path)
     ground = part[f"{point}_ground_speed_m_s"].to_numpy()
     ground = ground - np.linalg.norm(path(time_s, 1)[:, :2], axis=1)
-    stated = np.isfinite(sigma) & np.isfinite(speed)
-    inside = np.abs(speed[stated]) <= point_covariance.WITHIN_90 * sigma[stated]
     return {
         **row,
         "position_median_mm": np.nanmedian(apart_mm),
@@ -141,8 +139,15 @@ def _errors(part: pd.DataFrame, point: str, path: "scipy.interpolate.CubicSpline
         "speed_rmse_m_s": np.sqrt(np.nanmean(speed**2)),
         "ground_speed_rmse_m_s": np.sqrt(np.nanmean(ground**2)),
         "speed_bias_m_s": np.nanmean(speed),
-        "speed_within_90_percent": 100 * inside.mean() if stated.any() else np.nan,
+        "speed_within_90_percent": _within_90_percent(speed, sigma),
     }
+
+
+def _within_90_percent(error: NDArray, sigma: NDArray) -> float:
+    """Return how many errors (N,) of a stated sigma lie in their 90 % interval, percent."""
+    stated = np.isfinite(error) & np.isfinite(sigma)
+    inside = np.abs(error[stated]) <= point_covariance.WITHIN_90 * sigma[stated]
+    return 100 * inside.mean() if stated.any() else np.nan
 
 
 def angles(points: Keypoints3D, truth: Truth) -> pd.DataFrame:
@@ -208,12 +213,11 @@ def _of_angle(error: NDArray, sigma: NDArray, there: NDArray) -> dict:
         return row
     error, sigma = error[known], sigma[known]
     stated = np.isfinite(sigma)
-    inside = np.abs(error[stated]) <= point_covariance.WITHIN_90 * sigma[stated]
     return {
         **row,
         "bias_deg": error.mean(),
         "rmse_deg": np.sqrt(np.mean(error**2)),
         "p95_deg": np.percentile(np.abs(error), 95),
         "sigma_deg": np.sqrt(np.mean(sigma[stated] ** 2)) if stated.any() else np.nan,
-        "within_90_percent": 100 * inside.mean() if stated.any() else np.nan,
+        "within_90_percent": _within_90_percent(error, sigma),
     }

@@ -16,7 +16,6 @@ from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D
 from courtside.study.errors import InputError
 
 IDENTITY_MM = 1e-6  # an exact round trip returns the point up to rounding errors
-ROWS = ("exact", "rounded", "rounded_published", "reprojection", "left_out", "truth")
 COLUMNS = [
     "person", "n_cameras", "cameras", "row", "joint", "unit", "mean", "sd", "n", "over",
 ]  # fmt: skip
