@@ -78,8 +78,8 @@ def typical(errors: NDArray) -> NDArray:
 def gather(footage: Sequence[Footage], points: Keypoints3D, skeleton: Skeleton) -> Seen:
     """Bring a take together; `footage` are the cameras of `points`, in its order."""
     cameras = [one.camera for one in footage]
-    seen = [resampling.resample(one.view, points.time_s, one.clock) for one in footage]
-    xy, score = (np.stack(part) for part in zip(*seen, strict=True))
+    views, clocks = [one.view for one in footage], [one.clock for one in footage]
+    xy, score = resampling.resample_all(views, clocks, points.time_s)
     height_px = person_height.in_pictures(cameras, xy, score, skeleton.joints)
     sides = [[skeleton.index(side + limb) for limb in limbs.LIMBS] for side in ("left_", "right_")]
     tracks = [resampling.resample(one.tracklets, points.time_s, one.clock)[0] for one in footage]

@@ -29,8 +29,8 @@ def _of_take(cameras_toml: StrPath, names: Sequence[str], take: Mapping[str, Any
     each, clocks = [one.view for one in seen], [one.clock for one in seen]
     time_s = resampling.common_times(each, clocks)
     joints = [list(each[0].joints).index(name) for name in skeleton.JOINTS]
-    cut = [resampling.resample(v, time_s, c) for v, c in zip(each, clocks, strict=True)]
-    xy, score = (np.stack(part)[:, :, :, joints] for part in zip(*cut, strict=True))
+    both = resampling.resample_all(each, clocks, time_s)
+    xy, score = (part[:, :, :, joints] for part in both)
     cameras = [one.camera for one in seen]
     height_px = person_height.in_pictures(cameras, xy, score, skeleton.JOINTS)
     n_people, n_times = score.shape[1:3]

@@ -48,11 +48,7 @@ def keypoints_used(
 
     `views` and `clocks` are in the order of `points.cameras`; sides are exchanged where it says so.
     """
-    resampled = [
-        resampling.resample(view, points.time_s, clock)
-        for view, clock in zip(views, clocks, strict=True)
-    ]
-    xy, score = (np.stack(part) for part in zip(*resampled, strict=True))
+    xy, score = resampling.resample_all(views, clocks, points.time_s)
     swapped, mirror = np.moveaxis(points.swapped, -1, 0), np.array(skeleton.mirror())
     for person in range(xy.shape[1]):
         xy[:, person] = left_right.apply_swaps(xy[:, person], swapped[:, person], mirror)

@@ -52,10 +52,7 @@ def triangulate_take(
     """
     clocks = clocks or [Clock()] * len(views)
     time_s = resampling.common_times(views, clocks) if time_s is None else time_s
-    resampled = [
-        resampling.resample(view, time_s, clock) for view, clock in zip(views, clocks, strict=True)
-    ]
-    xy, score = (np.stack(part) for part in zip(*resampled, strict=True))
+    xy, score = resampling.resample_all(views, clocks, time_s)
     swapped = np.zeros(score.shape, dtype=bool)
     options: dict[str, Any] = {"min_views": min_views, "min_score": min_score, "sigma_px": 1.0}
     solve: Callable[..., triangulation.Triangulated] = triangulation.triangulate_plain

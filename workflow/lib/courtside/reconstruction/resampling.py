@@ -60,6 +60,15 @@ def resample(
     return xy, np.where(np.isfinite(xy).all(axis=-1), score, np.nan)
 
 
+def resample_all(
+    views: Sequence[Keypoints2D], clocks: Sequence[Clock], time_s: NDArray
+) -> tuple[NDArray, NDArray]:
+    """Return all cameras' xy (C, P, T, J, 2) and score (C, P, T, J), each as by `resample`."""
+    each = [resample(view, time_s, clock) for view, clock in zip(views, clocks, strict=True)]
+    xy, score = (np.stack(part) for part in zip(*each, strict=True))
+    return xy, score
+
+
 def nearest(view: Keypoints2D, time_s: NDArray, clock: Clock) -> tuple[Keypoints2D, NDArray]:
     """Return a camera's frames nearest to times (T,) of the reference clock, not interpolated.
 
