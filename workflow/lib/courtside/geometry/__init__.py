@@ -5,7 +5,7 @@ picture_size: `relation`, `scaled_size`, `advice`: a video's size against the ca
 camera_fields: checked numbers of calibration files (`numbers`, `pose`, `five_coefficients`)
 rotations: `rotation_from_rodrigues`, `rodrigues_from_rotation`, `interpolate`, `invert`
 similarity: `Sim3`, `umeyama`, `robust_umeyama`, `kabsch`
-interpolation: `linear`, `shares`
+interpolation: `linear`, `nearest`, `shares`
 epipolar: `straight_px`, `relative_pose`, `fundamental`, `lines`, `distance_px`
 triangulation: `triangulate_robust`, `triangulate_plain`, `triangulate_all`, `triangulate`
 depth_registration: `rays`, `points_in_colour`

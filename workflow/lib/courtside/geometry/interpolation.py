@@ -21,6 +21,13 @@ def linear(time_s: NDArray, values: NDArray, wanted_s: NDArray) -> NDArray:
     return values[before] * (1 - share) + values[before + 1] * share
 
 
+def nearest(time_s: NDArray, wanted_s: NDArray) -> NDArray:
+    """Return the index of the sample nearest to each wanted time, the later of two equally near."""
+    right = np.clip(np.searchsorted(time_s, wanted_s), 0, len(time_s) - 1)
+    left = np.maximum(right - 1, 0)
+    return np.where(wanted_s - time_s[left] < time_s[right] - wanted_s, left, right)
+
+
 def cubic_bend(
     first: NDArray, before: NDArray, after: NDArray, last: NDArray, share: NDArray
 ) -> NDArray:

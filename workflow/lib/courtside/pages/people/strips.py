@@ -7,6 +7,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.geometry import interpolation
 from courtside.pose import privacy
 from courtside.records.cameras.footage import Footage
 from courtside.records.keypoints.people import People
@@ -55,10 +56,7 @@ def times(people: People, seen: Sequence[Footage], person: int, count: int = COL
 
 def frames_at(one: Footage, time_s: NDArray) -> NDArray:
     """Return the frame of a camera nearest to each instant of the reference clock."""
-    own, wanted = one.tracklets.time_s, one.clock.from_reference(time_s)
-    right = np.clip(np.searchsorted(own, wanted), 0, len(own) - 1)
-    left = np.maximum(right - 1, 0)
-    return np.where(wanted - own[left] < own[right] - wanted, left, right)
+    return interpolation.nearest(one.tracklets.time_s, one.clock.from_reference(time_s))
 
 
 def pictures(

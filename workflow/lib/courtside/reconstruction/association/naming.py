@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration.court.court import Court
+from courtside.geometry import interpolation
 from courtside.reconstruction.association import marks as marks_of
 from courtside.reconstruction.association.associate import COUNTS, nowhere
 from courtside.reconstruction.association.identity import GAP_S, confidence
@@ -173,17 +174,11 @@ def _rows(found: People, one: Footage, owner: NDArray, used: NDArray) -> NDArray
     """Return the row (S, F) of each subject in each frame of a camera."""
     index = found.index[one.camera.name]
     frame_s = one.clock.to_reference(one.tracklets.time_s)
-    at = _nearest(found.time_s, frame_s)
+    at = interpolation.nearest(found.time_s, frame_s)
     frames = np.arange(len(frame_s))
     person = used[:, at]
     own = (person >= 0) & (owner[np.maximum(person, 0), at] == np.arange(len(used))[:, None])
     return np.where(own, index[np.maximum(person, 0), frames], -1)
-
-
-def _nearest(time_s: NDArray, wanted_s: NDArray) -> NDArray:
-    right = np.clip(np.searchsorted(time_s, wanted_s), 0, len(time_s) - 1)
-    left = np.maximum(right - 1, 0)
-    return np.where(wanted_s - time_s[left] < time_s[right] - wanted_s, left, right)
 
 
 def _doubts(found: People, owner: NDArray, used: NDArray, marks: Sequence[Mark]) -> NDArray:
