@@ -128,11 +128,7 @@ def _scale(moved: NDArray, true: NDArray) -> float:
 
 
 def table(
-    names: list[str],
-    found: Fit,
-    covariance: NDArray,
-    rate_hz: float,
-    doubtful: Sequence[str] = (),
+    names: list[str], found: Fit, covariance: NDArray, rate_hz: float, doubtful: Sequence[str] = ()
 ) -> pd.DataFrame:
     """Return the errors by joint and of all together, with 95 % intervals: `COLUMNS`.
 

@@ -46,12 +46,7 @@ class Fit:
     """
 
     def __init__(
-        self,
-        posed: PosedHierarchy,
-        seen: Seen,
-        up: NDArray,
-        lag_s: float,
-        settings: Settings,
+        self, posed: PosedHierarchy, seen: Seen, up: NDArray, lag_s: float, settings: Settings
     ) -> None:
         self.posed, self.seen, self.up, self.settings = posed, seen, up, settings
         self.segments = segments_of(posed.hierarchy, seen.source)

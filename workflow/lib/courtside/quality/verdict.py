@@ -8,15 +8,7 @@ import pandas as pd
 
 from courtside.quality import causes, measures
 from courtside.quality.seen import Seen, disagreement, without
-from courtside.study.execution.verdicts import (
-    ALL,
-    COLUMNS,
-    DOUBTFUL,
-    FAILED,
-    GOOD,
-    ORDER,
-    WHOLE,
-)
+from courtside.study.execution.verdicts import ALL, COLUMNS, DOUBTFUL, FAILED, GOOD, ORDER, WHOLE
 
 AGREES = "it agrees with the other cameras"
 ANY = "another of the cameras that disagree may be the wrong one"

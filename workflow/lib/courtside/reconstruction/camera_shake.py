@@ -74,9 +74,7 @@ def steady(view: Keypoints2D, camera: Camera, table: DataFrame) -> Keypoints2D:
     xy = _project(camera, _directions(camera, view.xy) @ still_from_shaken.mT)
     kept = unknown[:, None, None] | np.isnan(xy)
     return replace(
-        view,
-        xy=np.where(kept, view.xy, xy),
-        xyz_in_body=view.xyz_in_body @ still_from_shaken.mT,
+        view, xy=np.where(kept, view.xy, xy), xyz_in_body=view.xyz_in_body @ still_from_shaken.mT
     )
 
 

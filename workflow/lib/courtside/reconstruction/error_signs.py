@@ -39,10 +39,7 @@ ACROSS = (("left_shoulder", "right_shoulder"),), (("left_hip", "right_hip"),)
 
 
 def keypoints_used(
-    views: Sequence[Keypoints2D],
-    clocks: Sequence[Clock],
-    points: Keypoints3D,
-    skeleton: Skeleton,
+    views: Sequence[Keypoints2D], clocks: Sequence[Clock], points: Keypoints3D, skeleton: Skeleton
 ) -> tuple[NDArray, NDArray]:
     """Return keypoints (C, P, T, J, 2) px and scores (C, P, T, J) as a triangulation used them.
 
@@ -57,11 +54,7 @@ def keypoints_used(
 
 
 def of_points(
-    cameras: Sequence[Camera],
-    points: Keypoints3D,
-    xy: NDArray,
-    score: NDArray,
-    skeleton: Skeleton,
+    cameras: Sequence[Camera], points: Keypoints3D, xy: NDArray, score: NDArray, skeleton: Skeleton
 ) -> dict[str, NDArray]:
     """Return the signs of a raw record by name (`NAMES`).
 

@@ -36,12 +36,7 @@ class Box:
 
 
 def read(
-    video: StrPath,
-    time_s: float,
-    persons: Sequence[NDArray],
-    skeleton: Skeleton,
-    *,
-    hidden: bool,
+    video: StrPath, time_s: float, persons: Sequence[NDArray], skeleton: Skeleton, *, hidden: bool
 ) -> NDArray:
     """Return a video's frame (H, W, 3) BGR at a time of its own clock; `hidden`: without faces.
 

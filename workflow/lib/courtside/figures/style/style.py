@@ -66,13 +66,7 @@ def side_colour(*joints: str) -> str:
     return {"left": LEFT, "right": RIGHT}.get(sides.pop(), MIDDLE) if len(sides) == 1 else MIDDLE
 
 
-def save(
-    drawing: Figure,
-    table: pd.DataFrame,
-    pdf: StrPath,
-    png: StrPath,
-    csv: StrPath,
-) -> None:
+def save(drawing: Figure, table: pd.DataFrame, pdf: StrPath, png: StrPath, csv: StrPath) -> None:
     """Write a figure and its numbers (floats to 4 decimals), the same bytes each time."""
     with atomic(pdf) as temporary:
         drawing.savefig(

@@ -60,11 +60,7 @@ def frames_at(one: Footage, time_s: NDArray) -> NDArray:
 
 
 def pictures(
-    one: Footage,
-    video: StrPath,
-    people: People,
-    columns: dict[int, NDArray],
-    skeleton: Skeleton,
+    one: Footage, video: StrPath, people: People, columns: dict[int, NDArray], skeleton: Skeleton
 ) -> Iterator[Shot]:
     """Cut the persons out of the pictures of one camera, faces and surroundings made coarse.
 

@@ -9,13 +9,7 @@ from numpy.typing import NDArray
 
 from courtside.calibration.court.court import Court
 from courtside.geometry.camera import Camera
-from courtside.reconstruction.association import (
-    appearance,
-    candidates,
-    identity,
-    lengths,
-    linking,
-)
+from courtside.reconstruction.association import appearance, candidates, identity, lengths, linking
 from courtside.reconstruction.association.rows import Rows, describe
 from courtside.study.errors import InputError
 

@@ -103,11 +103,7 @@ def find(
 
 
 def _judge(
-    views: "_Views",
-    pairs: PairDistances,
-    instant: NDArray,
-    row: NDArray,
-    more: ViewCost | None,
+    views: "_Views", pairs: PairDistances, instant: NDArray, row: NDArray, more: ViewCost | None
 ) -> Candidates:
     """Return the candidates of rows (M, C), each once."""
     code = np.unique(np.column_stack([instant, row]), axis=0)

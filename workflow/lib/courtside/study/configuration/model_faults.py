@@ -66,11 +66,7 @@ def _of_detector(folder: Path, name: str, entry: Content, known: Artefacts) -> I
 
 
 def absent(
-    folder: Path,
-    root: Path,
-    models: Content | None,
-    detectors: Content | None,
-    used: Iterable[str],
+    folder: Path, root: Path, models: Content | None, detectors: Content | None, used: Iterable[str]
 ) -> Iterator[str]:
     """Yield a line for each file of a network that is used and not there; paths start at `root`."""
     lines = {}
