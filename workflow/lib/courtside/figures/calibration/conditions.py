@@ -70,9 +70,7 @@ def draw(numbers: pd.DataFrame, x: str, group: str | None = None, title: str = "
     if group is not None:
         handles, labels = axes[0].get_legend_handles_labels()
         drawing.legend(handles, labels, loc="outside lower center", ncols=len(MARKERS))
-    total = numbers["n"] + numbers["n_failed"]
-    upto = f" to {total.max()}" if total.nunique() > 1 else ""
-    text = f"median and 5-95 % of {total.min()}{upto} trials"
+    text = bars.sizes(numbers)
     drawing.suptitle(f"{title}: {text}" if title else text, fontsize=8)
     return drawing
 

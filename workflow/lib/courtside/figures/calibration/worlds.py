@@ -76,11 +76,7 @@ def draw(numbers: pd.DataFrame) -> Figure:
         axis.grid(axis="y")
     handles, labels = above.get_legend_handles_labels()
     drawing.legend(handles, labels, loc="outside lower center", ncols=len(ways))
-    total = numbers["n"] + numbers["n_failed"]
-    upto = f" to {total.max()}" if total.nunique() > 1 else ""
-    text = (
-        f"median and 5-95 % of {total.min()}{upto} trials; of two marks the right one is stronger"
-    )
+    text = f"{bars.sizes(numbers)}; of two marks the right one is stronger"
     drawing.suptitle(text, fontsize=8)
     return drawing
 

@@ -39,6 +39,13 @@ def draw_level(axis: Axes, row: Mapping, *, colour: str, line: str = "--") -> No
     axis.axhline(row["median"], color=colour, linestyle=line, linewidth=0.9, zorder=1)
 
 
+def sizes(rows: pd.DataFrame) -> str:
+    """Return in words what bars are and of how many trials, with and without a result."""
+    total = rows["n"] + rows["n_failed"]
+    upto = f" to {total.max()}" if total.nunique() > 1 else ""
+    return f"median and 5-95 % of {total.min()}{upto} trials"
+
+
 def ticks_at(axis: Axes, values: Sequence[float]) -> None:
     """Put the ticks of a logarithmic x axis at given values only."""
     axis.set_xscale("log")
