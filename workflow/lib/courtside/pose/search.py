@@ -227,15 +227,17 @@ def _square(xy: NDArray, turn: int = 0) -> Region:
 
 def _overlap(one: Box, other: Box) -> float:
     """Return the intersection over union of two boxes."""
-    (ax, ay, aw, ah), (bx, by, bw, bh) = one, other
-    width = min(ax + aw, bx + bw) - max(ax, bx)
-    height = min(ay + ah, by + bh) - max(ay, by)
-    shared = max(0, width) * max(0, height)
-    return shared / (aw * ah + bw * bh - shared)
+    shared = _shared(one, other)
+    return shared / (one[2] * one[3] + other[2] * other[3] - shared)
 
 
 def _covered(box: Box, other: Sequence[float]) -> float:
     """Return the share of a box that another covers."""
-    width = min(box[0] + box[2], other[0] + other[2]) - max(box[0], other[0])
-    height = min(box[1] + box[3], other[1] + other[3]) - max(box[1], other[1])
-    return max(0.0, width) * max(0.0, height) / (box[2] * box[3])
+    return _shared(box, other) / (box[2] * box[3])
+
+
+def _shared(one: Sequence[float], other: Sequence[float]) -> float:
+    """Return the area that two boxes share, px^2."""
+    width = min(one[0] + one[2], other[0] + other[2]) - max(one[0], other[0])
+    height = min(one[1] + one[3], other[1] + other[3]) - max(one[1], other[1])
+    return max(0.0, width) * max(0.0, height)
