@@ -93,10 +93,8 @@ def correct(
     of which those that the skeleton does not name are not used; both have times on the reference
     clock. `sigma_m`, a number or (T, J), is the standard deviation of vision's joints per axis: its
     size per joint and axis is estimated again from the residuals; what counts is how it differs
-    from frame to frame. `lag_s` is the standard deviation of the offset between both clocks.
-    `offsets_m` (3,) are known offsets of vision's joints from the skeleton's, in the axes of the
-    joint's parent. Frames not `performed` (T,), without motion as mocopi's first row, only change
-    bones. `up` (3,) is the vertical in the device's world.
+    from frame to frame. `lag_s` is the standard deviation of the offset between both clocks. In
+    frames not `performed` (T,), without motion as mocopi's first row, only the bones change.
 
     The corrected skeleton is in the device's world; its times are those of `posed`, less the
     clock's shift found. An `InputError` if vision has too little in common with the skeleton, or
