@@ -6,5 +6,6 @@ sightings: `read`, `stated`, `of_other_takes`: where the user says that a person
 skeleton: `read`: joints, bones, groups
 derived_joints: `read`, `of`, `append`, `combine`: neck, head centre, mid-hip and the like
 body_motion: `read`, `write`: a skeleton in the body's own frame and unit
+skeletal_motion: `read`, `write`: segments of constant shape, their rotations, joint angles
 missing_reason: Codes and `WORDS`
 """
