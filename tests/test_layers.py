@@ -31,6 +31,7 @@ LEVELS = {  # a room imports rooms of lower levels only
     "pose": 4,
     "calibration": 4,
     "reconstruction": 5,
+    "body_model": 5,
     "events": 5,
     "sfm": 5,
     "exports": 5,

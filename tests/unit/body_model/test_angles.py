@@ -1,0 +1,67 @@
+import numpy as np
+import pytest
+
+from courtside.body_model import angles, pose, segments
+from fixtures.people import moving_model
+
+MODEL = segments.model()
+
+
+def measured(segment, turn):
+    """Return the angles of a body that stands, but for one segment turned from its parent."""
+    true = moving_model.moving(1)
+    local = np.repeat(np.eye(3)[None, None], len(MODEL.names), axis=0)
+    local[0] = true.local[0]
+    local[moving_model.NAMES.index(segment)] = turn
+    still = pose.Pose(np.zeros((1, 3)), local, np.zeros_like(true.angle))
+    found = angles.measure(MODEL, still, 1e-4 * np.eye(len(MODEL.sigma))[None])
+    return {name: value[0] for name, (value, _) in found.items()}, found
+
+
+def about(axis, degrees):
+    return pose.about(axis, np.radians([degrees]))
+
+
+@pytest.mark.parametrize(
+    ("segment", "axis", "degrees", "angle", "wanted"),
+    [
+        ("left_femur", 2, 40, "left_hip_flexion", 40),
+        ("right_femur", 2, 40, "right_hip_flexion", 40),
+        ("left_femur", 0, -20, "left_hip_adduction", 20),
+        ("right_femur", 0, 20, "right_hip_adduction", 20),
+        ("left_femur", 1, -10, "left_hip_internal_rotation", 10),
+        ("right_femur", 1, 10, "right_hip_internal_rotation", 10),
+        ("thorax", 2, -30, "trunk_flexion", 30),
+        ("thorax", 0, 15, "trunk_bending", 15),
+        ("right_humerus", 0, -90, "right_shoulder_elevation", 90),
+        ("right_humerus", 0, -90, "right_shoulder_plane", 0),
+        ("left_humerus", 0, 60, "left_shoulder_elevation", 60),
+        ("left_humerus", 2, 60, "left_shoulder_plane", 90),
+    ],
+)
+def test_rotations_have_names_planes_and_signs(segment, axis, degrees, angle, wanted):
+    found, _ = measured(segment, about(axis, degrees))
+    assert found[angle] == pytest.approx(wanted, abs=1e-6)
+
+
+def test_hinges_have_their_angles_and_the_names_are_listed():
+    true = moving_model.moving(5)
+    found = angles.measure(MODEL, true, 1e-4 * np.eye(len(MODEL.sigma))[None].repeat(5, axis=0))
+    knee = -np.degrees(true.angle[:, moving_model.column("right_tibia")])
+    np.testing.assert_allclose(found["right_knee_flexion"][0], knee)
+    np.testing.assert_allclose(found["right_knee_flexion"][1], np.degrees(0.01))
+    assert tuple(found) == angles.names()
+
+
+def test_standard_deviations_are_those_of_small_errors():
+    true = moving_model.moving(4)
+    spread = np.diag(1e-6 * np.random.default_rng(0).uniform(0.5, 2, len(MODEL.sigma)))
+    stated = angles.measure(MODEL, true, spread[None].repeat(4, axis=0))
+    rng, drawn = np.random.default_rng(1), []
+    for _ in range(100):
+        step = rng.standard_normal((4, len(spread))) * np.sqrt(np.diag(spread))
+        one = angles.measure(MODEL, pose.moved(MODEL, true, step), 0 * spread[None].repeat(4, 0))
+        drawn.append([one[name][0] for name in ("left_hip_flexion", "right_shoulder_elevation")])
+    found = np.std(drawn, axis=0)
+    for name, row in zip(("left_hip_flexion", "right_shoulder_elevation"), found, strict=True):
+        np.testing.assert_allclose(row, stated[name][1], rtol=0.3)

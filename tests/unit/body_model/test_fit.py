@@ -1,0 +1,84 @@
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from courtside.body_model import fit, pose, segments
+from fixtures.people import moving_model
+
+MODEL = segments.model()
+HZ = np.full(len(MODEL.sigma), 8.0)
+
+
+def data(points, sigma_m=0.002):
+    stated = np.broadcast_to(sigma_m**2 * np.eye(3), (*points.xyz[0].shape, 3)).copy()
+    return fit.Data(points.xyz[0], np.linalg.inv(stated), stated)
+
+
+def shaken(true, by=0.1):
+    rng = np.random.default_rng(1)
+    return pose.moved(MODEL, true, by * rng.standard_normal((len(true.root), len(MODEL.sigma))))
+
+
+def test_exact_joints_are_fitted_from_a_wrong_start():
+    true = moving_model.moving()
+    points = moving_model.points(true)
+    found, _ = fit.fit(
+        MODEL, moving_model.body(), data(points), shaken(true), HZ, moving_model.RATE_HZ
+    )
+    for name, within_deg in (("left_tibia", 1.0), ("right_forearm", 2.0)):
+        at = moving_model.column(name)
+        error = np.degrees(found.angle[:, at] - true.angle[:, at])
+        assert np.sqrt(np.mean(error**2)) < within_deg
+
+
+def test_the_stated_covariance_holds_the_errors_of_noise():
+    true = moving_model.moving(90)
+    points = moving_model.points(true, noise_m=0.02)
+    found, spread = fit.fit(
+        MODEL, moving_model.body(), data(points, 0.02), true, 4 * HZ, moving_model.RATE_HZ
+    )
+    at = [moving_model.column(f"{side}_tibia") for side in ("left", "right")]
+    error = found.angle[:, at] - true.angle[:, at]
+    sigma = np.sqrt(np.diagonal(spread.total, axis1=1, axis2=2)[:, at])
+    assert np.degrees(np.median(sigma)) > 1
+    assert 0.8 < np.mean(np.abs(error) < 1.645 * sigma) <= 1
+    assert (spread.noise[:, at, at] <= spread.total[:, at, at] + 1e-12).all()
+
+
+def test_the_weight_of_second_differences_passes_half_the_power_at_the_cut_off():
+    rate_hz, n_frames = 50.0, 400
+    normal = np.tile(4.0 * np.eye(1), (n_frames, 1, 1))
+    weight = fit.stiffness(normal, np.array([6.0]), rate_hz, np.array([np.inf]))
+    second = np.diff(np.eye(n_frames), 2, axis=0)
+    wave = np.sin(2 * np.pi * 6 * np.arange(n_frames) / rate_hz)
+    passed = np.linalg.solve(4 * np.eye(n_frames) + weight * second.T @ second, 4 * wave)
+    assert np.std(passed[100:300]) / np.std(wave[100:300]) == pytest.approx(2**-0.5, abs=0.01)
+
+
+def test_a_knee_does_not_bend_backwards_and_a_lost_limb_is_uncertain():
+    true = moving_model.moving()
+    body, points = moving_model.body(), moving_model.points(true)
+    one = data(points)
+    lost = [moving_model.JOINTS.index(f"left_{part}") for part in ("elbow", "wrist")]
+    information = one.information.copy()
+    information[20:40, lost] = 0.0
+    found, spread = fit.fit(
+        MODEL, body, replace(one, information=information), true, HZ, moving_model.RATE_HZ
+    )
+    elbow = moving_model.column("left_forearm")
+    sigma = np.degrees(np.sqrt(spread.total[:, elbow, elbow]))
+    assert sigma[30] > 60 > 5 > sigma[10]
+    assert np.isfinite(found.angle).all()
+
+
+def test_time_grows_linearly_with_frames():
+    def seconds(n_frames):
+        true = moving_model.moving(n_frames)
+        points, before = moving_model.points(true), time.process_time()
+        fit.fit(MODEL, moving_model.body(), data(points), true, HZ, moving_model.RATE_HZ)
+        return time.process_time() - before
+
+    seconds(30)
+    assert seconds(600) < 4 * 3 * seconds(150)

@@ -1,0 +1,72 @@
+from dataclasses import replace
+
+import numpy as np
+
+from courtside.body_model import take
+from courtside.records.devices import hierarchy
+from courtside.records.keypoints import missing_reason, skeleton
+from fixtures.people import moving_model
+
+HZ = dict.fromkeys(moving_model.JOINTS, 8.0)
+
+
+def fitted(points):
+    found = take.person(points, 0, HZ, height_m=1.75)
+    return {} if found is None else {0: found}
+
+
+def test_joints_get_constant_bones_near_where_they_were():
+    points = moving_model.points(moving_model.moving(), noise_m=0.01)
+    found = take.joints(points, fitted(points))
+    names = found.joints.tolist()
+    for side in ("left", "right"):
+        for start, stop in (("hip", "knee"), ("elbow", "wrist"), ("ankle", "heel")):
+            ends = [names.index(f"{side}_{part}") for part in (start, stop)]
+            length = np.linalg.norm(np.subtract(*(found.xyz[0][:, at] for at in ends)), axis=1)
+            assert np.ptp(length) < 1e-9
+    true = moving_model.points(moving_model.moving()).xyz
+    before, after = (np.linalg.norm(one.xyz - true, axis=-1) for one in (points, found))
+    assert np.median(after) < 0.9 * np.median(before)
+    assert np.linalg.eigvalsh(found.covariance[0]).min() > 0
+
+
+def test_missing_joints_stay_missing_and_frames_without_a_person_are_not_made():
+    points = moving_model.points(moving_model.moving(), noise_m=0.005)
+    wrist = points.joints.tolist().index("left_wrist")
+    xyz, reason = points.xyz.copy(), points.reason.copy()
+    xyz[0, 10:20, wrist] = np.nan
+    reason[0, 10:20, wrist] = missing_reason.REJECTED
+    xyz[0, :5] = np.nan
+    xyz[0, 4, 0] = 1.0
+    points = replace(points, xyz=xyz, reason=reason)
+    fits = fitted(points)
+    found = take.joints(points, fits)
+    assert np.isnan(found.xyz[0, 10:20, wrist]).all()
+    assert (found.reason[0, 10:20, wrist] == missing_reason.REJECTED).all()
+    assert np.isnan(found.xyz[0, :5]).all()
+    assert found.reason[0, 4, 0] == missing_reason.UNCERTAIN
+    motion = take.motion(points, fits)
+    at = motion.angles.tolist().index("left_elbow_flexion")
+    assert np.isnan(motion.angle_deg[0, :5]).all()
+    assert motion.angle_sigma_deg[0, 15, at] > 3 * motion.angle_sigma_deg[0, 40, at]
+
+
+def test_the_motion_has_the_joints_by_forward_kinematics():
+    points = moving_model.points(moving_model.moving(), noise_m=0.005)
+    fits = fitted(points)
+    found, motion = take.joints(points, fits), take.motion(points, fits)
+    posed, frames = motion.posed(0)
+    xyz, _ = hierarchy.forward(posed)
+    knee = xyz[:, motion.segments.tolist().index("right_tibia")]
+    names = found.joints.tolist()
+    np.testing.assert_allclose(knee, found.xyz[0, frames][:, names.index("right_knee")], atol=1e-9)
+
+
+def test_a_person_who_is_never_seen_has_no_motion():
+    points = moving_model.points(moving_model.moving(4))
+    points = replace(points, xyz=np.full_like(points.xyz, np.nan))
+    assert fitted(points) == {}
+    motion = take.motion(points, {})
+    assert np.isnan(motion.root).all()
+    assert np.isnan(take.joints(points, {}).xyz).all()
+    assert set(skeleton.JOINTS) <= set(motion.joints.tolist())

@@ -1,0 +1,188 @@
+"""Fit of the model to all frames of a take together: Gauss-Newton on a banded system."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from courtside.body_model import pose as poses
+from courtside.body_model.pose import Pose
+from courtside.body_model.segments import BALL, Model
+from courtside.body_model.shape import Shape
+
+LIMIT_SIGMA = np.radians(2.0)  # ASSUME: how far a joint gives way beyond its range
+FAR = 2.0  # ASSUME: standard deviations beyond which a point loses weight (Huber)
+STEPS = 6
+LONGEST = 0.5  # rad or m, of a step
+CHUNK = 250  # frames whose derivatives are in memory at once
+SETTLED = 1e-3  # rad or m: a largest median step below it ends the fit
+# Of each segment's rotation: the joint whose cut-off it has, and a factor of it. Factors were
+# chosen on `players-dev`: limbs that are hidden in some views need more smoothing than the filter gives,
+# but the knee, whose points are three (ankle, heel, toe), less.
+SHOWN = {
+    "pelvis": ("hip", 0.6), "thorax": ("shoulder", 0.6), "clavicle": ("shoulder", 0.6),
+    "head": ("shoulder", 0.6), "humerus": ("elbow", 0.5), "forearm": ("wrist", 0.5),
+    "hand": ("wrist", 0.5), "femur": ("knee", 1.6), "tibia": ("ankle", 1.6), "foot": ("ankle", 1.6),
+}  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Data:
+    """Measured points."""
+
+    xyz: NDArray  # (T, J, 3) m
+    information: NDArray  # (T, J, 3, 3): inverse of their covariance, 0 where missing
+    noise: NDArray  # (T, J, 3, 3) m2: the keypoints' own part of the covariance
+
+
+@dataclass(frozen=True, eq=False)
+class Spread:
+    """Covariances (T, D, D) of coordinates: of all errors, and of the keypoints' own noise."""
+
+    total: NDArray
+    noise: NDArray
+
+    def points(self, by: NDArray) -> tuple[NDArray, NDArray]:
+        """Return both for points, (T, J, 3, 3) m2, by their derivatives (T, J, 3, D)."""
+        total, noise = (
+            by @ one[:, None] @ np.swapaxes(by, 2, 3) for one in (self.total, self.noise)
+        )
+        return total, noise
+
+
+def cutoffs(model: Model, cutoff_hz: Mapping[str, float]) -> NDArray:
+    """Return the cut-off of each degree of freedom (D,) Hz, from those of joints by name."""
+    found = np.empty(len(model.sigma))
+    found[:3] = cutoff_hz["left_hip"]
+    for at, name in enumerate(model.names):
+        first = model.first[at]
+        part = name.removeprefix("left_").removeprefix("right_")
+        joint, factor = SHOWN[part]
+        stop = first + len(model.joints[at].coordinates)
+        found[first:stop] = factor * cutoff_hz[f"left_{joint}"]
+    return found
+
+
+def stiffness(normal: NDArray, cutoff_hz: NDArray, rate_hz: float, sigma: NDArray) -> NDArray:
+    """Return the weights (D,) of squared second differences that filter at the cut-offs.
+
+    A series measured with steady information I and fitted with weight w on its second differences
+    passes 1 / (1 + w (2 sin(pi f / rate))^4 / I) of the frequency f: a zero-lag Butterworth filter
+    of effective order 4 (Whittaker 1923; Eilers 2003), whose gain is 1 / sqrt(2) at the cut-off
+    with this w. I is the median over frames (T, D, D) of the information of each degree of freedom.
+    """
+    information = np.median(np.diagonal(normal, axis1=1, axis2=2), axis=0) + 1 / sigma**2
+    gain = (2 * np.sin(np.pi * np.minimum(cutoff_hz / rate_hz, 0.5))) ** 4
+    return (np.sqrt(2) - 1) * np.maximum(information, 1e-6) / gain
+
+
+def fit(
+    model: Model, shape: Shape, data: Data, start: Pose, cutoff_hz: NDArray, rate_hz: float
+) -> tuple[Pose, Spread]:
+    """Return the most probable poses, and the covariance of each frame's coordinates.
+
+    It minimises the squared Mahalanobis distances of the points, Huber beyond `FAR`, the squared
+    coordinates over their prior, what exceeds their ranges, and the second differences
+    (`stiffness`). The covariance is that of each frame by itself: errors of joints last for some
+    frames, so that what neighbours say is not new.
+    """
+    pose, weights = start, None
+    for _ in range(STEPS):
+        normal, right, _ = _linearised(model, shape, data, pose)
+        if weights is None:
+            weights = stiffness(normal, cutoff_hz, rate_hz, model.sigma)
+        step = _solve(model, pose, normal, right, weights)
+        pose = poses.moved(model, pose, np.clip(step, -LONGEST, LONGEST))
+        if np.median(np.abs(step), axis=0).max() < SETTLED:
+            break
+    normal, _, noise = _linearised(model, shape, data, pose)
+    total = np.linalg.inv(normal + _prior(model, pose)[0])
+    return pose, Spread(total, total @ noise @ total)
+
+
+def _linearised(
+    model: Model, shape: Shape, data: Data, pose: Pose
+) -> tuple[NDArray, NDArray, NDArray]:
+    """Return the normal matrix (T, D, D) and right side (T, D) of the points, and its noise.
+
+    The noise (T, D, D) is the right side's covariance from the keypoints' own errors.
+    """
+    origin, turned = poses.forward(model, pose, shape.offsets)
+    points = poses.placed(origin, turned, shape.segment_of, shape.places)
+    residual = data.xyz - points
+    far = np.sqrt(np.einsum("tja,tjab,tjb->tj", residual, data.information, residual))
+    weight = np.minimum(1.0, FAR / np.maximum(far, FAR))[..., None, None] * data.information
+    n_frames, n_free = len(points), len(model.sigma)
+    normal, noise = np.empty((2, n_frames, n_free, n_free))
+    right = np.empty((n_frames, n_free))
+    for first in range(0, n_frames, CHUNK):
+        at = slice(first, first + CHUNK)
+        by = poses.derivatives(model, origin[:, at], turned[:, at], points[at], shape.segment_of)
+        weighted = (weight[at] @ by).reshape(len(by), -1, n_free)
+        spread = (data.noise[at] @ weighted.reshape(by.shape)).reshape(weighted.shape)
+        noise[at] = np.swapaxes(weighted, 1, 2) @ spread
+        by = by.reshape(len(by), -1, n_free)
+        normal[at] = np.swapaxes(by, 1, 2) @ weighted
+        right[at] = np.einsum("tnd,tn->td", weighted, residual[at].reshape(len(by), -1))
+    return normal, right, noise
+
+
+def _prior(model: Model, pose: Pose) -> tuple[NDArray, NDArray]:
+    """Return the normal matrix (T, D, D) and right side (T, D) of priors and ranges."""
+    value, blocks = poses.coordinates(model, pose)
+    beyond = value - np.clip(value, model.low, model.high)
+    weight = 1 / model.sigma**2 + (beyond != 0) / LIMIT_SIGMA**2
+    slope = -value / model.sigma**2 - beyond / LIMIT_SIGMA**2
+    normal = np.zeros((*value.shape, value.shape[1]))
+    right = slope.copy()
+    diagonal = np.arange(value.shape[1])
+    normal[:, diagonal, diagonal] = weight
+    for at, joint in enumerate(model.joints):
+        if joint.kind == BALL:
+            own = slice(model.first[at], model.first[at] + 3)
+            normal[:, own, own] = np.swapaxes(blocks[at], 1, 2) @ (
+                weight[:, own, None] * blocks[at]
+            )
+            right[:, own] = np.einsum("tba,tb->ta", blocks[at], slope[:, own])
+    return normal, right
+
+
+def _second_differences(model: Model, pose: Pose) -> NDArray:
+    """Return the second differences (T - 2, D) of the motion."""
+    found = np.diff(pose.angle, 2, axis=0)
+    found[:, :3] = np.diff(pose.root, 2, axis=0)
+    for at, joint in enumerate(model.joints):
+        if joint.kind == BALL:
+            first = model.first[at]
+            turns = np.swapaxes(pose.local[at, :-1], 1, 2) @ pose.local[at, 1:]
+            found[:, first : first + 3] = np.diff(poses.log(turns), axis=0)
+    return found
+
+
+def _solve(model: Model, pose: Pose, normal: NDArray, right: NDArray, weights: NDArray) -> NDArray:
+    """Return the step (T, D): banded Cholesky, linear in the frames."""
+    n_frames, n_free = right.shape
+    prior, slope = _prior(model, pose)
+    normal, right = normal + prior, right + slope
+    each = np.arange(n_free)
+    normal[:, each, each] += 1e-9 * np.median(normal[:, each, each])
+    band = np.zeros((2 * n_free + 1, n_frames * n_free), order="F")
+    if n_frames > 2:
+        bend = weights * _second_differences(model, pose)
+        for shift, factor in ((0, 1.0), (1, -2.0), (2, 1.0)):
+            right[shift : n_frames - 2 + shift] -= factor * bend
+        second = scipy.sparse.diags([1.0, -2.0, 1.0], [0, 1, 2], shape=(n_frames - 2, n_frames))
+        square = (second.T @ second).todia()
+        for shift in range(3):
+            values = np.zeros(n_frames)
+            values[: n_frames - shift] = square.diagonal(-shift)
+            band[shift * n_free] += np.outer(values, weights).ravel()
+    for below in range(n_free):
+        block = band[below].reshape(n_frames, n_free)
+        block[:, : n_free - below] += normal[:, each[below:], each[: n_free - below]]
+    found = scipy.linalg.solveh_banded(
+        band, right.ravel(), overwrite_ab=True, lower=True, check_finite=False
+    )
+    return found.reshape(n_frames, n_free)

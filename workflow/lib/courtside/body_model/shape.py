@@ -1,0 +1,191 @@
+"""A subject's shape: lengths of segments and places of points on them, from the best frames."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.body_model import segments
+from courtside.body_model.segments import SIDES, Model
+
+BEST = 0.5  # share of the frames, those of least uncertainty, that a length is the median of
+LUMBAR = 0.2  # ASSUME: height of the joint of pelvis and thorax, share of the trunk's length
+STERNUM_M = 0.02  # ASSUME: of the clavicle's inner end from the middle plane
+# ASSUME: of a length that the median does not lessen: joints err alike in all frames
+# (`joint_correction.LENGTH_SIGMA`).
+SYSTEMATIC = 0.04
+# Share of body height, of men and women together (Winter 2009, fig. 4.1 after Drillis & Contini
+# 1966), where a take does not show a length; ASSUME: 6 % standard deviation.
+OF_HEIGHT = {
+    "thigh": 0.245, "shank": 0.246, "upper_arm": 0.186, "forearm": 0.146,
+    "hips": 0.12, "shoulders": 0.2, "trunk": 0.288,
+}  # fmt: skip
+HEIGHT_M, HEIGHT_SIGMA = 1.72, 0.06  # ASSUME: of an adult whose height is not stated
+TOES = ("foot_index", "big_toe")  # of which a network has one
+LEAST = 10  # frames that a median needs
+PAIRS = {
+    "thigh": ("hip", "knee"),
+    "shank": ("knee", "ankle"),
+    "upper_arm": ("shoulder", "elbow"),
+    "forearm": ("elbow", "wrist"),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """One subject's segments and the points of a network on them."""
+
+    offsets: NDArray  # (S, 3) m: origins in the parents
+    sigma_m: NDArray  # (S,) of their lengths
+    joints: tuple[str, ...]  # J
+    index: NDArray  # (J,) of these joints in the record
+    segment_of: NDArray  # (J,) int
+    places: NDArray  # (J, 3) m, in the segment's axes
+
+
+def lengths(
+    place: Mapping[str, NDArray], sigma: Mapping[str, NDArray], height_m: float | None = None
+) -> dict[str, tuple[float, float]]:
+    """Return the lengths of the body with their standard deviations, m.
+
+    `place` holds the limb joints (T, 3) m, NaN where missing, `sigma` their standard deviations
+    (T,). Both sides count together. Each is the weighted mean of the median of the best frames and
+    of its usual share of the height.
+    """
+    tall = (height_m or HEIGHT_M, 0.0 if height_m else HEIGHT_SIGMA)
+    found = {}
+    for name in OF_HEIGHT:
+        apart, spread = _distances(name, place, sigma)
+        prior = OF_HEIGHT[name] * tall[0]
+        prior_sigma = prior * np.hypot(HEIGHT_SIGMA, tall[1])
+        known = np.isfinite(apart)
+        if known.sum() < LEAST:
+            found[name] = (prior, float(prior_sigma))
+            continue
+        best = known & (spread <= np.quantile(spread[known], BEST))
+        median = float(np.median(apart[best]))
+        weights = 1 / np.square([SYSTEMATIC * median, prior_sigma])
+        mean = float(weights @ [median, prior] / weights.sum())
+        found[name] = (mean, float(weights.sum() ** -0.5))
+    return found
+
+
+def _distances(
+    name: str, place: Mapping[str, NDArray], sigma: Mapping[str, NDArray]
+) -> tuple[NDArray, NDArray]:
+    """Return distances (N,) m, and how uncertain each is, of one length of the body."""
+    if name in PAIRS:
+        ends = [(f"{side}_{PAIRS[name][0]}", f"{side}_{PAIRS[name][1]}") for side in SIDES]
+        apart = [np.linalg.norm(place[a] - place[b], axis=1) for a, b in ends]
+        return np.concatenate(apart), np.concatenate(
+            [np.hypot(sigma[a], sigma[b]) for a, b in ends]
+        )
+    middle = {
+        part: (place[f"left_{part}"] + place[f"right_{part}"]) / 2 for part in ("hip", "shoulder")
+    }
+    if name == "trunk":
+        line, parts = middle["shoulder"] - middle["hip"], ("hip", "shoulder")
+    else:
+        part = name.removesuffix("s")
+        line, parts = place[f"left_{part}"] - place[f"right_{part}"], (part, part)
+    squares = [sigma[f"{side}_{part}"] ** 2 for side, part in product(SIDES, parts)]
+    return np.linalg.norm(line, axis=1), np.sqrt(sum(squares))
+
+
+def of_lengths(
+    model: Model, known: Mapping[str, tuple[float, float]], joints: Sequence[str]
+) -> Shape:
+    """Return the shape of these lengths; points other than limb joints lie at their segment."""
+    offsets, sigma = np.zeros((len(model.names), 3)), np.zeros(len(model.names))
+    trunk, shoulders, hips = (known[name] for name in ("trunk", "shoulders", "hips"))
+
+    def put(name: str, offset: Sequence[float], sigma_m: float) -> None:
+        offsets[model.names.index(name)] = offset
+        sigma[model.names.index(name)] = sigma_m
+
+    put("thorax", (0, LUMBAR * trunk[0], 0), LUMBAR * trunk[1])
+    put("head", (0, (1 - LUMBAR) * trunk[0], 0), (1 - LUMBAR) * trunk[1])
+    for side, z in zip(SIDES, (-1.0, 1.0), strict=True):
+        chest = (0, (1 - LUMBAR) * trunk[0], z * STERNUM_M)
+        put(f"{side}_clavicle", chest, (1 - LUMBAR) * trunk[1])
+        put(f"{side}_humerus", (0, 0, z * (shoulders[0] / 2 - STERNUM_M)), shoulders[1] / 2)
+        put(f"{side}_femur", (0, 0, z * hips[0] / 2), hips[1] / 2)
+        for segment, name in (
+            ("forearm", "upper_arm"), ("hand", "forearm"), ("tibia", "thigh"), ("foot", "shank")
+        ):  # fmt: skip
+            put(f"{side}_{segment}", (0, -known[name][0], 0), known[name][1])
+    on = [(at, str(joint), segments.segment_of(str(joint))) for at, joint in enumerate(joints)]
+    on = [(at, joint, segment) for at, joint, segment in on if segment]
+    return Shape(
+        offsets,
+        sigma,
+        tuple(joint for _, joint, _ in on),
+        np.array([at for at, _, _ in on]),
+        np.array([model.names.index(segment) for _, _, segment in on]),
+        np.zeros((len(on), 3)),
+    )
+
+
+def is_fixed(shape: Shape) -> NDArray:
+    """Return which points (J,) are origins of segments: limb joints."""
+    return np.array([joint.partition("_")[2] in segments.ORIGINS for joint in shape.joints])
+
+
+def with_feet(shape: Shape, place: Mapping[str, NDArray]) -> Shape:
+    """Return the shape with heel and toe in the foot's middle plane, its sole along X.
+
+    From the medians of the sides of the triangle of ankle, heel and toe, both feet together; the
+    feet of networks without heels keep their points at the ankle, to which nothing ties them.
+    """
+    places = shape.places.copy()
+    for toe in TOES:
+        if f"left_{toe}" not in shape.joints or "left_heel" not in shape.joints:
+            continue
+        sides = []
+        for one, other in (("ankle", "heel"), ("ankle", toe), ("heel", toe)):
+            apart = [place[f"{side}_{one}"] - place[f"{side}_{other}"] for side in SIDES]
+            sides.append(float(np.nanmedian(np.linalg.norm(np.concatenate(apart), axis=1))))
+        behind = (sides[0] ** 2 - sides[1] ** 2 + sides[2] ** 2) / (2 * sides[2])
+        height = np.sqrt(max(sides[0] ** 2 - behind**2, 0.0))
+        for side in SIDES:
+            places[shape.joints.index(f"{side}_heel")] = (-behind, -height, 0)
+            places[shape.joints.index(f"{side}_{toe}")] = (sides[2] - behind, -height, 0)
+        break
+    return replace(shape, places=places)
+
+
+def with_points(
+    shape: Shape, origin: NDArray, turned: NDArray, xyz: NDArray, weight: NDArray
+) -> Shape:
+    """Return the shape with all points but limb joints where poses of the model see them.
+
+    `origin` (S, T, 3), `turned` (S, T, 3, 3) are poses, `xyz` (T, J, 3) m the measured points and
+    `weight` (T, J) theirs, 0 where missing. Left and right mirror each other.
+    """
+    places = shape.places.copy()
+    free = ~is_fixed(shape) & ~_is_sole(shape)
+    for at in np.flatnonzero(free).tolist():
+        segment, w = shape.segment_of[at], weight[:, at]
+        if w.any():
+            line = np.nan_to_num(xyz[:, at]) - origin[segment]
+            own = np.einsum("tba,tb->ta", turned[segment], line)
+            places[at] = w @ own / w.sum()
+    mirrored = places.copy()
+    for at, joint in enumerate(shape.joints):
+        side, _, part = joint.partition("_")
+        other = {"left": "right", "right": "left"}.get(side)
+        if other and f"{other}_{part}" in shape.joints:
+            across = places[shape.joints.index(f"{other}_{part}")] * [1, 1, -1]
+            mirrored[at] = (places[at] + across) / 2
+        else:
+            mirrored[at] = places[at] * [1, 1, 0]
+    return replace(shape, places=np.where(free[:, None], mirrored, shape.places))
+
+
+def _is_sole(shape: Shape) -> NDArray:
+    """Return which points (J,) are those that `with_feet` placed."""
+    names = [joint.partition("_")[2] for joint in shape.joints]
+    sole = np.array([name in ("heel", *TOES) for name in names])
+    return sole & shape.places.any(axis=1)

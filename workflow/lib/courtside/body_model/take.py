@@ -1,0 +1,146 @@
+"""A take's skeletons fitted by the model: joints with constant bones."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.body_model import angles, fit, pose, segments, shape, start
+from courtside.body_model.fit import Spread
+from courtside.body_model.pose import Pose
+from courtside.body_model.shape import Shape
+from courtside.records.keypoints import missing_reason, skeleton
+from courtside.records.keypoints.keypoints import Keypoints3D
+from courtside.records.keypoints.skeletal_motion import SkeletalMotion
+
+UNKNOWN_M = 0.03  # ASSUME: standard deviation per axis that a joint without a network's has
+ROUNDS = 2  # fits between which the points of feet, hands and head are placed
+LEAST = 6  # limb joints of a frame that is fitted
+
+
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """One person's fit over the frames that it covers."""
+
+    frames: slice
+    shape: Shape
+    pose: Pose
+    spread: Spread
+
+
+def errors(points: Keypoints3D, person: int) -> tuple[NDArray, NDArray]:
+    """Return the covariance (T, J, 3, 3) m2 by which one person's joints count, and their noise.
+
+    Filled gaps have no stated noise: they count with twice the joint's usual one. Joints that the
+    network's errors are unknown of get `UNKNOWN_M`.
+    """
+    network, own = points.covariance_network[person], points.covariance_2d[person]
+    variance = np.where(np.isfinite(network), network, UNKNOWN_M**2 * np.eye(3))
+    around = np.ma.median(np.ma.masked_invalid(np.trace(own, axis1=2, axis2=3)), axis=0) / 3
+    unknown = 4 * np.ma.filled(around, UNKNOWN_M**2)[:, None, None] * np.eye(3)
+    noise = np.where(np.isfinite(own), own, unknown)
+    return noise + variance, noise
+
+
+def person(
+    points: Keypoints3D, at: int, cutoff_hz: Mapping[str, float], height_m: float | None = None
+) -> Fitted | None:
+    """Fit one person's frames from the first to the last that is seen; None if none is."""
+    names, limbs = points.joints.tolist(), list(skeleton.JOINTS)
+    limb = points.xyz[at][:, [names.index(joint) for joint in limbs]]
+    seen = np.flatnonzero(np.isfinite(limb).all(axis=2).sum(axis=1) >= LEAST)
+    if len(seen) < 2 or not np.isfinite(limb).all(axis=2).sum(axis=0).all():
+        return None
+    frames = slice(int(seen[0]), int(seen[-1]) + 1)
+    covariance, noise = (one[frames] for one in errors(points, at))
+    xyz = points.xyz[at][frames]
+    place = {joint: xyz[:, k] for k, joint in enumerate(names)}
+    sigma = np.sqrt(np.trace(covariance, axis1=2, axis2=3) / 3)
+    spread = {joint: sigma[:, k] for k, joint in enumerate(names)}
+    model = segments.model()
+    body = shape.of_lengths(model, shape.lengths(place, spread, height_m), names)
+    body = shape.with_feet(body, place)
+    filled = {joint: _filled(place[joint]) for joint in limbs}
+    found = start.pose(model, filled)
+    known = np.isfinite(xyz[:, body.index]).all(axis=2)
+    information = np.where(known[..., None, None], np.linalg.inv(covariance[:, body.index]), 0.0)
+    data = fit.Data(np.nan_to_num(xyz[:, body.index]), information, noise[:, body.index])
+    weight = np.trace(information, axis1=2, axis2=3)
+    hz = fit.cutoffs(model, cutoff_hz)
+    for _ in range(ROUNDS):
+        origin, turned = pose.forward(model, found, body.offsets)
+        body = shape.with_points(body, origin, turned, data.xyz, weight)
+        found, around = fit.fit(model, body, data, found, hz, points.rate_hz)
+    return Fitted(frames, body, found, around)
+
+
+def _filled(line: NDArray) -> NDArray:
+    """Return a path (T, 3) with gaps filled along straight lines."""
+    known, at = np.isfinite(line).all(axis=1), np.arange(len(line))
+    return np.stack([np.interp(at, at[known], line[known, axis]) for axis in range(3)], axis=1)
+
+
+def joints(points: Keypoints3D, fits: Mapping[int, Fitted]) -> Keypoints3D:
+    """Return the record with the joints of the fits, where the record has these joints.
+
+    The fit's error is split as the record's: the keypoints' noise, and the rest as the network's.
+    """
+    model, kept = segments.model(), np.zeros(points.xyz.shape[:3], dtype=bool)
+    xyz, noise, rest = (
+        np.full(one.shape, np.nan)
+        for one in (points.xyz, points.covariance_2d, points.covariance_network)
+    )
+    for at, one in fits.items():
+        origin, turned = pose.forward(model, one.pose, one.shape.offsets)
+        placed = pose.placed(origin, turned, one.shape.segment_of, one.shape.places)
+        by = pose.derivatives(model, origin, turned, placed, one.shape.segment_of)
+        total, own = one.spread.points(by)
+        rows = np.ix_(np.arange(one.frames.start, one.frames.stop), one.shape.index)
+        known = np.isfinite(points.xyz[at][rows]).all(axis=2)
+        kept[at][rows] = known
+        xyz[at][rows] = np.where(known[..., None], placed, np.nan)
+        noise[at][rows] = np.where(known[..., None, None], own, np.nan)
+        rest[at][rows] = np.where(known[..., None, None], total - own, np.nan)
+    lost = np.isfinite(points.xyz[..., 0]) & ~kept
+    reason = np.where(lost, missing_reason.UNCERTAIN, points.reason).astype(points.reason.dtype)
+    return replace(points, xyz=xyz, covariance_2d=noise, covariance_network=rest, reason=reason)
+
+
+def motion(points: Keypoints3D, fits: Mapping[int, Fitted]) -> SkeletalMotion:
+    """Return the motion of the fits; persons without one have no joints."""
+    model, n_people, n_frames = segments.model(), len(points.person_id), len(points.time_s)
+    first = next(iter(fits.values()), None)
+    unknown = dict.fromkeys(shape.OF_HEIGHT, (np.nan, np.nan))
+    on = first.shape if first else shape.of_lengths(model, unknown, points.joints.tolist())
+    n_segments, n_points = len(model.names), len(on.joints)
+    offsets, sigma = np.zeros((n_people, n_segments, 3)), np.full((n_people, n_segments), np.nan)
+    places = np.zeros((n_people, n_points, 3))
+    root = np.full((n_people, n_frames, 3), np.nan)
+    turns = np.full((n_people, n_frames, n_segments, 3, 3), np.nan)
+    measured = {at: angles.of_fit(model, one.pose, one.spread) for at, one in fits.items()}
+    names = angles.names()
+    degrees, spread = np.full((2, n_people, n_frames, len(names)), np.nan)
+    for at, one in fits.items():
+        offsets[at], sigma[at], places[at] = one.shape.offsets, one.shape.sigma_m, one.shape.places
+        root[at, one.frames] = one.pose.root
+        turns[at, one.frames] = np.moveaxis(one.pose.local, 0, 1)
+        for k, name in enumerate(names):
+            degrees[at, one.frames, k], spread[at, one.frames, k] = measured[at][name]
+    return SkeletalMotion(
+        model=points.model,
+        person_id=points.person_id,
+        time_s=points.time_s,
+        segments=np.array(model.names),
+        parents=model.parents,
+        offsets=offsets,
+        offset_sigma_m=sigma,
+        joints=np.array(on.joints),
+        segment_of=on.segment_of,
+        places=places,
+        root=root,
+        parent_from_segment=turns,
+        angles=np.array(names),
+        angle_deg=degrees,
+        angle_sigma_deg=spread,
+    )
