@@ -63,6 +63,7 @@ PLACES = {
     "*/takes/*/kinematics/*.frames.csv": [KINEMATICS],
     "*/takes/*/kinematics/*.summary.csv": [": `.summary.csv`:"],
     "*/takes/*/kinematics/*.cutoffs.csv": [": `.cutoffs.csv`:"],
+    "*/takes/*/motion/*.angles.csv": ["Columns of the joint angles"],
     "*/takes/*/pose3d*/*.csv": [TIDY],
     "*/takes/*/quality.csv": ["Columns of the verdicts"],
     "figures/calibration.csv": [f"{TOGETHER} | calibration.csv", OF_CALIBRATION],
@@ -167,6 +168,7 @@ def pattern(name):
     """Return the regular expression of a name that may stand for several."""
     kept = re.escape(name).replace(r"\.\.\.", r"\w+")
     kept = re.sub(r"<\w+>", r"\\w+", kept)
+    kept = kept.replace(r"\*SIDE\*", "(left|right)")
     return kept.replace(r"\*POINT\*", POINTS).replace(r"\*ANGLE\*", ANGLES)
 
 

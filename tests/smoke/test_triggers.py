@@ -53,7 +53,9 @@ REAL_FUSED = {
     "compare_views": 1,
     "filter_motion": 1,  # two-dlt is only compared, raw
     "correct_joints": 1,
-    "export_take": 3,  # one person, three stages
+    "fit_skeleton": 1,
+    "export_take": 4,  # one person, four stages
+    "export_motion": 1,
     "measure_kinematics": 1,
     "judge_take": 1,
     "build_viewer": 1,
@@ -73,6 +75,7 @@ PLAYERS_FUSED = {
     "triangulate": 2 * 5 + 1,
     "filter_motion": 2 * 5,
     "correct_joints": 2 * 5,
+    "fit_skeleton": 2,
     "measure_kinematics": 2 + 4,  # the exported way in both takes, the others where they are drawn
     "judge_take": 2,
     "evaluate_kinematics": 2 + 4,
@@ -246,7 +249,7 @@ def test_a_package_of_the_lock_reruns_what_imports_it(kept):
     with edited(lock, f"\npytest=={pytest.__version__} ", "\npytest==99 "):  # no rule runs tests
         assert planned(root=kept) == {}
     with edited(lock, f"\nezc3d=={metadata.version('ezc3d')} ", "\nezc3d==99 "):
-        assert planned(root=kept) == {"export_take": 3, "export_device": 1}  # they write C3D
+        assert planned(root=kept) == {"export_take": 4, "export_device": 1}  # they write C3D
         told = by_file(verify(kept))
     recorded = list((kept / RESULTS / "run" / "provenance").rglob("*.json"))
     assert sum("environment.lock changed" in line for line in told) == len(recorded) > 100

@@ -82,7 +82,7 @@ wildcard_constraints:
     model="|".join(STUDY.models),
     calibration=NAME,
     fusion=NAME,
-    stage="|".join(paths.STAGES),
+    stage="|".join((*paths.STAGES, paths.MODELLED)),
     walk=NAME,
     mapper="global|incremental",
     n_images="[1-9][0-9]*",

@@ -1,10 +1,10 @@
 """Metric skeletons and the files that other programs open.
 
 Inputs: 2D keypoints, shake, cameras. Outputs: results/{session}/takes/{take}/ pose2d_steadied, sync,
-people, pose3d, pose3d_filtered, pose3d_corrected, kinematics, quality.csv.
+people, pose3d, pose3d_filtered, pose3d_corrected, pose3d_ik, motion, kinematics, quality.csv.
 Steps: steady_keypoints (of a take whose cameras shake), synchronise_cameras, associate_people
 (everybody), name_people (the subjects among them), triangulate (raw, always kept), filter_motion,
-correct_joints, export_take, measure_kinematics, judge_take.
+correct_joints, fit_skeleton, export_take, export_motion, measure_kinematics, judge_take.
 """
 
 
@@ -145,6 +145,43 @@ rule correct_joints:
         sex_of=of_job(takes.sexes),
     script:
         "../scripts/correct_joints.py"
+
+
+rule fit_skeleton:
+    input:
+        raw=paths.POSE3D,
+        corrected=paths.POSE3D_CORRECTED,
+        cutoffs=paths.CUTOFFS,
+        skeleton=of_job(Job.skeleton_file),
+        offsets=lambda w: CONFIG / paths.OFFSETS_CSV.format(model=w.model),
+    output:
+        joints_npz=paths.POSE3D_IK,
+        motion_npz=paths.SKELETAL_MOTION,
+        angles_csv=paths.JOINT_ANGLES,
+    log:
+        f"results/{{session}}/logs/fit_skeleton/{paths.OF_FUSED}.log",
+    benchmark:
+        f"results/{{session}}/benchmarks/fit_skeleton/{paths.OF_FUSED}.tsv"
+    params:
+        code=code("fit_skeleton.py"),
+        step=of_job(lambda job: job.some("filter_motion", ["max_gap_s"])),
+        sex_of=of_job(takes.sexes),
+        height_m_of=of_job(takes.heights),
+    script:
+        "../scripts/fit_skeleton.py"
+
+
+rule export_motion:
+    input:
+        motion_npz=of_job(takes.exported_motion),
+    output:
+        mot_path=paths.OPENSIM_MOTION,
+    log:
+        f"results/{{session}}/logs/export_motion/{paths.OF_FUSED}.{{person}}.log",
+    params:
+        code=code("export_motion.py"),
+    script:
+        "../scripts/export_motion.py"
 
 
 rule export_take:

@@ -12,6 +12,6 @@ def test_bent_limbs_start_where_they_are():
     found = start.pose(model, {j: points.xyz[0][:, names.index(j)] for j in skeleton.JOINTS})
     hinges = [moving_model.column(name) for name in ("left_tibia", "right_forearm")]
     np.testing.assert_allclose(found.angle[:, hinges], true.angle[:, hinges], atol=1e-6)
-    origin, turned = pose.forward(model, found, moving_model.body().offsets)
+    origin, _ = pose.forward(model, found, moving_model.body().offsets)
     knee = origin[moving_model.NAMES.index("left_tibia")]
     np.testing.assert_allclose(knee, points.xyz[0][:, names.index("left_knee")], atol=1e-6)

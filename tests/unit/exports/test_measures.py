@@ -5,11 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from courtside.body_model import take
 from courtside.exports import measures
 from courtside.kinematics import joint_angles, skeleton_filter
 from courtside.kinematics import measures as kinematics
 from courtside.records.keypoints import derived_joints, missing_reason
-from fixtures.people import footwork, walker
+from fixtures.people import footwork, moving_model, walker
 
 TABLE = derived_joints.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
 
@@ -123,3 +124,14 @@ def test_nobody_seen_is_a_table_of_missing_values():
     assert np.isnan(rows.loc["neck_speed_max", "value"])
     assert rows.loc["neck_distance", "n"] == 0
     assert measures.frames(people).neck_speed_m_s.isna().all()
+
+
+def test_angles_of_a_skeletal_motion_have_a_row_for_each_frame_and_person():
+    points = moving_model.points(moving_model.moving(5))
+    fitted = take.person(points, 0, dict.fromkeys(moving_model.JOINTS, 8.0), 1.75)
+    motion = take.motion(points, {0: fitted})
+    rows = measures.angles(motion)
+    knee = motion.angles.tolist().index("left_knee_flexion")
+    np.testing.assert_allclose(rows["left_knee_flexion_deg"], motion.angle_deg[0, :, knee].round(2))
+    assert rows["person"].tolist() == ["a"] * 5
+    assert (rows["right_elbow_flexion_sd_deg"] > 0).all()

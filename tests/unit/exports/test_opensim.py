@@ -3,11 +3,14 @@
 from pathlib import Path
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 
+from courtside.body_model import take
 from courtside.exports import markers, opensim
 from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
+from fixtures.people import moving_model
 
 SKELETONS = Path(__file__).parents[3] / "config" / "skeletons"
 # Bodies of Model_Pose2Sim_simple.osim of Pose2Sim 0.10.49.
@@ -58,3 +61,36 @@ def test_a_joint_without_a_place_is_named(tmp_path):
     with pytest.raises(InputError, match="found 'tail'"):
         opensim.write_markers(tmp_path / "m.xml", ["left_knee", "tail"])
     assert not (tmp_path / "m.xml").exists()
+
+
+def motion():
+    """Return the fitted motion of a body that walks on the spot."""
+    points = moving_model.points(moving_model.moving(30))
+    hz = dict.fromkeys(moving_model.JOINTS, 8.0)
+    return take.motion(points, {0: take.person(points, 0, hz, 1.75)})
+
+
+def test_a_motion_file_has_opensims_header_and_coordinates(tmp_path):
+    found = motion()
+    opensim.write_motion(tmp_path / "a.mot", found, 0)
+    head, rows = (tmp_path / "a.mot").read_text().split("endheader\n")
+    stated = dict(line.split("=") for line in head.split()[1:])
+    names, *lines = rows.splitlines()
+    names, values = names.split("\t"), np.array([line.split("\t") for line in lines], dtype=float)
+    assert stated["inDegrees"] == "yes"
+    assert values.shape == (int(stated["nRows"]), int(stated["nColumns"])) == (30, len(names))
+    column = dict(zip(names, values.T, strict=True))
+    np.testing.assert_allclose(column["time"], found.time_s, atol=1e-6)
+    knee = found.angle_deg[0, :, found.angles.tolist().index("left_knee_flexion")]
+    np.testing.assert_allclose(column["knee_angle_l"], knee, atol=1e-5)
+    assert np.ptp(column["pelvis_ty"]) < 0.05 < np.mean(column["pelvis_ty"]) - 0.9
+    for name in ("arm_add_l", "arm_add_r"):  # both arms 44 degrees from the trunk
+        assert np.abs(column[name] + 43).max() < 4
+    assert 10 < column["pelvis_rotation"][-1] - column["pelvis_rotation"][0] < 40
+
+
+def test_a_person_without_fitted_frames_has_no_motion_file(tmp_path):
+    found = motion()
+    found.root[:] = np.nan
+    with pytest.raises(InputError, match="fitted frames"):
+        opensim.write_motion(tmp_path / "a.mot", found, 0)

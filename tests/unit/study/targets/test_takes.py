@@ -38,12 +38,14 @@ def test_every_take_that_fixed_cameras_measure_is_judged(study):
 
 
 def test_skeletons_of_every_stage_are_exported(study):
-    stages = ("pose3d", "pose3d_filtered", "pose3d_corrected")
-    assert takes.every_export(study) == [
+    stages = ("pose3d", "pose3d_filtered", "pose3d_corrected", "pose3d_ik")
+    exported = [
         f"{REAL}/{stage}/file/all-robust/blazepose-full.p1.{suffix}"
         for stage in stages
         for suffix in ("trc", "c3d", "csv")
     ]
+    motion = f"{REAL}/pose3d_ik/file/all-robust/blazepose-full.p1.mot"
+    assert takes.every_export(study) == [*exported, motion]
 
 
 def test_joints_are_corrected_only_of_networks_with_offsets(studies):
@@ -82,7 +84,8 @@ def test_without_videos_only_pictures_are_left_out(study):
     assert takes.every_check(study) == []
     assert takes.every_verdict(study) == [f"{REAL}/quality.csv"]
     assert takes.every_kinematics(study) == [
-        f"{REAL}/kinematics/file/all-robust/blazepose-full.summary.csv"
+        f"{REAL}/kinematics/file/all-robust/blazepose-full.summary.csv",
+        f"{REAL}/motion/file/all-robust/blazepose-full.angles.csv",
     ]
     drawn = {path.split("/")[-1].split(".")[0] for path in takes.every_figure(study)}
     assert drawn == {"skeletons", "reprojection", "visibility", "kinematics"}
@@ -96,11 +99,16 @@ def test_shake_is_drawn_of_steady_takes(study):
 
 
 def test_measures_of_all_takes_with_cameras(study):
-    way = "all-robust/blazepose-full.summary.csv"
+    way, players = "all-robust/blazepose-full", "results/players-tiny/takes"
+    stems = [
+        (REAL, "file"),
+        (f"{players}/shot", "known18"),
+        (f"{players}/rally", "known18"),
+    ]
     assert takes.every_kinematics(study) == [
-        f"{REAL}/kinematics/file/{way}",
-        f"results/players-tiny/takes/shot/kinematics/known18/{way}",
-        f"results/players-tiny/takes/rally/kinematics/known18/{way}",
+        f"{take}/{kind}/{calibration}/{way}.{end}.csv"
+        for take, calibration in stems
+        for kind, end in (("kinematics", "summary"), ("motion", "angles"))
     ]
 
 

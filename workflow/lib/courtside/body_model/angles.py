@@ -71,8 +71,9 @@ def measure(model: Model, pose: Pose, covariance: NDArray) -> dict[str, tuple[ND
 
 def of_fit(model: Model, pose: Pose, spread: Spread) -> dict[str, tuple[NDArray, NDArray]]:
     """Return the angles of a fit; of variance beyond the noise a share counts."""
-    rest = NETWORK_SHARE * (spread.total - spread.noise)
-    return measure(model, pose, spread.noise + rest)
+    own = slice(0, len(model.sigma))  # without the lengths, whose errors these contain
+    total, noise = spread.total[:, own, own], spread.noise[:, own, own]
+    return measure(model, pose, noise + NETWORK_SHARE * (total - noise))
 
 
 def names() -> tuple[str, ...]:

@@ -1,7 +1,7 @@
 """Fit of the model to all frames of a take together: Gauss-Newton on a banded system."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy
@@ -19,8 +19,8 @@ LONGEST = 0.5  # rad or m, of a step
 CHUNK = 250  # frames whose derivatives are in memory at once
 SETTLED = 1e-3  # rad or m: a largest median step below it ends the fit
 # Of each segment's rotation: the joint whose cut-off it has, and a factor of it. Factors were
-# chosen on `players-dev`: limbs that are hidden in some views need more smoothing than the filter gives,
-# but the knee, whose points are three (ankle, heel, toe), less.
+# chosen on `players-dev`: limbs that are hidden in some views need more smoothing than the filter
+# gives, but the knee, whose points are three (ankle, heel, toe), less.
 SHOWN = {
     "pelvis": ("hip", 0.6), "thorax": ("shoulder", 0.6), "clavicle": ("shoulder", 0.6),
     "head": ("shoulder", 0.6), "humerus": ("elbow", 0.5), "forearm": ("wrist", 0.5),
@@ -39,13 +39,16 @@ class Data:
 
 @dataclass(frozen=True, eq=False)
 class Spread:
-    """Covariances (T, D, D) of coordinates: of all errors, and of the keypoints' own noise."""
+    """Covariances (T, D + K, D + K) of coordinates and the shape's lengths.
+
+    Of all errors, and of the keypoints' own noise.
+    """
 
     total: NDArray
     noise: NDArray
 
     def points(self, by: NDArray) -> tuple[NDArray, NDArray]:
-        """Return both for points, (T, J, 3, 3) m2, by their derivatives (T, J, 3, D)."""
+        """Return both for points, (T, J, 3, 3) m2, by their derivatives (T, J, 3, D + K)."""
         total, noise = (
             by @ one[:, None] @ np.swapaxes(by, 2, 3) for one in (self.total, self.noise)
         )
@@ -70,7 +73,7 @@ def stiffness(normal: NDArray, cutoff_hz: NDArray, rate_hz: float, sigma: NDArra
 
     A series measured with steady information I and fitted with weight w on its second differences
     passes 1 / (1 + w (2 sin(pi f / rate))^4 / I) of the frequency f: a zero-lag Butterworth filter
-    of effective order 4 (Whittaker 1923; Eilers 2003), whose gain is 1 / sqrt(2) at the cut-off
+    of effective order 4 (Eilers 2003), whose gain is 1 / sqrt(2) at the cut-off
     with this w. I is the median over frames (T, D, D) of the information of each degree of freedom.
     """
     information = np.median(np.diagonal(normal, axis1=1, axis2=2), axis=0) + 1 / sigma**2
@@ -85,8 +88,8 @@ def fit(
 
     It minimises the squared Mahalanobis distances of the points, Huber beyond `FAR`, the squared
     coordinates over their prior, what exceeds their ranges, and the second differences
-    (`stiffness`). The covariance is that of each frame by itself: errors of joints last for some
-    frames, so that what neighbours say is not new.
+    (`stiffness`). The covariance is that of each frame by itself, and of wrong lengths of segments:
+    errors of joints last for some frames, so that what neighbours say is not new.
     """
     pose, weights = start, None
     for _ in range(STEPS):
@@ -97,35 +100,60 @@ def fit(
         pose = poses.moved(model, pose, np.clip(step, -LONGEST, LONGEST))
         if np.median(np.abs(step), axis=0).max() < SETTLED:
             break
-    normal, _, noise = _linearised(model, shape, data, pose)
-    total = np.linalg.inv(normal + _prior(model, pose)[0])
-    return pose, Spread(total, total @ noise @ total)
+    return pose, _spread(model, shape, data, pose)
+
+
+def _spread(model: Model, shape: Shape, data: Data, pose: Pose) -> Spread:
+    normal, _, noise = _linearised(model, shape, data, pose, with_lengths=True)
+    n_free, known = len(model.sigma), np.arange(len(model.sigma), normal.shape[1])
+    normal[:, :n_free, :n_free] += _prior(model, pose)[0]
+    normal[:, known, known] += 1 / shape.length_sigma_m**2
+    total = np.linalg.inv(normal)
+    return Spread(total, total @ noise @ total)
+
+
+def derivatives(
+    model: Model, shape: Shape, pose: Pose, with_lengths: bool = False
+) -> tuple[NDArray, NDArray]:
+    """Return the points (T, J, 3) m, and their derivatives (T, J, 3, D) by the coordinates.
+
+    With lengths, (T, J, 3, D + K): by those of the shape, too.
+    """
+    origin, turned = poses.forward(model, pose, shape.offsets)
+    points = poses.placed(origin, turned, shape.segment_of, shape.places)
+    by = poses.derivatives(model, origin, turned, points, shape.segment_of)
+    if with_lengths:
+        still = replace(pose, root=np.zeros_like(pose.root))
+        grown = [poses.forward(model, still, one)[0] for one in shape.by_length]
+        more = [np.moveaxis(one[shape.segment_of], 0, 1) for one in grown]
+        by = np.concatenate([by, np.stack(more, axis=3)], axis=3)
+    return points, by
 
 
 def _linearised(
-    model: Model, shape: Shape, data: Data, pose: Pose
+    model: Model, shape: Shape, data: Data, pose: Pose, with_lengths: bool = False
 ) -> tuple[NDArray, NDArray, NDArray]:
     """Return the normal matrix (T, D, D) and right side (T, D) of the points, and its noise.
 
     The noise (T, D, D) is the right side's covariance from the keypoints' own errors.
     """
-    origin, turned = poses.forward(model, pose, shape.offsets)
-    points = poses.placed(origin, turned, shape.segment_of, shape.places)
-    residual = data.xyz - points
-    far = np.sqrt(np.einsum("tja,tjab,tjb->tj", residual, data.information, residual))
-    weight = np.minimum(1.0, FAR / np.maximum(far, FAR))[..., None, None] * data.information
-    n_frames, n_free = len(points), len(model.sigma)
-    normal, noise = np.empty((2, n_frames, n_free, n_free))
-    right = np.empty((n_frames, n_free))
-    for first in range(0, n_frames, CHUNK):
+    parts: list[list[NDArray]] = [[], [], []]
+    for first in range(0, len(pose.root), CHUNK):
         at = slice(first, first + CHUNK)
-        by = poses.derivatives(model, origin[:, at], turned[:, at], points[at], shape.segment_of)
-        weighted = (weight[at] @ by).reshape(len(by), -1, n_free)
-        spread = (data.noise[at] @ weighted.reshape(by.shape)).reshape(weighted.shape)
-        noise[at] = np.swapaxes(weighted, 1, 2) @ spread
-        by = by.reshape(len(by), -1, n_free)
-        normal[at] = np.swapaxes(by, 1, 2) @ weighted
-        right[at] = np.einsum("tnd,tn->td", weighted, residual[at].reshape(len(by), -1))
+        part = Pose(pose.root[at], pose.local[:, at], pose.angle[at])
+        points, by = derivatives(model, shape, part, with_lengths)
+        residual = data.xyz[at] - points
+        info = data.information[at]
+        far = np.sqrt(np.einsum("tja,tjab,tjb->tj", residual, info, residual))
+        weight = np.minimum(1.0, FAR / np.maximum(far, FAR))[..., None, None] * info
+        flat = (len(by), -1, by.shape[3])
+        weighted = weight @ by
+        spread = (data.noise[at] @ weighted).reshape(flat)
+        weighted, by = weighted.reshape(flat), by.reshape(flat)
+        parts[0].append(np.swapaxes(by, 1, 2) @ weighted)
+        parts[1].append(np.einsum("tnd,tn->td", weighted, residual.reshape(len(by), -1)))
+        parts[2].append(np.swapaxes(weighted, 1, 2) @ spread)
+    normal, right, noise = map(np.concatenate, parts)
     return normal, right, noise
 
 

@@ -16,8 +16,7 @@ STERNUM_M = 0.02  # ASSUME: of the clavicle's inner end from the middle plane
 # ASSUME: of a length that the median does not lessen: joints err alike in all frames
 # (`joint_correction.LENGTH_SIGMA`).
 SYSTEMATIC = 0.04
-# Share of body height, of men and women together (Winter 2009, fig. 4.1 after Drillis & Contini
-# 1966), where a take does not show a length; ASSUME: 6 % standard deviation.
+# Share of body height, of men and women together (Winter 2009, fig. 4.1), where a take does not show a length; ASSUME: 6 % standard deviation.
 OF_HEIGHT = {
     "thigh": 0.245, "shank": 0.246, "upper_arm": 0.186, "forearm": 0.146,
     "hips": 0.12, "shoulders": 0.2, "trunk": 0.288,
@@ -39,6 +38,8 @@ class Shape:
 
     offsets: NDArray  # (S, 3) m: origins in the parents
     sigma_m: NDArray  # (S,) of their lengths
+    by_length: NDArray  # (K, S, 3): how offsets change with each of `OF_HEIGHT`
+    length_sigma_m: NDArray  # (K,) of these lengths
     joints: tuple[str, ...]  # J
     index: NDArray  # (J,) of these joints in the record
     segment_of: NDArray  # (J,) int
@@ -98,34 +99,37 @@ def of_lengths(
     model: Model, known: Mapping[str, tuple[float, float]], joints: Sequence[str]
 ) -> Shape:
     """Return the shape of these lengths; points other than limb joints lie at their segment."""
-    offsets, sigma = np.zeros((len(model.names), 3)), np.zeros(len(model.names))
-    trunk, shoulders, hips = (known[name] for name in ("trunk", "shoulders", "hips"))
-
-    def put(name: str, offset: Sequence[float], sigma_m: float) -> None:
-        offsets[model.names.index(name)] = offset
-        sigma[model.names.index(name)] = sigma_m
-
-    put("thorax", (0, LUMBAR * trunk[0], 0), LUMBAR * trunk[1])
-    put("head", (0, (1 - LUMBAR) * trunk[0], 0), (1 - LUMBAR) * trunk[1])
-    for side, z in zip(SIDES, (-1.0, 1.0), strict=True):
-        chest = (0, (1 - LUMBAR) * trunk[0], z * STERNUM_M)
-        put(f"{side}_clavicle", chest, (1 - LUMBAR) * trunk[1])
-        put(f"{side}_humerus", (0, 0, z * (shoulders[0] / 2 - STERNUM_M)), shoulders[1] / 2)
-        put(f"{side}_femur", (0, 0, z * hips[0] / 2), hips[1] / 2)
-        for segment, name in (
-            ("forearm", "upper_arm"), ("hand", "forearm"), ("tibia", "thigh"), ("foot", "shank")
-        ):  # fmt: skip
-            put(f"{side}_{segment}", (0, -known[name][0], 0), known[name][1])
+    size = {name: length for name, (length, _) in known.items()}
+    offsets = _offsets(model, size)
+    slopes = [_offsets(model, size | {name: size[name] + 1.0}) - offsets for name in OF_HEIGHT]
+    by_length, spread = np.array(slopes), np.array([known[name][1] for name in OF_HEIGHT])
     on = [(at, str(joint), segments.segment_of(str(joint))) for at, joint in enumerate(joints)]
     on = [(at, joint, segment) for at, joint, segment in on if segment]
     return Shape(
         offsets,
-        sigma,
+        np.linalg.norm(by_length * spread[:, None, None], axis=(0, 2)),
+        by_length,
+        spread,
         tuple(joint for _, joint, _ in on),
         np.array([at for at, _, _ in on]),
         np.array([model.names.index(segment) for _, _, segment in on]),
         np.zeros((len(on), 3)),
     )
+
+
+def _offsets(model: Model, size: Mapping[str, float]) -> NDArray:
+    """Return the segments' origins in their parents (S, 3) m of a body with these lengths."""
+    found = {"thorax": (0, LUMBAR * size["trunk"], 0)}
+    found["head"] = (0, (1 - LUMBAR) * size["trunk"], 0)
+    for side, z in zip(SIDES, (-1.0, 1.0), strict=True):
+        found[f"{side}_clavicle"] = (0, (1 - LUMBAR) * size["trunk"], z * STERNUM_M)
+        found[f"{side}_humerus"] = (0, 0, z * (size["shoulders"] / 2 - STERNUM_M))
+        found[f"{side}_femur"] = (0, 0, z * size["hips"] / 2)
+        found[f"{side}_forearm"] = (0, -size["upper_arm"], 0)
+        found[f"{side}_hand"] = (0, -size["forearm"], 0)
+        found[f"{side}_tibia"] = (0, -size["thigh"], 0)
+        found[f"{side}_foot"] = (0, -size["shank"], 0)
+    return np.array([found.get(name, (0.0, 0.0, 0.0)) for name in model.names])
 
 
 def is_fixed(shape: Shape) -> NDArray:

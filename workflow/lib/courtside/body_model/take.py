@@ -92,9 +92,7 @@ def joints(points: Keypoints3D, fits: Mapping[int, Fitted]) -> Keypoints3D:
         for one in (points.xyz, points.covariance_2d, points.covariance_network)
     )
     for at, one in fits.items():
-        origin, turned = pose.forward(model, one.pose, one.shape.offsets)
-        placed = pose.placed(origin, turned, one.shape.segment_of, one.shape.places)
-        by = pose.derivatives(model, origin, turned, placed, one.shape.segment_of)
+        placed, by = fit.derivatives(model, one.shape, one.pose, with_lengths=True)
         total, own = one.spread.points(by)
         rows = np.ix_(np.arange(one.frames.start, one.frames.stop), one.shape.index)
         known = np.isfinite(points.xyz[at][rows]).all(axis=2)

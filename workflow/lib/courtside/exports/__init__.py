@@ -2,9 +2,9 @@
 
 trc, c3d, bvh, tidy: `write`: one person or body in that form (`tidy`: CSV); `trc.read`.
 device: `points`, `named`: what these need of an inertial suit.
-measures: `frames`, `summary`: tables of kinematics.
-pose2sim, opensim, markers: `write_project`, `read_takes`, `write_markers`: for Pose2Sim and
-    OpenSim, with their joint names.
+measures: `frames`, `summary`, `angles`: tables of kinematics.
+pose2sim, opensim, markers: `write_project`, `read_takes`, `write_markers`, `write_motion`: for
+    Pose2Sim and OpenSim, with their joint names.
 camera_files: `write`: cameras for EasyMocap and COLMAP.
 overlay_video: `track`, `pictures`: a take's video with skeletons drawn in.
 """

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from courtside.kinematics import measures, path_length
 from courtside.kinematics.joint_angles import Angle
 from courtside.records.keypoints import missing_reason
+from courtside.records.keypoints.skeletal_motion import SkeletalMotion
 
 # The data dictionary of config/README.md describes the columns.
 SUMMARY_COLUMNS = (
@@ -125,3 +126,19 @@ def _angle_rows(name: str, angle: Angle) -> Iterator[tuple[Any, ...]]:
         at, n_frames = _largest(sign * angle.degrees)
         value, sigma = angle.degrees[at], angle.sigma_deg[at]
         yield f"{name}_{what}", value, sigma, unknown, "degrees", n_frames, words
+
+
+def angles(motion: SkeletalMotion) -> pd.DataFrame:
+    """Return the joint angles of a skeletal motion, T rows for each person."""
+    parts = []
+    for at, person in enumerate(motion.person_id.tolist()):
+        columns = {
+            "frame_idx": np.arange(len(motion.time_s)),
+            "time_s": motion.time_s.round(6),
+            "person": person,
+        }
+        for k, name in enumerate(motion.angles.tolist()):
+            columns[f"{name}_deg"] = motion.angle_deg[at, :, k].round(2)
+            columns[f"{name}_sd_deg"] = motion.angle_sigma_deg[at, :, k].round(2)
+        parts.append(pd.DataFrame(columns))
+    return pd.concat(parts, ignore_index=True)

@@ -1,9 +1,16 @@
-"""An OpenSim marker set for the joints of a TRC file: the body of the model for each marker."""
+"""For OpenSim: a marker set for the joints of a TRC file, and joint angles as a motion file."""
 
 from collections.abc import Sequence
 from xml.etree import ElementTree
 
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
 from courtside.exports import markers
+from courtside.exports.trc import WORLD_AXES
+from courtside.records.devices import hierarchy
+from courtside.records.keypoints.skeletal_motion import SkeletalMotion
 from courtside.study.errors import InputError, StrPath
 from courtside.study.execution.files import atomic
 
@@ -74,3 +81,67 @@ def _place(path: StrPath, joint: str) -> tuple[str, tuple[float, float, float], 
         )
     body, (x, y, z) = ROUGH[part]
     return body.format(letter), (x, y, -z if side == "left" and z else z), False
+
+
+# Coordinates of the model of Rajagopal et al. 2016 -> our angle and its sign, `{}` a side.
+COORDINATES = {
+    "pelvis_tilt": ("pelvis_tilt", -1),
+    "pelvis_list": ("pelvis_list", 1),
+    "pelvis_rotation": ("pelvis_rotation", 1),
+    "lumbar_extension": ("trunk_flexion", -1),
+    "lumbar_bending": ("trunk_bending", 1),
+    "lumbar_rotation": ("trunk_rotation", 1),
+}
+OF_SIDES = {
+    "hip_flexion": "hip_flexion",
+    "hip_adduction": "hip_adduction",
+    "hip_rotation": "hip_internal_rotation",
+    "knee_angle": "knee_flexion",
+    "ankle_angle": "ankle_dorsiflexion",
+    "elbow_flex": "elbow_flexion",
+}
+ARM = ("arm_flex", "arm_add", "arm_rot")  # of the arm against the trunk, about Z, X, Y
+# Middle of the hip joints in that model's pelvis, metres. ASSUME: unscaled.
+MID_HIP_M = np.array([-0.0563, -0.0785, 0.0])
+LETTERS = {"left": "l", "right": "r"}
+
+
+def write_motion(path: StrPath, motion: SkeletalMotion, person: int) -> None:
+    """Write one person's joint angles over the fitted frames as `.mot`, degrees and metres.
+
+    Coordinates are named as in the model of Rajagopal et al. 2016, which Pose2Sim's models follow;
+    the ground's axes are those of the TRC files. Forearm and wrist are left out: joint centres
+    hardly show their turns. An `InputError` if no frame was fitted.
+    """
+    posed, fitted = motion.posed(person)
+    if not fitted.any():
+        raise InputError(
+            f"{path}: expected a person with fitted frames, found none of "
+            f"{motion.person_id[person]!r}; leave the person out of the take"
+        )
+    degrees = dict(zip(motion.angles.tolist(), motion.angle_deg[person, fitted].T, strict=True))
+    _, turned = hierarchy.forward(posed)
+    columns = {"time": posed.time_s}
+    columns |= {name: sign * degrees[angle] for name, (angle, sign) in COORDINATES.items()}
+    pelvis = turned[:, 0][:, WORLD_AXES]  # in the ground, whose Y is up
+    places = motion.root[person, fitted][:, WORLD_AXES] - pelvis @ MID_HIP_M
+    columns |= {f"pelvis_t{axis}": places[:, at] for at, axis in enumerate("xyz")}
+    names = motion.segments.tolist()
+    for side, letter in LETTERS.items():
+        for name, angle in OF_SIDES.items():
+            columns[f"{name}_{letter}"] = degrees[f"{side}_{angle}"]
+        arm = turned[:, names.index(f"{side}_humerus")]
+        three = _arm_deg(np.swapaxes(turned[:, names.index("thorax")], 1, 2) @ arm, side)
+        columns |= {f"{name}_{letter}": three[:, at] for at, name in enumerate(ARM)}
+    head = ["Coordinates", "version=1", f"nRows={len(posed.time_s)}", f"nColumns={len(columns)}"]
+    head += ["inDegrees=yes", "endheader", "\t".join(columns)]
+    with atomic(path) as temporary, temporary.open("w", encoding="utf-8", newline="\n") as stream:
+        stream.write("\n".join(head) + "\n")
+        np.savetxt(stream, np.stack(list(columns.values()), axis=1), "%.6f", "\t")
+
+
+def _arm_deg(rotation: NDArray, side: str) -> NDArray:
+    """Return the angles (T, 3) degrees of the arm in the trunk (T, 3, 3), a left one mirrored."""
+    mirror = np.array([1.0, 1.0, -1.0 if side == "left" else 1.0])
+    turns = scipy.spatial.transform.Rotation.from_matrix(mirror[:, None] * rotation * mirror)
+    return np.asarray(turns.as_euler("ZXY", degrees=True))

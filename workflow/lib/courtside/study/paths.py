@@ -16,6 +16,7 @@ FUSED = "{calibration}/{fusion}/{model}"
 OF_FUSED = "{take}.{calibration}.{fusion}.{model}"  # in names of log and benchmark files
 FORMATS = ("pdf", "png", "csv")  # of every figure
 STAGES = ("pose3d", "pose3d_filtered", "pose3d_corrected")
+MODELLED = "pose3d_ik"  # made beside the last of these: joints of the skeletal model
 
 # From outside, and the networks made of it.
 EXTERNAL = "results/external/"
@@ -84,8 +85,12 @@ PEOPLE_CSV = "data/{session}/people.csv"  # where names are saved if the session
 PEOPLE_PAGE = TAKE + "/pages/people.html"
 SKELETONS = TAKE + "/{stage}/" + FUSED + ".npz"
 POSE3D, POSE3D_FILTERED, POSE3D_CORRECTED = (SKELETONS.replace("{stage}", name) for name in STAGES)
+POSE3D_IK = SKELETONS.replace("{stage}", MODELLED)
+SKELETAL_MOTION = TAKE + "/motion/" + FUSED + ".npz"
+JOINT_ANGLES = TAKE + "/motion/" + FUSED + ".angles.csv"
 POSE3D_IMPORTED = TAKE + "/pose3d/imported/trc/{model}.npz"
 EXPORT = TAKE + "/{stage}/" + FUSED + ".{person}.{suffix}"
+OPENSIM_MOTION = EXPORT.replace("{stage}", MODELLED).replace("{suffix}", "mot")
 POSE2SIM = TAKE + "/pose2sim/" + FUSED
 KINEMATICS = TAKE + "/kinematics/" + FUSED
 FRAME_MEASURES = KINEMATICS + ".frames.csv"

@@ -13,7 +13,12 @@ from courtside.study.methods import Fusion
 TAKE = ["session", "take", "calibration", "model"]
 KEY = [*TAKE, "fusion"]
 TEXT = (*KEY, "stage", "person", "joint", "point", "camera", "status")
-STAGES = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
+STAGES = {
+    "pose3d": "raw",
+    "pose3d_filtered": "filtered",
+    "pose3d_corrected": "corrected",
+    "pose3d_ik": "model",
+}
 LEVELS = (50, 90, 95)
 POINTS = ("neck", "centre", "mass")
 OTHERS = {"two": ("dlt",), "three": ("dlt", "halfbody"), "all": ("dlt",)}  # compared with ours

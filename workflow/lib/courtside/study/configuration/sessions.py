@@ -303,6 +303,11 @@ class Study:
         estimated = (self.folder / paths.OFFSETS_CSV.format(model=model)).is_file()
         return paths.STAGES if estimated else paths.STAGES[:-1]
 
+    def written_stages(self, model: str) -> tuple[str, ...]:
+        """Return the stages that can be written: the model's, too, where joints are corrected."""
+        stages = self.stages(model)
+        return (*stages, paths.MODELLED) if stages == paths.STAGES else stages
+
     def court_file(self, session: Session) -> Path | None:
         """Return the file of a session's court, None without a court."""
         return self.folder / paths.COURT_YAML.format(court=session.court) if session.court else None

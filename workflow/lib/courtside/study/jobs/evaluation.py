@@ -1,7 +1,6 @@
 """Truth of virtual sessions and takes, what is compared with it, and the labels of errors."""
 
 from collections.abc import Iterable, Mapping
-from itertools import product
 from typing import Any
 
 from courtside.study import paths
@@ -46,13 +45,14 @@ def compared_truths(takes: Iterable[EvaluatedTake]) -> list[str]:
 
 def skeletons(job: Job) -> list[str]:
     """Return the skeletons that are compared with the truth: every stage and fusion."""
-    return job.of_each(paths.SKELETONS, stage=job.stages(), fusion=every_fusion(job))
+    of = job.judged_stages()
+    return [job.fill(paths.SKELETONS, stage=stage, fusion=fusion) for stage, fusion in of]
 
 
 def skeleton_labels(job: Job) -> list[dict[str, str]]:
     """Return the labels of these skeletons."""
-    pairs = product(job.stages(), every_fusion(job))
-    return [{**job.wildcards, "stage": stage, "fusion": fusion} for stage, fusion in pairs]
+    of = job.judged_stages()
+    return [{**job.wildcards, "stage": stage, "fusion": fusion} for stage, fusion in of]
 
 
 def exported_skeletons(job: Job) -> list[str]:

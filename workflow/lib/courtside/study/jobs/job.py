@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -89,6 +90,16 @@ class Job:
     def stages(self) -> tuple[str, ...]:
         """Return the stages of its network's skeletons; the last is the best."""
         return self.study.stages(self["model"])
+
+    def judged_stages(self) -> list[tuple[str, str]]:
+        """Return (stage, fusion) of the skeletons of a take that are compared with truth.
+
+        Every stage and fusion; the model's joints of the fusions that are exported.
+        """
+        session, stages = self.session, self.stages()
+        fusions = session.fusions() + session.fusions("compared_fusions")
+        more = self.study.written_stages(self["model"])[len(stages) :]
+        return [*product(stages, fusions), *product(more, session.fusions())]
 
     def demand(self, word: str) -> None:
         """Stop, with one line, where persons of its files have not agreed to something."""

@@ -90,6 +90,17 @@ def known_of_network(job: Job, pattern: str) -> Path | list:
     return path if path.is_file() else []
 
 
+def heights(job: Job) -> dict[str, float | None]:
+    """Return {person: height in metres} of a take, None where the session does not state it."""
+    return {name: job.session.subjects[name].height_m for name in job.take.subjects}
+
+
+def exported_motion(job: Job) -> str:
+    """Return the skeletal motion that a person's file is made from, where that is agreed to."""
+    job.demand("export")
+    return job.fill(paths.SKELETAL_MOTION)
+
+
 def exported(job: Job) -> str:
     """Return the skeletons that a file for other programs is made from, where that is agreed to."""
     job.demand("export")

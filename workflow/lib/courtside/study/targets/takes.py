@@ -50,9 +50,11 @@ def every_export(study: Study) -> list[str]:
         methods = session.take_calibrations(), session.fusions(), session.parameters["models"]
         for person, way, fusion, model in product(persons, *methods):
             known = {"person": person, "calibration": way, "fusion": fusion, "model": model}
-            there = [stage for stage in stages if stage in study.stages(model)]
+            there = [stage for stage in stages if stage in study.written_stages(model)]
             kinds = {"stage": there, "suffix": ("trc", "c3d", "csv")}
             found += files(paths.EXPORT, session, take, **known, **kinds)
+            if paths.MODELLED in there:
+                found += files(paths.OPENSIM_MOTION, session, take, **known)
     return found
 
 
@@ -102,6 +104,9 @@ def every_kinematics(study: Study) -> list[str]:
         trc = {"calibration": IMPORTED, "fusion": "trc", "model": take.pose3d}
         imported += files(paths.MEASURES, session, take, **trc)
         own += files(paths.MEASURES, session, take)
+        models = session.parameters["models"]
+        fitted = [name for name in models if paths.MODELLED in study.written_stages(name)]
+        own += files(paths.JOINT_ANGLES, session, take, model=fitted)
     return imported + own
 
 

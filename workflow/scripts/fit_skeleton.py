@@ -1,0 +1,35 @@
+"""Fit the skeletal model to a take.
+
+Reads raw keypoints, which it corrects as `correct_joints` does but does not filter: the fit has the
+filter's cut-offs in its prior. Of the corrected skeletons it takes what the cameras' errors are.
+"""
+
+from courtside.body_model import take
+from courtside.exports import measures
+from courtside.kinematics import cutoffs, skeleton_filter
+from courtside.reconstruction import joint_correction
+from courtside.records import tables
+from courtside.records.keypoints import keypoints, skeletal_motion, skeleton
+from courtside.study.execution import log
+from courtside.study.execution.script import run
+
+
+def main(paths, joints_npz, motion_npz, angles_csv, *, max_gap_s, sex_of, height_m_of):
+    raw = skeleton_filter.prepare(keypoints.read_3d(paths.raw), max_gap_s)
+    points = joint_correction.correct(raw, joint_correction.read(paths.offsets), sex_of)
+    shape, (chosen, _) = skeleton.read(paths.skeleton), cutoffs.read(paths.cutoffs)
+    cutoff_hz = dict(zip(shape.joints, shape.by_group(chosen), strict=True))
+    found = {
+        at: take.person(points, at, cutoff_hz, height_m_of.get(person))
+        for at, person in enumerate(points.person_id.tolist())
+    }
+    fits = {at: one for at, one in found.items() if one is not None}
+    log.logger.info("persons fitted: %d of %d", len(fits), len(found))
+    keypoints.write_3d(joints_npz, take.joints(keypoints.read_3d(paths.corrected), fits))
+    motion = take.motion(points, fits)
+    skeletal_motion.write(motion_npz, motion)
+    tables.write(angles_csv, measures.angles(motion))
+
+
+if __name__ == "__main__":
+    run(main, snakemake)
