@@ -20,6 +20,8 @@ TAKE_FIGURES = ("overlay", "skeletons", "reprojection", "visibility", "kinematic
 PAPER_FIGURES = ("badminton_fig09", "badminton_fig10", "badminton_fig11", "badminton_tab01")
 DOWNSTREAM_OF_FILTER = {
     "correct_joints": FILTERED,
+    "fit_skeleton": 3,  # the exported way in three takes
+    "export_motion": 1,
     "measure_kinematics": 7,  # all cameras in three takes, and the four others of the drawn take
     "evaluate_take": 2,
     "evaluate_angles": 2,
@@ -37,7 +39,7 @@ DOWNSTREAM_OF_FILTER = {
 DOWNSTREAM_OF_3D = {
     **DOWNSTREAM_OF_FILTER,
     "filter_motion": FILTERED,
-    "export_take": 3,
+    "export_take": 4,
     "judge_take": 3,
     "evaluate_fusions": 4,
     "evaluate_round_trip": 1,
@@ -77,7 +79,7 @@ def test_a_parameter_reruns_its_step_and_what_follows(kept):
 
 
 def test_a_filter_parameter_spares_the_triangulation(kept):
-    after = {"filter_motion": FILTERED, "export_take": 2, "evaluate_fusions": 2}
+    after = {"filter_motion": FILTERED, "export_take": 3, "evaluate_fusions": 2}
     with edited(kept / "config/config.yaml", FILTER, FILTER.replace("0.2", "0.1")):
         assert planned(root=kept) == {**after, **DOWNSTREAM_OF_FILTER}
 
