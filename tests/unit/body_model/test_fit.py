@@ -24,7 +24,7 @@ def shaken(true, by=0.1):
 def test_exact_joints_are_fitted_from_a_wrong_start():
     true = moving_model.moving()
     points = moving_model.points(true)
-    found, _ = fit.fit(
+    found = fit.fit(
         MODEL, moving_model.body(), data(points), shaken(true), HZ, moving_model.RATE_HZ
     )
     for name, within_deg in (("left_tibia", 1.0), ("right_forearm", 2.0)):
@@ -35,16 +35,26 @@ def test_exact_joints_are_fitted_from_a_wrong_start():
 
 def test_the_stated_covariance_holds_the_errors_of_noise():
     true = moving_model.moving(90)
-    points = moving_model.points(true, noise_m=0.02)
-    found, spread = fit.fit(
-        MODEL, moving_model.body(), data(points, 0.02), true, 4 * HZ, moving_model.RATE_HZ
-    )
+    one, body = data(moving_model.points(true, noise_m=0.02), 0.02), moving_model.body()
+    found = fit.fit(MODEL, body, one, true, 4 * HZ, moving_model.RATE_HZ)
+    spread = fit.spread(MODEL, body, one, found)
     at = [moving_model.column(f"{side}_tibia") for side in ("left", "right")]
     error = found.angle[:, at] - true.angle[:, at]
     sigma = np.sqrt(np.diagonal(spread.total, axis1=1, axis2=2)[:, at])
     assert np.degrees(np.median(sigma)) > 1
     assert 0.8 < np.mean(np.abs(error) < 1.645 * sigma) <= 1
     assert (spread.noise[:, at, at] <= spread.total[:, at, at] + 1e-12).all()
+
+
+def test_wrong_lengths_are_mended_by_what_all_frames_say():
+    true = moving_model.moving()
+    one, body = data(moving_model.points(true)), moving_model.body()
+    at = moving_model.NAMES.index("left_tibia")
+    wrong = replace(body, offsets=body.offsets + 0.02 * body.by_length[0])  # of both thighs
+    found = fit.fit(MODEL, wrong, one, true, HZ, moving_model.RATE_HZ)
+    mended = fit.lengthened(MODEL, wrong, one, found)
+    assert abs(wrong.offsets[at, 1] - body.offsets[at, 1]) > 0.019
+    assert abs(mended.offsets[at, 1] - body.offsets[at, 1]) < 0.004
 
 
 def test_the_weight_of_second_differences_passes_half_the_power_at_the_cut_off():
@@ -64,13 +74,24 @@ def test_a_knee_does_not_bend_backwards_and_a_lost_limb_is_uncertain():
     lost = [moving_model.JOINTS.index(f"left_{part}") for part in ("elbow", "wrist")]
     information = one.information.copy()
     information[20:40, lost] = 0.0
-    found, spread = fit.fit(
-        MODEL, body, replace(one, information=information), true, HZ, moving_model.RATE_HZ
-    )
+    one = replace(one, information=information)
+    found = fit.fit(MODEL, body, one, true, HZ, moving_model.RATE_HZ)
+    spread = fit.spread(MODEL, body, one, found)
     elbow = moving_model.column("left_forearm")
     sigma = np.degrees(np.sqrt(spread.total[:, elbow, elbow]))
     assert sigma[30] > 60 > 5 > sigma[10]
     assert np.isfinite(found.angle).all()
+
+
+def test_clavicles_that_nothing_shows_rise_with_the_arms():
+    """Unseen arms are held out by their prior, at 90 degrees and what the clavicles add to them."""
+    true, body = moving_model.moving(3), moving_model.body()
+    none = data(moving_model.points(true))
+    none = replace(none, information=np.zeros_like(none.information))
+    found = fit.fit(MODEL, body, none, true, HZ, moving_model.RATE_HZ, 20)
+    for side, sign in (("left", 1), ("right", -1)):
+        lift = np.degrees(found.angle[:, moving_model.column(f"{side}_clavicle")])
+        np.testing.assert_allclose(lift, sign * (90 + 18) / 6, atol=0.5)
 
 
 def test_time_grows_linearly_with_frames():

@@ -39,7 +39,7 @@ FREE = {
 }
 HINGES = {  # segment: names and signs of its two angles, of the right side
     "forearm": (("elbow_flexion", 1), ("forearm_pronation", 1)),
-    "hand": (("wrist_flexion", 1), ("wrist_ulnar_deviation", -1)),
+    "hand": (("wrist_flexion", 1), ("wrist_ulnar_deviation", 1)),
     "tibia": (("knee_flexion", -1), ("knee_internal_rotation", 1)),
     "foot": (("ankle_dorsiflexion", 1), ("ankle_inversion", 1)),
 }

@@ -44,7 +44,7 @@ FREE, HALL_M = 400.0, 100.0  # degrees, metres: no prior
 # joint centres do not show it; they decide axial rotation of straight limbs, the pelvis' tilt and
 # the share of the clavicle.
 LIMBS = {
-    "clavicle": Joint("thorax", HINGES, (Coordinate(12, -15, 45), Coordinate(12, -35, 35)), (0, 1)),
+    "clavicle": Joint("thorax", HINGES, (Coordinate(12, -45, 15), Coordinate(12, -35, 35)), (0, 1)),
     # From an arm held out to the side
     "humerus": Joint(
         "clavicle",

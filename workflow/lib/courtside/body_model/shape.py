@@ -16,7 +16,8 @@ STERNUM_M = 0.02  # ASSUME: of the clavicle's inner end from the middle plane
 # ASSUME: of a length that the median does not lessen: joints err alike in all frames
 # (`joint_correction.LENGTH_SIGMA`).
 SYSTEMATIC = 0.04
-# Share of body height, of men and women together (Winter 2009, fig. 4.1), where a take does not show a length; ASSUME: 6 % standard deviation.
+# Share of body height, men and women together (Winter 2009, fig. 4.1; hips, shoulders: ASSUME),
+# which counts the less the more of a length a take shows; ASSUME: 6 % standard deviation.
 OF_HEIGHT = {
     "thigh": 0.245, "shank": 0.246, "upper_arm": 0.186, "forearm": 0.146,
     "hips": 0.12, "shoulders": 0.2, "trunk": 0.288,

@@ -15,7 +15,9 @@ from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.keypoints.skeletal_motion import SkeletalMotion
 
 UNKNOWN_M = 0.03  # ASSUME: standard deviation per axis that a joint without a network's has
-ROUNDS = 2  # fits between which the points of feet, hands and head are placed
+# Fits, with their steps, between which the lengths of segments are fitted, and the points of feet,
+# hands and head placed.
+ROUNDS = (3, 3, 6)
 LEAST = 6  # limb joints of a frame that is fitted
 
 
@@ -68,11 +70,13 @@ def person(
     data = fit.Data(np.nan_to_num(xyz[:, body.index]), information, noise[:, body.index])
     weight = np.trace(information, axis1=2, axis2=3)
     hz = fit.cutoffs(model, cutoff_hz)
-    for _ in range(ROUNDS):
+    for number, steps in enumerate(ROUNDS, start=1):
         origin, turned = pose.forward(model, found, body.offsets)
         body = shape.with_points(body, origin, turned, data.xyz, weight)
-        found, around = fit.fit(model, body, data, found, hz, points.rate_hz)
-    return Fitted(frames, body, found, around)
+        found = fit.fit(model, body, data, found, hz, points.rate_hz, steps)
+        if number < len(ROUNDS):
+            body = fit.lengthened(model, body, data, found)
+    return Fitted(frames, body, found, fit.spread(model, body, data, found))
 
 
 def _filled(line: NDArray) -> NDArray:

@@ -41,6 +41,7 @@ STATED = (
     *("file-evidence", "file-mended", "networks"),
     *("file-faults", "refined-people", "mapping-checks", "click-model", "click-alarms", "worlds"),
     *("halls", "halls-strengths"),
+    *("body-model", "body-model-hall"),
     *("speed", "costs", "stages", "faults", "trust"),
 )
 

@@ -210,6 +210,29 @@ VIEWS = {
             "joints": "{raw_median.n}",
         },
     ),
+    "body-model": View(
+        "body-model",
+        {
+            "measure, takes": "{row}",
+            **{
+                f"{stage}: median take, worst": f"{{{stage}_median}}, {{{stage}_worst}}"
+                for stage in ("corrected", "model")
+            },
+            "takes": "{model_median.n}",
+        },
+    ),
+    "body-model-hall": View(
+        "body-model-hall",
+        {
+            "angle; cameras": "{row}",
+            **{
+                f"{stage}, RMSE (interval), degrees": f"{{{stage}_rmse}} ({{{stage}_least}} to "
+                f"{{{stage}_most}})"
+                for stage in ("corrected", "model")
+            },
+            "angles": "{model_rmse.n}",
+        },
+    ),
     "joints": View(
         "joints",
         {

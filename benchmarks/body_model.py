@@ -1,0 +1,206 @@
+"""The skeletal model against truth: virtual players, and a real hall's marker system.
+
+    python benchmarks/body_model.py RESULTS [--hall RESULTS DATA] [--sessions NAME ...]
+
+RESULTS are of a finished default run. Each take of its virtual players is fitted again by the
+script of the rule fit_skeleton, and compared with the truth beside the corrected joints, as
+evaluate_take and evaluate_angles do. `--hall` takes the results of hall_markers.py and its DATA:
+knee and elbow flexion against those of the marker system's joints, whose shoulders are joints of
+the clavicle. It writes docs/numbers/body_model.csv, a source of docs/make_tables.py.
+"""
+
+import argparse
+import sys
+import tempfile
+import time
+from itertools import product
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pandas as pd
+
+from many_sessions import ROOT
+
+sys.path[:0] = [str(ROOT / "workflow" / "lib"), str(ROOT / "workflow" / "scripts")]
+
+import fit_skeleton
+
+from courtside.evaluation import joints, kinematics, marker_system
+from courtside.evaluation.numbers import stated
+from courtside.kinematics import joint_angles, shared_errors
+from courtside.records.keypoints import keypoints
+from courtside.records.truth import take_truth
+from courtside.statistics import moving_blocks
+from courtside.study.configuration import yaml_files
+
+SESSIONS = ("players-a", "players-b", "players-shaken", "repeats")
+MODEL, FUSION = "blazepose-heavy", "all-robust"
+STAGES = {"corrected": "pose3d_corrected", "model": "pose3d_ik"}
+ANGLES = ("knee_flexion", "hip_flexion", "elbow_flexion", "shoulder_elevation", "trunk_lean")
+HALL = ("RHip", "RKnee", "RAnkle", "RShoulder", "RElbow", "RHand")
+BLOCK_S = 0.5
+COMMAND = "`python benchmarks/body_model.py results`"
+HALL_COMMAND = "`python benchmarks/body_model.py results --hall RESULTS DATA`"
+
+
+def fitted(results, session, way, folder):
+    """Fit one take by the rule's script; return its stages, and processor seconds per frame."""
+    take, calibration = way
+    file = f"{calibration}/{FUSION}/{MODEL}"
+    base, config = results / session / "takes" / take, ROOT / "config"
+    paths = SimpleNamespace(
+        raw=base / f"pose3d/{file}.npz",
+        corrected=base / f"pose3d_corrected/{file}.npz",
+        cutoffs=base / f"kinematics/{file}.cutoffs.csv",
+        skeleton=config / "skeletons/blazepose33.yaml",
+        offsets=config / f"joint_offsets/{MODEL}.csv",
+    )
+    file = config / "sessions" / f"{session}.yaml"
+    known = yaml_files.read(file).get("subjects", {}) if file.is_file() else {}
+    before = time.process_time()
+    fit_skeleton.main(
+        paths,
+        *(folder / name for name in ("ik.npz", "motion.npz", "angles.csv")),
+        max_gap_s=yaml_files.read(config / "config.yaml")["filter_motion"]["max_gap_s"],
+        sex_of={name: one.get("sex") for name, one in known.items()},
+        height_m_of={name: one.get("height_m") for name, one in known.items()},
+    )
+    seconds = time.process_time() - before
+    both = {"corrected": paths.corrected, "model": folder / "ik.npz"}
+    points = {stage: keypoints.read_3d(path) for stage, path in both.items()}
+    return points, seconds / points["model"].xyz[..., 0, 0].size
+
+
+def takes(results, session):
+    """Yield (take, calibration) of a session with corrected joints."""
+    for path in sorted((results / session / "takes").glob(f"*/pose3d_corrected/*/{FUSION}")):
+        yield path.parts[-4], path.parts[-2]
+
+
+def errors(points, truth):
+    """Return the numbers of one take and stage."""
+    points = points.between(truth.time_s[0], truth.time_s[-1])
+    apart = joints.errors(points, truth.joints, joints.true_places(points, truth))
+    rows = joints.table(points.person_id, *apart).set_index("joint").loc[["limbs"]].iloc[-1]
+    found = {"joints, median, mm": rows["median_mm"], "joints, 95 %, mm": rows["p95_mm"]}
+    found["joints, in 90 % ellipsoids, %"] = rows["coverage_90_percent"]
+    angles = kinematics.angles(points, truth).set_index("angle")
+    for angle in ANGLES:
+        of, words = angles.loc[[angle]], angle.replace("_", " ")
+        found[f"{words}, RMSE, degrees"] = np.sqrt(np.mean(of["rmse_deg"] ** 2))
+        found[f"{words}, in 90 % intervals, %"] = of["within_90_percent"].mean()
+    return found
+
+
+def players(results, sessions, folder):
+    """Return a table of the numbers of every take and stage."""
+    found = []
+    for session in sessions:
+        for way in takes(results, session):
+            points, seconds = fitted(results, session, way, folder)
+            truth = take_truth.read(results / "virtual" / session / "takes" / way[0] / "truth.npz")
+            for stage, one in points.items():
+                row = errors(one, truth) | {"time a frame and person, ms": 1000 * seconds}
+                found.append({"session": session, "take": way[0], "stage": stage, **row})
+            print(session, way[0], f"{len(one.time_s)} frames", flush=True)
+    return pd.DataFrame(found)
+
+
+def hall(results, data, folder):
+    """Return a table of errors of angles (RMSE and interval, degrees) with each calibration."""
+    table, found = pd.read_csv(data / "mocap.csv"), []
+    true_s, names = table["time_s"].to_numpy(), list(marker_system.JOINTS)
+    true = {
+        name: table[[f"{name}_{axis}_m" for axis in "xyz"]].to_numpy()
+        for right in HALL
+        for name in (right, f"L{right[1:]}")
+    }
+    both = np.stack([true[name] for name in marker_system.JOINTS.values()], axis=1)
+    for calibration in ("file", "known"):
+        way = ("play", calibration)
+        points, _ = fitted(results, "hall-markers", way, folder)
+        for stage, one in points.items():
+            at = [one.joints.tolist().index(name) for name in names]
+            fit = marker_system.fit(one.time_s, one.xyz[0][:, at], true_s, both)
+            measured = joint_angles.measure(
+                one.xyz[0],
+                shared_errors.independent(one.covariance_2d[0]),
+                one.joints.tolist(),
+            )
+            for angle, three in (("knee_flexion", HALL[:3]), ("elbow_flexion", HALL[3:])):
+                error = [
+                    measured[f"{side}_{angle}"].degrees
+                    - flexion(
+                        [true[side[0].upper() + name[1:]] for name in three], true_s, fit, one
+                    )
+                    for side in ("left", "right")
+                ]
+                found.append((calibration, stage, angle, *interval(np.array(error), one.rate_hz)))
+    return pd.DataFrame(
+        found, columns=["calibration", "stage", "angle", "n", "rmse", "least", "most"]
+    )
+
+
+def flexion(three, true_s, fit, points):
+    """Return the marker system's flexion (T,) degrees at the times of a record."""
+    xyz = np.stack(three)
+    first, middle, last = joints.at_times(true_s, xyz, points.time_s + fit.shift_s)
+    none = shared_errors.independent(np.zeros((len(first), 3, 3, 3)))
+    return (
+        180
+        - joint_angles.between(
+            first, middle, last, lambda slopes: none.variance([0, 1, 2], slopes)
+        ).degrees
+    )
+
+
+def interval(error, rate_hz):
+    """Return n, RMSE and its 95 % interval of errors (2, T) by blocks of frames drawn again."""
+    known = np.isfinite(error)
+    drawn = moving_blocks.frames(error.shape[1], round(BLOCK_S * rate_hz))
+    again = np.sqrt(np.nanmean(error[:, drawn] ** 2, axis=(0, 2)))
+    ends = np.percentile(again, [2.5, 97.5])
+    return int(known.sum()), float(np.sqrt(np.nanmean(error**2))), *ends.tolist()
+
+
+GROUPS = {"players-a, players-b": ["players-a", "players-b"], "all sessions": SESSIONS}
+
+
+def rows(table, marked):
+    """Yield the rows of docs/numbers: medians over takes, and 95 % of them or the least share."""
+    measures = [name for name in table if name not in ("session", "take", "stage")]
+    for (group, sessions), key in product(GROUPS.items(), measures):
+        own = table[table["session"].isin(sessions)]
+        unit = key.rsplit(", ", 1)[1]
+        for stage, of in own.groupby("stage", sort=False):
+            end = of[key].min() if unit == "%" else of[key].quantile(0.95)
+            about = (unit, ", ".join(sessions), len(of), 0, "benchmark", COMMAND)
+            for part, value in (("median", of[key].median()), ("worst", end)):
+                yield ["body-model", f"{key}; {group}", f"{stage}_{part}", f"{value:.1f}", *about]
+    for one in marked.itertuples() if marked is not None else ():
+        label = f"{one.angle.replace('_', ' ')}; cameras: {one.calibration}"
+        about = ("degrees", "hall-markers", one.n, 0, "benchmark", HALL_COMMAND)
+        for part, value in (("rmse", one.rmse), ("least", one.least), ("most", one.most)):
+            yield ["body-model-hall", label, f"{one.stage}_{part}", f"{value:.1f}", *about]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("results", type=Path)
+    parser.add_argument("--hall", type=Path, nargs=2, metavar=("RESULTS", "DATA"))
+    parser.add_argument("--sessions", nargs="+", default=SESSIONS)
+    given = parser.parse_args()
+    with tempfile.TemporaryDirectory() as temporary:
+        table = players(given.results, given.sessions, Path(temporary))
+        marked = hall(*given.hall, Path(temporary)) if given.hall else None
+    pd.set_option("display.width", 200)
+    print(table.round(1).to_string(index=False))
+    if marked is not None:
+        print(marked.round(1).to_string(index=False))
+    if tuple(given.sessions) == SESSIONS and marked is not None:
+        stated.write(ROOT / stated.FOLDER / "body_model.csv", rows(table, marked))
+
+
+if __name__ == "__main__":
+    main()
