@@ -36,7 +36,7 @@ from courtside.study.configuration import yaml_files
 
 SESSIONS = ("players-a", "players-b", "players-shaken", "repeats")
 MODEL, FUSION = "blazepose-heavy", "all-robust"
-STAGES = {"corrected": "pose3d_corrected", "model": "pose3d_ik"}
+STAGES = ("corrected", "model")
 ANGLES = ("knee_flexion", "hip_flexion", "elbow_flexion", "shoulder_elevation", "trunk_lean")
 HALL = ("RHip", "RKnee", "RAnkle", "RShoulder", "RElbow", "RHand")
 BLOCK_S = 0.5
@@ -67,7 +67,7 @@ def fitted(results, session, way, folder):
         height_m_of={name: one.get("height_m") for name, one in known.items()},
     )
     seconds = time.process_time() - before
-    both = {"corrected": paths.corrected, "model": folder / "ik.npz"}
+    both = dict(zip(STAGES, (paths.corrected, folder / "ik.npz"), strict=True))
     points = {stage: keypoints.read_3d(path) for stage, path in both.items()}
     return points, seconds / points["model"].xyz[..., 0, 0].size
 

@@ -15,6 +15,7 @@ import pandas as pd
 import pytest
 
 sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))  # last: both have a `scene`
+import body_model
 import hall_markers
 import long_take
 import mapping_seeds
@@ -118,7 +119,7 @@ def test_scripts_are_called_by_benchmarks_that_the_next_tests_run():
         for path in (ROOT / "benchmarks").rglob("*.py")
         if '"workflow" / "scripts"' in path.read_text()
     }
-    assert calling == {"long_take", "mapping_seeds", "real_footage"}
+    assert calling == {"body_model", "long_take", "mapping_seeds", "real_footage"}
 
 
 def test_long_take_gives_each_script_what_it_takes(tmp_path):
@@ -156,6 +157,23 @@ def test_real_footage_gives_its_script_what_it_takes(monkeypatch):
     config = yaml_files.read(ROOT / "config" / "config.yaml")
     real_footage.filtered(mock.Mock(), config["filter_motion"])
     main.assert_called_once()
+
+
+def test_the_body_model_gives_its_script_what_it_takes(tmp_path, monkeypatch):
+    main = mock.create_autospec(body_model.fit_skeleton.main)
+    monkeypatch.setattr(body_model.fit_skeleton, "main", main)
+    stored = SimpleNamespace(xyz=np.zeros((1, 5, 2, 3)))
+    monkeypatch.setattr(body_model.keypoints, "read_3d", lambda _: stored)
+    found, seconds = body_model.fitted(tmp_path, "players-a", ("shot", "known18"), tmp_path)
+    assert set(found) == set(body_model.STAGES) and seconds >= 0
+    assert main.call_args.kwargs["height_m_of"]["m3"] == pytest.approx(1.84)
+
+
+def test_intervals_of_angles_hold_their_error():
+    error = np.random.default_rng(0).normal(0, 3, (2, 400))
+    n, rmse, least, most = body_model.interval(error, 12.0)
+    assert n == 800 and least < rmse < most
+    assert rmse == pytest.approx(3, abs=0.3)
 
 
 def test_without_the_recording_of_the_hall_one_line_says_where_it_is_from(tmp_path):

@@ -120,7 +120,7 @@ def of_lengths(
 
 def _offsets(model: Model, size: Mapping[str, float]) -> NDArray:
     """Return the segments' origins in their parents (S, 3) m of a body with these lengths."""
-    found = {"thorax": (0, LUMBAR * size["trunk"], 0)}
+    found: dict[str, tuple[float, float, float]] = {"thorax": (0, LUMBAR * size["trunk"], 0)}
     found["head"] = (0, (1 - LUMBAR) * size["trunk"], 0)
     for side, z in zip(SIDES, (-1.0, 1.0), strict=True):
         found[f"{side}_clavicle"] = (0, (1 - LUMBAR) * size["trunk"], z * STERNUM_M)
