@@ -83,7 +83,8 @@ def _place(path: StrPath, joint: str) -> tuple[str, tuple[float, float, float], 
     return body.format(letter), (x, y, -z if side == "left" and z else z), False
 
 
-# Coordinates of the model of Rajagopal et al. 2016 -> our angle and its sign, `{}` a side.
+# Coordinates of the model of Rajagopal et al. 2016, and of Pose2Sim's models (`L5_S1`), with our
+# angle and its sign.
 COORDINATES = {
     "pelvis_tilt": ("pelvis_tilt", -1),
     "pelvis_list": ("pelvis_list", 1),
@@ -91,6 +92,9 @@ COORDINATES = {
     "lumbar_extension": ("trunk_flexion", -1),
     "lumbar_bending": ("trunk_bending", 1),
     "lumbar_rotation": ("trunk_rotation", 1),
+    "L5_S1_Flex_Ext": ("trunk_flexion", -1),
+    "L5_S1_Lat_Bending": ("trunk_bending", 1),
+    "L5_S1_axial_rotation": ("trunk_rotation", 1),
 }
 OF_SIDES = {
     "hip_flexion": "hip_flexion",
@@ -101,17 +105,19 @@ OF_SIDES = {
     "elbow_flex": "elbow_flexion",
 }
 ARM = ("arm_flex", "arm_add", "arm_rot")  # of the arm against the trunk, about Z, X, Y
-# Middle of the hip joints in that model's pelvis, metres. ASSUME: unscaled.
-MID_HIP_M = np.array([-0.0563, -0.0785, 0.0])
+# Middle of the hip joints in the pelvis of Model_Pose2Sim_simple.osim of Pose2Sim 0.10.49, metres.
+# ASSUME: unscaled.
+MID_HIP_M = np.array([-0.0707, -0.0661, 0.0])
 LETTERS = {"left": "l", "right": "r"}
 
 
 def write_motion(path: StrPath, motion: SkeletalMotion, person: int) -> None:
     """Write one person's joint angles over the fitted frames as `.mot`, degrees and metres.
 
-    Coordinates are named as in the model of Rajagopal et al. 2016, which Pose2Sim's models follow;
-    the ground's axes are those of the TRC files. Forearm and wrist are left out: joint centres
-    hardly show their turns. An `InputError` if no frame was fitted.
+    Coordinates are named as in the model of Rajagopal et al. 2016 and in Pose2Sim's, which differ
+    in the names of the trunk's: a program leaves out those that its model lacks. The ground's axes
+    are those of the TRC files. Forearm and wrist are left out: joint centres hardly show their
+    turns. An `InputError` if no frame was fitted.
     """
     posed, fitted = motion.posed(person)
     if not fitted.any():
