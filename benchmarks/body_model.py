@@ -13,6 +13,7 @@ import argparse
 import sys
 import tempfile
 import time
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 from types import SimpleNamespace
@@ -26,15 +27,19 @@ sys.path[:0] = [str(ROOT / "workflow" / "lib"), str(ROOT / "workflow" / "scripts
 
 import fit_skeleton
 
+from courtside.body_model import take
 from courtside.evaluation import joints, kinematics, marker_system
 from courtside.evaluation.numbers import stated
 from courtside.kinematics import joint_angles, shared_errors
+from courtside.records import npz
 from courtside.records.keypoints import keypoints
 from courtside.records.truth import take_truth
 from courtside.statistics import moving_blocks
 from courtside.study.configuration import yaml_files
 
 SESSIONS = ("players-a", "players-b", "players-shaken", "repeats")
+LONG = 1000  # frames
+LONGEST = ("players-b", ("footwork", "sfm-n40"))
 MODEL, FUSION = "blazepose-heavy", "all-robust"
 STAGES = ("corrected", "model")
 ANGLES = ("knee_flexion", "hip_flexion", "elbow_flexion", "shoulder_elevation", "trunk_lean")
@@ -46,9 +51,9 @@ HALL_COMMAND = "`python benchmarks/body_model.py results --hall RESULTS DATA`"
 
 def fitted(results, session, way, folder):
     """Fit one take by the rule's script; return its stages, and processor seconds per frame."""
-    take, calibration = way
+    name, calibration = way
     file = f"{calibration}/{FUSION}/{MODEL}"
-    base, config = results / session / "takes" / take, ROOT / "config"
+    base, config = results / session / "takes" / name, ROOT / "config"
     paths = SimpleNamespace(
         raw=base / f"pose3d/{file}.npz",
         corrected=base / f"pose3d_corrected/{file}.npz",
@@ -70,6 +75,26 @@ def fitted(results, session, way, folder):
     both = dict(zip(STAGES, (paths.corrected, folder / "ik.npz"), strict=True))
     points = {stage: keypoints.read_3d(path) for stage, path in both.items()}
     return points, seconds / points["model"].xyz[..., 0, 0].size
+
+
+def long_ms(results, session, way):
+    """Return the number of frames, and processor milliseconds per frame of the fit of one person.
+
+    The take's corrected joints follow one another until there are over `LONG` frames.
+    """
+    file = f"{way[1]}/{FUSION}/{MODEL}"
+    points = keypoints.read_3d(results / f"{session}/takes/{way[0]}/pose3d_corrected/{file}.npz")
+    n_frames = len(points.time_s) * (LONG // len(points.time_s) + 1)
+    spec = npz.spec_of(type(points))
+    more = {
+        key: np.concatenate([getattr(points, key)] * (n_frames // len(points.time_s)), axis=1)
+        for key, (_, shape) in spec.items()
+        if shape[:2] == ("P", "T")
+    }
+    points = replace(points, time_s=np.arange(n_frames) / points.rate_hz, **more)
+    before = time.process_time()
+    take.person(points, 0, dict.fromkeys(points.joints.tolist(), 8.0))
+    return n_frames, 1000 * (time.process_time() - before) / n_frames
 
 
 def takes(results, session):
@@ -167,18 +192,23 @@ def interval(error, rate_hz):
 GROUPS = {"players-a, players-b": ["players-a", "players-b"], "all sessions": SESSIONS}
 
 
-def rows(table, marked):
+def rows(table, marked, long):
     """Yield the rows of docs/numbers: medians over takes, and 95 % of them or the least share."""
     measures = [name for name in table if name not in ("session", "take", "stage")]
     for (group, sessions), key in product(GROUPS.items(), measures):
         own = table[table["session"].isin(sessions)]
         unit = key.rsplit(", ", 1)[1]
-        for stage, of in own.groupby("stage", sort=False):
+        stages = STAGES if unit != "ms" else STAGES[1:]
+        for stage in stages:
+            of = own[own["stage"] == stage]
             end = of[key].min() if unit == "%" else of[key].quantile(0.95)
             about = (unit, ", ".join(sessions), len(of), 0, "benchmark", COMMAND)
             for part, value in (("median", of[key].median()), ("worst", end)):
                 yield ["body-model", f"{key}; {group}", f"{stage}_{part}", f"{value:.1f}", *about]
-    for one in marked.itertuples() if marked is not None else ():
+    row, about = f"time a frame, {long[0]} frames, ms", ("ms", LONGEST[0])
+    counts = (long[0], 0, "benchmark", COMMAND)
+    yield ["body-model", row, "model_median", f"{long[1]:.1f}", *about, *counts]
+    for one in marked.itertuples():
         label = f"{one.angle.replace('_', ' ')}; cameras: {one.calibration}"
         about = ("degrees", "hall-markers", one.n, 0, "benchmark", HALL_COMMAND)
         for part, value in (("rmse", one.rmse), ("least", one.least), ("most", one.most)):
@@ -196,10 +226,12 @@ def main():
         marked = hall(*given.hall, Path(temporary)) if given.hall else None
     pd.set_option("display.width", 200)
     print(table.round(1).to_string(index=False))
+    long = long_ms(given.results, *LONGEST)
+    print(f"{long[0]} frames: {long[1]:.2f} ms a frame")
     if marked is not None:
         print(marked.round(1).to_string(index=False))
     if tuple(given.sessions) == SESSIONS and marked is not None:
-        stated.write(ROOT / stated.FOLDER / "body_model.csv", rows(table, marked))
+        stated.write(ROOT / stated.FOLDER / "body_model.csv", rows(table, marked, long))
 
 
 if __name__ == "__main__":

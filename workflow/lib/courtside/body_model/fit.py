@@ -21,9 +21,8 @@ ALIKE = 30
 LONGEST = 0.5  # rad or m, of a step
 CHUNK = 250  # frames whose derivatives are in memory at once
 SETTLED = 1e-3  # rad or m: a largest median step below it ends the fit
-# Of each segment's rotation: the joint whose cut-off it has, and a factor of it. Factors were
-# chosen on `players-dev`: limbs that are hidden in some views need more smoothing than the filter
-# gives, but the knee, whose points are three (ankle, heel, toe), less.
+# Of each segment's rotation: the joint whose cut-off it has, and a factor of it, chosen among a few
+# by the errors of joints and angles on `players-dev`.
 SHOWN = {
     "pelvis": ("hip", 0.6), "thorax": ("shoulder", 0.6), "clavicle": ("shoulder", 0.6),
     "head": ("shoulder", 0.6), "humerus": ("elbow", 0.5), "forearm": ("wrist", 0.5),
