@@ -1,0 +1,99 @@
+"""Heel and toe of one foot, between frames too: place, velocity, height and their variances."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from courtside.kinematics import filtering
+from courtside.records.keypoints.keypoints import Keypoints3D
+
+GRID_HZ = 120.0  # of the times between frames at which contact is looked for
+TOES = ("foot_index", "big_toe")  # what skeletons call the toe
+SLOW_M_S = 0.5  # ASSUME: below it a point of the foot may stand
+STANDING_SHARE = 0.25  # ASSUME: quantile of a slow point's heights: a heel often stands raised
+LEAST_FRAMES = 9  # ASSUME: of a run of known frames in which contact is looked for
+UNKNOWN_M = 0.03  # ASSUME: standard deviation per axis where the keypoints state none
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """Heel and toe of one foot over a run of known frames."""
+
+    frames: slice  # of the take
+    time_s: NDArray  # (N,): `GRID_HZ` or more; every `step`-th is a frame
+    step: int
+    place: NDArray  # (N, 2, 3): heel, toe; m
+    velocity: NDArray  # (N, 2, 3): m/s
+    variance: NDArray  # (N, 2, 3): of the place, per axis, m2
+    height: NDArray  # (N, 2): above that of the flat foot, m
+    cutoff_hz: float  # of the filter that the skeletons went through
+
+    @property
+    def velocity_variance(self) -> NDArray:
+        """Of the velocity (N, 2, 3), m2/s2: of errors with a flat spectrum up to the cut-off."""
+        return self.variance * (2 * np.pi * self.cutoff_hz) ** 2 / 3
+
+
+def points_of(joints: Sequence[str], side: str) -> list[int]:
+    """Return the indices of heel and toe of a side; empty if the skeleton lacks one."""
+    names = list(joints)
+    toe = [f"{side}_{name}" for name in TOES if f"{side}_{name}" in names]
+    return [names.index(f"{side}_heel"), names.index(toe[0])] if toe and _heel(names, side) else []
+
+
+def _heel(names: list[str], side: str) -> bool:
+    return f"{side}_heel" in names
+
+
+def tracks(
+    points: Keypoints3D, person: int, side: str, cutoff_hz: float
+) -> tuple[list[Track], NDArray]:
+    """Return the tracks of a foot, one for each run of frames in which heel and toe are known.
+
+    `points` are filtered skeletons with uniform times. The second value (2,) m is how high heel
+    and toe stand above z = 0 while the foot is flat, NaN if nothing is known of the foot: a
+    quantile of their heights while they are slow, so that it also holds what the cameras' common
+    error adds to the floor.
+    """
+    chosen = points_of(points.joints.tolist(), side)
+    if not chosen or len(points.time_s) < 2:
+        return [], np.full(2, np.nan)
+    known = np.isfinite(points.xyz[person][:, chosen]).all(axis=(1, 2))
+    runs = [run for run in filtering.runs(known) if run[1] - run[0] >= LEAST_FRAMES]
+    found = [_track(points, person, chosen, slice(*run), cutoff_hz) for run in runs]
+    floor = _floor(found)
+    for one in found:
+        one.height[:] = one.place[..., 2] - floor
+    return found, floor
+
+
+def _track(
+    points: Keypoints3D, person: int, chosen: list[int], frames: slice, cutoff_hz: float
+) -> Track:
+    """Return a track by cubic splines through the frames; its heights are not known yet."""
+    own_s, step = points.time_s[frames], max(1, int(np.ceil(GRID_HZ / points.rate_hz - 1e-6)))
+    time_s = np.interp(np.arange(step * (len(own_s) - 1) + 1) / step, range(len(own_s)), own_s)
+    spline = scipy.interpolate.CubicSpline(own_s, points.xyz[person, frames][:, chosen])
+    stated = points.covariance_2d[person, frames][:, chosen]
+    variance = np.nan_to_num(np.diagonal(stated, axis1=2, axis2=3), nan=UNKNOWN_M**2)
+    variance = scipy.interpolate.interp1d(own_s, variance, axis=0)(time_s)
+    place = spline(time_s)
+    return Track(
+        frames, time_s, step, place, spline(time_s, 1), variance, place[..., 2].copy(), cutoff_hz
+    )
+
+
+def _floor(found: Sequence[Track]) -> NDArray:
+    """Return how high heel and toe (2,) m stand above z = 0; NaN without tracks."""
+    if not found:
+        return np.full(2, np.nan)
+    height = np.concatenate([one.place[..., 2] for one in found])
+    speed = np.concatenate([np.linalg.norm(one.velocity, axis=2) for one in found])
+    level = np.quantile(height, 0.05, axis=0)  # of feet that are never slow
+    for at in range(2):
+        slow = height[speed[:, at] < SLOW_M_S, at]
+        level[at] = np.quantile(slow, STANDING_SHARE) if len(slow) else level[at]
+    return level
