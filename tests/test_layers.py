@@ -33,6 +33,7 @@ LEVELS = {  # a room imports rooms of lower levels only
     "reconstruction": 5,
     "body_model": 5,
     "events": 5,
+    "footwork": 5,
     "sfm": 5,
     "exports": 5,
     "drafting": 5,

@@ -5,7 +5,8 @@ Only this file and evaluation_calibration.smk read truth.
 Inputs: 2D and 3D keypoints, clocks, truth of takes.
 Outputs: results/{session}/evaluation/takes/, results/{session}/takes/{take}/table1/.
 Steps: evaluate_take, evaluate_reliability, evaluate_clocks, evaluate_kinematics, evaluate_angles,
-evaluate_sources, evaluate_body_frames, evaluate_detection, evaluate_round_trip (table 1),
+evaluate_contacts, evaluate_sources, evaluate_body_frames, evaluate_detection,
+evaluate_round_trip (table 1),
 evaluate_fusions (paired differences with intervals); of development sessions, asked for by name:
 evaluate_joint_offsets, evaluate_joint_errors, evaluate_skin_depths.
 """
@@ -76,6 +77,23 @@ rule evaluate_kinematics:
         sex_of=of_job(takes.sexes),
     script:
         "../scripts/evaluate_kinematics.py"
+
+
+rule evaluate_contacts:
+    input:
+        skeletons=of_job(takes.measured),
+        contacts=paths.CONTACTS,
+        steps=paths.STEPS,
+        truth=paths.TRUE_TAKE,
+    output:
+        errors_csv=paths.CONTACT_ERRORS,
+    log:
+        "results/{session}/logs/evaluate_contacts/{take}.{calibration}.{fusion}.{model}.log",
+    params:
+        code=code("evaluate_contacts.py"),
+        labels=of_job(lambda job: {**job.wildcards, "stage": job.stages()[-1]}),
+    script:
+        "../scripts/evaluate_contacts.py"
 
 
 rule evaluate_angles:

@@ -2,7 +2,7 @@
 
 Inputs: 2D and 3D keypoints, cameras, videos. Outputs: results/{session}/takes/{take}/figures/.
 Steps: draw_overlay, draw_skeletons, draw_reprojection, draw_visibility, draw_kinematics,
-draw_shake.
+draw_footwork, draw_shake.
 """
 
 
@@ -87,6 +87,22 @@ rule draw_kinematics:
         code=code("draw_kinematics.py"),
     script:
         "../scripts/draw_kinematics.py"
+
+
+rule draw_footwork:
+    input:
+        contacts_npz=paths.CONTACTS,
+        steps_csv=paths.STEPS,
+        events_csv=paths.FOOT_EVENTS,
+        court_yaml=of_job(Job.court_file),
+    output:
+        **figure("footwork"),
+    log:
+        f"results/{{session}}/logs/draw_footwork/{paths.OF_FUSED}.log",
+    params:
+        code=code("draw_footwork.py"),
+    script:
+        "../scripts/draw_footwork.py"
 
 
 rule draw_shake:

@@ -1,10 +1,12 @@
 """Metric skeletons and the files that other programs open.
 
 Inputs: 2D keypoints, shake, cameras. Outputs: results/{session}/takes/{take}/ pose2d_steadied, sync,
-people, pose3d, pose3d_filtered, pose3d_corrected, pose3d_ik, motion, kinematics, quality.csv.
+people, pose3d, pose3d_filtered, pose3d_corrected, pose3d_ik, motion, kinematics,
+footwork, quality.csv.
 Steps: steady_keypoints (of a take whose cameras shake), synchronise_cameras, associate_people
 (everybody), name_people (the subjects among them), triangulate (raw, always kept), filter_motion,
-correct_joints, fit_skeleton, export_take, export_motion, measure_kinematics, judge_take.
+correct_joints, fit_skeleton, export_take, export_motion, measure_kinematics, find_contacts,
+judge_take.
 """
 
 
@@ -222,6 +224,25 @@ rule measure_kinematics:
         sex_of=of_job(takes.sexes),
     script:
         "../scripts/measure_kinematics.py"
+
+
+rule find_contacts:
+    input:
+        skeletons=of_job(takes.measured),
+        cutoffs=paths.CUTOFFS,
+        skeleton=of_job(Job.skeleton_file),
+        court=of_job(Job.court_file),
+    output:
+        contacts_npz=paths.CONTACTS,
+        steps_csv=paths.STEPS,
+        events_csv=paths.FOOT_EVENTS,
+        summary_csv=paths.FOOTWORK_MEASURES,
+    log:
+        f"results/{{session}}/logs/find_contacts/{paths.OF_FUSED}.log",
+    params:
+        code=code("find_contacts.py"),
+    script:
+        "../scripts/find_contacts.py"
 
 
 # A take that failed is judged in each run: none ends as if nothing was wrong.

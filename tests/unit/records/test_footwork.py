@@ -34,7 +34,9 @@ def test_what_is_written_is_read(tmp_path):
     footwork.write_steps(tmp_path / "s.csv", STEPS)
     pd.testing.assert_frame_equal(footwork.read_steps(tmp_path / "s.csv"), STEPS, check_dtype=False)
     footwork.write_events(tmp_path / "e.csv", EVENTS)
-    pd.testing.assert_frame_equal(footwork.read_events(tmp_path / "e.csv"), EVENTS, check_dtype=False)
+    pd.testing.assert_frame_equal(
+        footwork.read_events(tmp_path / "e.csv"), EVENTS, check_dtype=False
+    )
 
 
 def _pairs(one, other):

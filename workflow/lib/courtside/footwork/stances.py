@@ -61,14 +61,13 @@ def _of_track(track: Track, probability: NDArray) -> tuple[list[Stance], NDArray
         middles = (edges_s[k] + raw_s[k]) / 2, (raw_s[k] + edges_s[k + 2]) / 2
         sigma_s[k] = _sigma(track, probability, what, fastest, middles)
     moved_s = np.maximum.accumulate(moved_s)  # a very short stance may vanish
-    ends = (time_s[0] - 1, time_s[-1] + 1)
-    knots = (np.concatenate([ends[:1], each, ends[1:]]) for each in (moved_s, raw_s))
-    warped = np.interp(time_s[:: track.step], *knots)
-    frames = np.interp(warped, time_s, probability)
+    before, after = time_s[:1] - 1, time_s[-1:] + 1
+    moved, raw = (np.concatenate([before, each, after]) for each in (moved_s, raw_s))
+    frames = np.interp(np.interp(time_s[:: track.step], moved, raw), time_s, probability)
     first = 0 if stands[0] else 1
     bounds = np.concatenate([[np.nan], moved_s, [np.nan]])
     sigmas = np.concatenate([[np.nan], sigma_s, [np.nan]])
-    starts = range(first, len(bounds) - 1, 2) if len(at) or stands[0] else ()
+    starts = [k for k in range(first, len(bounds) - 1, 2) if not bounds[k + 1] <= bounds[k]]
     return [_stance(track, probability, edges_s, bounds, sigmas, k) for k in starts], frames
 
 
@@ -98,10 +97,13 @@ def _stance(
     weight = probability[inside] / probability[inside].sum()
     variance = track.variance[inside][..., :2].mean(axis=(1, 2))
     return Stance(
-        *(float(x) for x in (bounds[k], sigmas[k], bounds[k + 1], sigmas[k + 1])),
-        weight @ track.place[inside][..., :2].mean(axis=1),
-        float(np.sqrt(weight @ variance)),
-        float(probability[inside].mean()),
+        onset_s=float(bounds[k]),
+        onset_sigma_s=float(sigmas[k]),
+        end_s=float(bounds[k + 1]),
+        end_sigma_s=float(sigmas[k + 1]),
+        xy=weight @ track.place[inside][..., :2].mean(axis=1),
+        sigma_m=float(np.sqrt(weight @ variance)),
+        quality=float(probability[inside].mean()),
     )
 
 

@@ -41,29 +41,27 @@ def points_of(joints: Sequence[str], side: str) -> list[int]:
     """Return the indices of heel and toe of a side; empty if the skeleton lacks one."""
     names = list(joints)
     toe = [f"{side}_{name}" for name in TOES if f"{side}_{name}" in names]
-    return [names.index(f"{side}_heel"), names.index(toe[0])] if toe and _heel(names, side) else []
-
-
-def _heel(names: list[str], side: str) -> bool:
-    return f"{side}_heel" in names
+    heel = [f"{side}_heel"] if f"{side}_heel" in names else []
+    return [names.index(heel[0]), names.index(toe[0])] if heel and toe else []
 
 
 def tracks(
-    points: Keypoints3D, person: int, side: str, cutoff_hz: float
+    points: Keypoints3D, person: int, side: str, cutoff_hz: Sequence[float]
 ) -> tuple[list[Track], NDArray]:
     """Return the tracks of a foot, one for each run of frames in which heel and toe are known.
 
-    `points` are filtered skeletons with uniform times. The second value (2,) m is how high heel
-    and toe stand above z = 0 while the foot is flat, NaN if nothing is known of the foot: a
-    quantile of their heights while they are slow, so that it also holds what the cameras' common
-    error adds to the floor.
+    `points` are filtered skeletons with uniform times, `cutoff_hz` (J,) the filter's cut-offs. The
+    second value (2,) m is how high heel and toe stand above z = 0 while the foot is flat, NaN if
+    nothing is known of the foot: a quantile of their heights while they are slow, so that it also
+    holds what the cameras' common error adds to the floor.
     """
     chosen = points_of(points.joints.tolist(), side)
     if not chosen or len(points.time_s) < 2:
         return [], np.full(2, np.nan)
     known = np.isfinite(points.xyz[person][:, chosen]).all(axis=(1, 2))
     runs = [run for run in filtering.runs(known) if run[1] - run[0] >= LEAST_FRAMES]
-    found = [_track(points, person, chosen, slice(*run), cutoff_hz) for run in runs]
+    own_hz = max(cutoff_hz[joint] for joint in chosen)
+    found = [_track(points, person, chosen, slice(*run), own_hz) for run in runs]
     floor = _floor(found)
     for one in found:
         one.height[:] = one.place[..., 2] - floor

@@ -1,5 +1,6 @@
-"""Figures of one take: overlay, skeletons, reprojection, visibility, kinematics, clocks.
+"""Figures of one take: overlay, skeletons, reprojection, visibility, kinematics, footwork, clocks.
 
 overlay: `table`, `draw`: detected and reprojected joints on the pictures
-skeletons, reprojection, visibility, kinematics, camera_shake, clock_errors: `table`, `draw`
+skeletons, reprojection, visibility, kinematics, footwork, camera_shake, clock_errors: `table`,
+    `draw`
 """

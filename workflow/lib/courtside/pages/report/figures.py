@@ -17,6 +17,7 @@ TITLES = {
     "reprojection": "Reprojection errors",
     "visibility": "Confidence, and cameras per joint",
     "kinematics": "Paths, speeds, angles",
+    "footwork": "Footwork: where and when the feet stood",
     "shake": "Camera shake",
     "three_cameras": "Two, three and four cameras against the truth",
     "error_map": "Expected error over the court",

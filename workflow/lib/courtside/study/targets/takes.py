@@ -110,6 +110,16 @@ def every_kinematics(study: Study) -> list[str]:
     return imported + own
 
 
+def every_footwork(study: Study) -> list[str]:
+    """Return the measures of the feet of all takes, and their errors where there is truth."""
+    return [
+        path
+        for session, take in study.takes()
+        for pattern in (paths.FOOTWORK_MEASURES, *([paths.CONTACT_ERRORS] * bool(session.virtual)))
+        for path in files(pattern, session, take)
+    ]
+
+
 def every_comparison_of_views(study: Study) -> list[str]:
     """Return how far sets of cameras are from all of them, in real takes."""
     return [

@@ -1,0 +1,42 @@
+"""The figure of footwork draws the stances."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from courtside.calibration.court import court
+from courtside.figures.take import footwork as drawing
+from courtside.footwork import feet
+from fixtures.people import walking_feet
+
+CONFIG = Path(__file__).parents[4] / "config"
+
+
+@pytest.fixture(scope="module")
+def found():
+    return feet.find(walking_feet.record(walking_feet.hop(), 3.0)[0], walking_feet.CUTOFFS)
+
+
+def test_bars_and_marks_are_the_stances(found):
+    contacts, steps, events = found
+    made = drawing.draw(contacts, steps, events, court.read(CONFIG / "courts" / "badminton.yaml"))
+    made.draw_without_rendering()
+    plan, bars, chance = made.subfigs[0].axes
+    widths = sorted(bar.get_width() for bar in bars.patches)
+    start = steps.onset_s.fillna(contacts.time_s[0])
+    np.testing.assert_allclose(
+        widths, sorted(steps.end_s.fillna(contacts.time_s[-1]) - start)
+    )  # fmt: skip
+    assert [text.get_text() for text in bars.texts] == ["split step"]
+    np.testing.assert_array_equal(chance.lines[0].get_ydata(), contacts.probability[0, :, 0])
+    marked = [line for line in plan.lines if line.get_marker() == "v" and len(line.get_xdata())]
+    assert len(marked) == 2
+
+
+def test_no_court_and_no_step(found):
+    contacts, steps, events = found
+    made = drawing.draw(contacts, steps[:0], events[:0], None)
+    made.draw_without_rendering()
+    assert "0 landings" in made.subfigs[0].axes[0].get_title()
+    assert drawing.table(steps).columns.tolist()[:2] == ["person", "foot"]

@@ -1,0 +1,38 @@
+"""Footwork of a take against the virtual gym's plants."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from courtside.footwork import feet
+from fixtures.people import walking_feet
+
+
+def test_a_split_step_of_the_virtual_gym_is_found_and_the_first_step_after_it():
+    points, _ = walking_feet.record(walking_feet.hop(), 3.0)
+    contacts, steps, events = feet.find(points, walking_feet.CUTOFFS)
+    assert events.event.tolist() == ["split_step", "step"]
+    assert events.foot.tolist() == ["both", "left"]
+    assert events.stop_s.tolist() == pytest.approx([1.0, 1.9], abs=0.035)
+    assert events.start_s.tolist() == pytest.approx([0.82, 1.6], abs=0.035)
+    assert len(steps) == 5
+    stands = contacts.probability[0] > 0.5
+    assert stands[:20].all()
+    assert not stands[27].any()
+
+
+def test_a_skeleton_without_heels_gives_no_contacts():
+    points, _ = walking_feet.record(walking_feet.hop(), 3.0)
+    joints = np.array([name.replace("heel", "sole") for name in points.joints.tolist()])
+    contacts, steps, events = feet.find(replace(points, joints=joints), walking_feet.CUTOFFS)
+    assert np.isnan(contacts.probability).all()
+    assert steps.empty
+    assert events.empty
+
+
+def test_the_leg_is_thigh_and_shank():
+    points, _ = walking_feet.record(walking_feet.hop(), 3.0, sigma_m=0.0)
+    assert 0.5 < feet.leg_length(points, 0) < 1.2
+    nobody = replace(points, xyz=np.full_like(points.xyz, np.nan))
+    assert np.isnan(feet.leg_length(nobody, 0))

@@ -1,0 +1,66 @@
+"""What stances are: steps, lunges, split steps, jumps."""
+
+import numpy as np
+import pytest
+
+from courtside.footwork import kinds
+from courtside.footwork.stances import Stance
+
+NAN = float("nan")
+
+
+def stance(onset_s, end_s, x=0.0, y=0.0):
+    return Stance(onset_s, 0.01, end_s, 0.01, np.array([x, y]), 0.01, 0.95)
+
+
+def together(off_s, land_s, ahead=0.0, late=0.0):
+    """Return feet that leave and land, the right one `late` seconds after the left."""
+    left = [stance(NAN, off_s, -0.2), stance(land_s, NAN, -0.2, ahead)]
+    right = [stance(NAN, off_s + late, 0.2), stance(land_s + late, NAN, 0.2, ahead)]
+    return {"left": left, "right": right}
+
+
+@pytest.mark.parametrize(
+    ("feet", "event"),
+    [
+        (together(1.0, 1.2), "split_step"),
+        (together(1.0, 1.2, late=0.05), "split_step"),
+        (together(1.0, 1.45), "jump"),
+        (together(1.0, 1.2, ahead=0.9), "jump"),
+    ],
+)
+def test_both_feet_that_leave_and_land_together(feet, event):
+    steps, events = kinds.tables({"p1": (feet, 0.9)})
+    assert steps.kind.tolist() == ["stand", "stand", event, event]
+    assert events.event.tolist() == [event]
+    last, first = events.iloc[0].start_s, events.iloc[0].stop_s
+    assert last == max(feet["left"][0].end_s, feet["right"][0].end_s)
+    assert first == feet["left"][1].onset_s
+
+
+def test_running_feet_take_steps():
+    left = [stance(NAN, 0.5), stance(0.85, 1.1, 0, 1.2), stance(1.45, NAN, 0, 2.4)]
+    right = [stance(NAN, 0.8, 0, 0.6), stance(1.15, 1.4, 0, 1.8)]
+    steps, events = kinds.tables({"p1": ({"left": left, "right": right}, 0.9)})
+    assert set(events.event) == {"step"}
+    assert events.foot.tolist() == ["left", "right", "left"]
+    assert np.isnan(steps.onset_s.iloc[0])
+
+
+@pytest.mark.parametrize(
+    ("apart", "stays", "leg_m", "kind"),
+    [(1.1, 0.6, 0.9, "lunge"), (0.7, 0.6, 0.9, "step"), (1.1, 0.1, 0.9, "step"),
+     (1.1, 0.6, NAN, "step")],
+)  # fmt: skip
+def test_a_lunge_lands_far_from_the_other_foot_and_both_stand(apart, stays, leg_m, kind):
+    left = [stance(NAN, 1.0 + stays)]
+    right = [stance(NAN, 0.7), stance(1.0, 1.0 + stays + 0.1, 0, apart)]
+    steps, events = kinds.tables({"p1": ({"left": left, "right": right}, leg_m)})
+    assert steps[steps.foot == "right"].kind.tolist() == ["stand", kind]
+    assert events.event.tolist() == [kind]
+
+
+def test_nobody_has_no_steps():
+    steps, events = kinds.tables({"p1": ({"left": [], "right": []}, NAN)})
+    assert steps.empty
+    assert events.empty

@@ -1,0 +1,76 @@
+"""Measures of footwork from stances."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from courtside.calibration.court import court
+from courtside.footwork import kinds, measures
+from courtside.footwork.stances import Stance
+
+CONFIG = Path(__file__).parents[3] / "config"
+NAN = float("nan")
+
+
+def run(n=5, stride_m=1.2, x=3.0, y=1.0, late_s=0.0):
+    """Return both feet of a straight run whose stances last 0.25 s and whose swings 0.35 s."""
+    feet = {}
+    for side, phase in (("left", 0.0), ("right", 0.5)):
+        places = [np.array([x, y + stride_m * (k + phase)]) for k in range(n + 1)]
+        onsets = [NAN, *(late_s + 0.85 + 0.6 * (k + phase) for k in range(n))]
+        ends = [late_s + 0.5 + 0.6 * (k + phase) for k in range(n)] + [NAN]
+        feet[side] = [
+            Stance(a, 0.01, b, 0.01, place, 0.02, 0.95)
+            for a, b, place in zip(onsets, ends, places, strict=True)
+        ]
+    return feet
+
+
+def values(feet, lines=None):
+    return measures.summary(*kinds.tables({"p1": (feet, 0.9)}), lines).set_index("measure")
+
+
+def test_counts_and_times_of_a_run():
+    found = values(run())
+    assert found.loc["steps", "value"] == 10
+    assert found.loc["lunges", "value"] == 0
+    assert found.loc["stance_time", "value"] == pytest.approx(0.25)
+    assert found.loc["stance_time", "n"] == 8
+    assert found.loc["stance_time", "sigma"] == pytest.approx(0.01 * np.sqrt(2 / 8))
+    assert found.loc["swing_time_left", "value"] == pytest.approx(0.35)
+    assert found.loc["flight_time", "value"] == pytest.approx(0.05)
+
+
+def test_a_rally_has_time_distance_and_rate():
+    found = values(run())
+    assert found.loc["rally_1_time", "value"] == pytest.approx(0.3 * 9)
+    assert found.loc["rally_1_distance", "value"] == pytest.approx(0.6 * 8)
+    # Only the places at both ends count: those of the first two and the last two landings.
+    assert found.loc["rally_1_distance", "sigma"] == pytest.approx(0.02)
+    assert found.loc["rally_1_step_rate", "value"] == pytest.approx(1 / 0.3)
+    assert "rally_2_time" not in found.index
+    first, second = run(), run(late_s=20.0)
+    both = {side: first[side][:-1] + second[side][1:] for side in first}
+    assert values(both).loc["rally_2_time", "value"] == pytest.approx(0.3 * 9)
+
+
+def test_corners_are_sixths_of_the_own_half_as_seen_facing_the_net():
+    lines = court.read(CONFIG / "courts" / "badminton.yaml")
+    net, width = lines.net["y_m"], lines.size_m[0]
+    xy = np.array([[0.2, net - 0.5], [width - 0.2, 0.1], [0.2, net + 0.5], [width - 0.2, net - 3]])
+    expected = ["front_left", "rear_right", "front_right", "mid_right"]
+    assert measures.corner(xy, lines).tolist() == expected
+    found = values(run(x=width - 1), lines)
+    assert found.filter(regex="^steps_", axis=0)["value"].sum() == 10
+    assert found.loc["steps_rear_right", "value"] == 1  # y = 2.2 m
+    assert found.loc["steps_mid_right", "value"] == 3
+
+
+def test_one_landing_and_no_landing_have_measures():
+    feet = {"left": [Stance(NAN, NAN, NAN, NAN, np.zeros(2), 0.01, 1.0)], "right": []}
+    found = values(feet)
+    assert found.loc["steps", "value"] == 0
+    assert np.isnan(found.loc["stance_time", "value"])
+    single = {"left": run(1)["left"], "right": []}
+    assert values(single).loc["rally_1_time", "value"] == 0

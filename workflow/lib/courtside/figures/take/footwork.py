@@ -1,0 +1,90 @@
+"""Footwork of a take: where feet stood on the court, and when."""
+
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from courtside.calibration import point_covariance
+from courtside.calibration.court.court import Court
+from courtside.figures.style import court_plan, style
+from courtside.records.footwork import FEET, Contacts
+
+ROW_MM = 105
+ROOM_M = 0.5  # around the feet
+COLOURS = {"left": style.LEFT, "right": style.RIGHT}
+MARKS = {"stand": ".", "step": "o", "lunge": "D", "split_step": "v", "jump": "^"}
+DRAWN = ["person", "foot", "kind", "onset_s", "onset_sigma_s", "end_s", "end_sigma_s"]
+
+
+def table(steps: pd.DataFrame) -> pd.DataFrame:
+    """Return the numbers drawn: the stances."""
+    return steps[[*DRAWN, "x_m", "y_m", "sigma_m"]]
+
+
+def draw(
+    contacts: Contacts, steps: pd.DataFrame, events: pd.DataFrame, court: Court | None
+) -> Figure:
+    """Draw each person in a row: stances from above, and contact of both feet over time."""
+    people = contacts.person_id.tolist()
+    drawing = style.figure(ROW_MM * max(len(people), 1))
+    for row, part in enumerate(drawing.subfigures(len(people), 1, squeeze=False)[:, 0]):
+        grid = part.add_gridspec(2, 2, width_ratios=(1.0, 1.6))
+        own = steps[steps.person == people[row]]
+        happened = events[events.person == people[row]]
+        _draw_places(part.add_subplot(grid[:, 0]), own, court, people[row])
+        stances = part.add_subplot(grid[0, 1])
+        _draw_stances(stances, own, happened, contacts.time_s)
+        _draw_contact(part.add_subplot(grid[1, 1], sharex=stances), contacts, row)
+    return drawing
+
+
+def _draw_places(axis: Axes, own: pd.DataFrame, court: Court | None, person: str) -> None:
+    if court is not None:
+        court_plan.draw(axis, court)
+    path = own.sort_values("onset_s", na_position="first")
+    axis.plot(path.x_m, path.y_m, color="0.6", linewidth=0.5, zorder=2)
+    for kind, mark in MARKS.items():
+        at = own[own.kind == kind]
+        if len(at):
+            size = 3 + 2 * (kind not in ("stand", "step"))
+            look: dict = {"linestyle": "", "markersize": size, "zorder": 3}
+            axis.plot([], [], mark, color="0.4", label=kind.replace("_", " "), **look)
+            for foot in FEET:
+                mine = at[at.foot == foot]
+                axis.plot(mine.x_m, mine.y_m, mark, color=COLOURS[foot], **look)
+    axis.set_title(f"{person}: feet from above\n{int(own.onset_s.notna().sum())} landings")
+    axis.set(xlabel="x (m)", ylabel="y (m)")
+    axis.set_aspect("equal", adjustable="box" if court else "datalim")
+    if len(own):
+        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=5, fontsize=7)
+    if len(own) and court is not None:
+        axis.set_xlim(min(0, own.x_m.min()) - ROOM_M, max(court.size_m[0], own.x_m.max()) + ROOM_M)
+        axis.set_ylim(min(0, own.y_m.min()) - ROOM_M, own.y_m.max() + 2 * ROOM_M)
+
+
+def _draw_stances(axis: Axes, own: pd.DataFrame, events: pd.DataFrame, time_s: NDArray) -> None:
+    """Draw bars of both feet; one that the take cuts reaches to its end."""
+    for row, foot in enumerate(reversed(FEET)):
+        mine = own[own.foot == foot]
+        start, stop = mine.onset_s.fillna(time_s[0]), mine.end_s.fillna(time_s[-1])
+        axis.barh(row, stop - start, left=start, height=0.6, color=COLOURS[foot], alpha=0.7)
+        for what, above in (("onset", -0.1), ("end", 0.1)):
+            at = mine[f"{what}_s"]
+            reach = point_covariance.WITHIN_90 * mine[f"{what}_sigma_s"]
+            axis.hlines(row + above + 0 * at, at - reach, at + reach, "black", linewidth=0.8)
+    shown = events[events.event != "step"]
+    look: dict = {"fontsize": 6, "rotation": 90, "ha": "center", "va": "bottom"}
+    for event in shown.itertuples():
+        axis.annotate(event.event.replace("_", " "), (event.stop_s, 1.45), **look)
+    axis.set_yticks(range(len(FEET)), [f"{foot} foot" for foot in reversed(FEET)])
+    axis.set_ylim(-0.6, 2.3 if len(shown) else 1.6)
+    axis.tick_params(labelbottom=False)
+
+
+def _draw_contact(axis: Axes, contacts: Contacts, person: int) -> None:
+    for at, foot in enumerate(contacts.foot.tolist()):
+        own = contacts.probability[person, :, at]
+        axis.plot(contacts.time_s, own, color=COLOURS[foot], linewidth=0.8, label=f"{foot} foot")
+    axis.set(xlabel="time (s)", ylabel="probability of contact", ylim=(-0.03, 1.03))
+    axis.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2, borderaxespad=0)

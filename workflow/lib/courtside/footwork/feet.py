@@ -1,0 +1,49 @@
+"""Footwork of a take from its skeletons: contacts, steps and events."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+
+from courtside.footwork import kinds, stances, tracks
+from courtside.records import footwork
+from courtside.records.keypoints.keypoints import Keypoints3D
+
+
+def find(
+    points: Keypoints3D, cutoff_hz: Sequence[float]
+) -> tuple[footwork.Contacts, pd.DataFrame, pd.DataFrame]:
+    """Return contacts, steps and events of every person.
+
+    `points` are filtered skeletons, `cutoff_hz` (J,) the cut-off of each joint. Of a skeleton
+    without heel and toe nothing is known.
+    """
+    n_people, n_frames = points.xyz.shape[:2]
+    probability = np.full((n_people, n_frames, 2), np.nan)
+    floor = np.full((n_people, 2, 2), np.nan)
+    people = {}
+    for at, person in enumerate(points.person_id.tolist()):
+        feet = {}
+        for foot, side in enumerate(footwork.FEET):
+            found, floor[at, foot] = tracks.tracks(points, at, side, cutoff_hz)
+            feet[side], probability[at, :, foot] = stances.of_tracks(found, n_frames)
+        people[person] = feet, leg_length(points, at)
+    contacts = footwork.Contacts(
+        points.person_id, np.array(footwork.FEET), points.time_s, probability, floor
+    )
+    return contacts, *kinds.tables(people)
+
+
+def leg_length(points: Keypoints3D, person: int) -> float:
+    """Return the length of thigh and shank, m: median over frames and sides; NaN if unknown."""
+    names = points.joints.tolist()
+    lengths = []
+    for side in footwork.FEET:
+        hip, knee, ankle = (
+            points.xyz[person][:, names.index(f"{side}_{joint}")]
+            for joint in ("hip", "knee", "ankle")
+        )
+        lengths.append(np.linalg.norm(hip - knee, axis=1) + np.linalg.norm(knee - ankle, axis=1))
+    known = np.concatenate(lengths)
+    known = known[np.isfinite(known)]
+    return float(np.median(known)) if len(known) else float("nan")

@@ -1,0 +1,99 @@
+"""What a stance is: a step, a lunge, the landing of a split step or of a jump; tables of both."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+
+from courtside.footwork.stances import Stance
+from courtside.records import footwork
+
+Feet = Mapping[str, Sequence[Stance]]  # stances by foot, in order of time
+# ASSUME: both feet leave the floor, and land, within this of one another: half of the time between
+# two steps of a run.
+TOGETHER_S = 0.12
+LEAST_FLIGHT_S = 0.05  # ASSUME: shorter ones are errors of landing and end
+JUMP_S = 0.3  # ASSUME: longer flights are jumps: the body rises by g t^2 / 8 = 0.11 m and more
+HOP_M = 0.6  # ASSUME: a split step carries no further; a leap is a jump
+# ASSUME: in a lunge the feet stand further apart than this, in lengths of the leg, for longer than
+# the double support of walking.
+LUNGE_LEGS, LUNGE_S = 0.9, 0.2
+
+
+def tables(people: Mapping[str, tuple[Feet, float]]) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Return the steps and the events of a take: rows of `records.footwork`.
+
+    `people` gives by person the stances of both feet, and the length of the leg (m; NaN: unknown,
+    and no stance is called a lunge).
+    """
+    steps: list[tuple] = []
+    events: list[tuple] = []
+    for person, (feet, leg_m) in people.items():
+        kinds = {(side, 0): "stand" for side in feet if feet[side]}
+        flights = _flights(feet)
+        for left, right, kind, _ in flights:
+            kinds |= {("left", left): kind, ("right", right): kind}
+        own = []
+        for side in feet:
+            for at, stance in enumerate(feet[side]):
+                kind = kinds.get((side, at), "step") if np.isfinite(stance.onset_s) else "stand"
+                kind = "lunge" if kind == "step" and _is_lunge(feet, side, at, leg_m) else kind
+                own.append((person, side, kind, *_row(stance)))
+                if kind in ("step", "lunge") and at and np.isfinite(feet[side][at - 1].end_s):
+                    events.append(_event(person, kind, side, [feet[side][at - 1]], [stance]))
+        steps += sorted(own, key=lambda row: np.nan_to_num(row[3], nan=row[5] - 1e-6))
+        for left, right, kind, _ in flights:
+            landing = [feet["left"][left], feet["right"][right]]
+            before = [feet["left"][left - 1], feet["right"][right - 1]]
+            events.append(_event(person, kind, "both", before, landing))
+    columns = list(footwork.STEP_COLUMNS), list(footwork.EVENT_COLUMNS)
+    happened = pd.DataFrame(events, columns=columns[1]).sort_values(["person", "stop_s"])
+    return pd.DataFrame(steps, columns=columns[0]), happened.reset_index(drop=True)
+
+
+def _row(stance: Stance) -> tuple:
+    times = stance.onset_s, stance.onset_sigma_s, stance.end_s, stance.end_sigma_s
+    return *times, *map(float, stance.xy), stance.sigma_m, stance.quality
+
+
+def _event(
+    person: str, kind: str, foot: str, before: Sequence[Stance], landing: Sequence[Stance]
+) -> tuple:
+    """Return the row of an event: the last foot leaves, the first lands."""
+    last, first = max(before, key=lambda s: s.end_s), min(landing, key=lambda s: s.onset_s)
+    times = last.end_s, last.end_sigma_s, first.onset_s, first.onset_sigma_s
+    x_m, y_m = np.mean([stance.xy for stance in landing], axis=0)
+    quality = min(stance.quality for stance in landing)
+    return person, kind, foot, *times, float(x_m), float(y_m), quality
+
+
+def _flights(feet: Feet) -> list[tuple[int, int, str, float]]:
+    """Return the flights of both feet: the stances in which they end, kind, and duration (s)."""
+    found = []
+    for left, landed in enumerate(feet["left"]):
+        for right, other in enumerate(feet["right"]):
+            if not (left and right) or not abs(landed.onset_s - other.onset_s) <= TOGETHER_S:
+                continue
+            before = feet["left"][left - 1], feet["right"][right - 1]
+            if not abs(before[0].end_s - before[1].end_s) <= TOGETHER_S:
+                continue
+            lasts = min(landed.onset_s, other.onset_s) - max(one.end_s for one in before)
+            if lasts < LEAST_FLIGHT_S:
+                continue
+            went = (landed.xy + other.xy - before[0].xy - before[1].xy) / 2
+            short = lasts <= JUMP_S and np.linalg.norm(went) <= HOP_M
+            found.append((left, right, "split_step" if short else "jump", lasts))
+    return found
+
+
+def _is_lunge(feet: Feet, side: str, at: int, leg_m: float) -> bool:
+    """Return whether a foot lands far from the other, and both then stand."""
+    own = feet[side][at]
+    for other in feet["right" if side == "left" else "left"]:
+        start = max(own.onset_s, np.nan_to_num(other.onset_s, nan=-np.inf))
+        stop = min(np.nan_to_num(one.end_s, nan=np.inf) for one in (own, other))
+        first = not other.onset_s > own.onset_s
+        apart = float(np.linalg.norm(own.xy - other.xy))
+        if first and stop - start > LUNGE_S and apart > LUNGE_LEGS * leg_m:
+            return True
+    return False

@@ -1,0 +1,144 @@
+"""Measures of footwork: counts, stance, swing and flight times, steps per corner, rallies."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from courtside.calibration.court.court import Court
+from courtside.footwork.kinds import LEAST_FLIGHT_S
+from courtside.records import footwork
+
+COLUMNS = ("person", "measure", "value", "sigma", "unit", "n", "definition")
+PAUSE_S = 3.0  # ASSUME: a rally is over when no foot lands for longer
+COUNTED = {"step": "steps", "lunge": "lunges", "split_step": "split_steps", "jump": "jumps"}
+DEPTHS, SIDES = ("front", "mid", "rear"), ("left", "right")
+Row = tuple[str, float, float, str, int, str]  # measure, value, sigma, unit, n, definition
+NAN = float("nan")
+
+
+def summary(steps: pd.DataFrame, events: pd.DataFrame, court: Court | None) -> pd.DataFrame:
+    """Return the measures of a take, rows of `COLUMNS`; `steps` and `events` of `records.footwork`.
+
+    Sigma is a standard deviation from those of onsets, ends and places; NaN where nothing is known,
+    as of counts.
+    """
+    rows = []
+    for person, own in steps.groupby("person", sort=False):
+        mine = events[events.person == person]
+        found = [*_counts(own, mine), *_times(own), *_corners(own, court), *_rallies(own)]
+        rows += [(person, *row) for row in found]
+    return pd.DataFrame(rows, columns=list(COLUMNS))
+
+
+def _counts(steps: pd.DataFrame, events: pd.DataFrame) -> Iterator[Row]:
+    landings = int(steps.onset_s.notna().sum())
+    yield "steps", float(landings), NAN, "", landings, "landings of a foot, of every kind"
+    for kind in ("lunge", "split_step", "jump"):
+        n = int((events.event == kind).sum())
+        yield COUNTED[kind], float(n), NAN, "", n, f"events {kind}"
+
+
+def _times(steps: pd.DataFrame) -> Iterator[Row]:
+    feet = {foot: own.sort_values("end_s") for foot, own in steps.groupby("foot")}
+    for name, own in (("", list(feet.values())), *((f"_{f}", [o]) for f, o in feet.items())):
+        stood = pd.concat(own).dropna(subset=["onset_s", "end_s"])
+        yield _mean(f"stance_time{name}", stood.onset_s, stood.end_s, *_sigmas(stood))
+    for name, own in (("", list(feet.values())), *((f"_{f}", [o]) for f, o in feet.items())):
+        left = pd.concat([o[["end_s", "end_sigma_s"]].shift(1) for o in own])
+        landed = pd.concat([o[["onset_s", "onset_sigma_s"]] for o in own])
+        both = pd.concat([left, landed], axis=1).dropna()
+        yield _mean(f"swing_time{name}", both.end_s, both.onset_s, *_sigmas(both))
+    yield _flights(steps)
+
+
+def _sigmas(rows: pd.DataFrame) -> tuple[pd.Series, pd.Series]:
+    return rows.onset_sigma_s, rows.end_sigma_s
+
+
+def _mean(name: str, start: pd.Series, stop: pd.Series, *sigmas: pd.Series) -> Row:
+    n, words = len(start), name.split("_")[0] + " of a foot, mean of those that are seen whole"
+    spread = np.sqrt(sum((one**2).sum() for one in sigmas)) / n if n else NAN
+    return name, float((stop - start).mean()) if n else NAN, float(spread), "s", n, words
+
+
+def _flights(steps: pd.DataFrame) -> Row:
+    """Return the mean time in which neither foot stands, from the last end to the next landing."""
+    lasts, variances = [], []
+    for row in steps.dropna(subset=["onset_s"]).itertuples():
+        others = steps[(steps.end_s <= row.onset_s)]
+        stands = (steps.onset_s.fillna(-np.inf) < row.onset_s) & ~(steps.end_s <= row.onset_s)
+        if stands.any() or others.empty or others.foot.nunique() < len(footwork.FEET):
+            continue
+        last = others.loc[others.end_s.idxmax()]
+        if row.onset_s - last.end_s >= LEAST_FLIGHT_S:
+            lasts.append(row.onset_s - last.end_s)
+            variances.append(row.onset_sigma_s**2 + last.end_sigma_s**2)
+    n, words = len(lasts), f"neither foot stands, mean of those of {LEAST_FLIGHT_S:g} s and more"
+    spread = np.sqrt(sum(variances)) / n if n else NAN
+    return "flight_time", float(np.mean(lasts)) if n else NAN, float(spread), "s", n, words
+
+
+def corner(xy: NDArray, court: Court) -> NDArray:
+    """Return the sixth (N,) of its half of the court in which each place (N, 2) lies, as a word.
+
+    Front, mid and rear thirds from the net to the base line, left and right as seen by a player who
+    faces the net.
+    """
+    assert court.net is not None
+    ahead = court.net["y_m"] - xy[:, 1]  # positive in the near half
+    third = np.clip(3 * np.abs(ahead) / (court.size_m[1] / 2), 0, 2.999).astype(int)
+    right = (xy[:, 0] > court.size_m[0] / 2) == (ahead > 0)
+    return np.array([f"{DEPTHS[d]}_{SIDES[r]}" for d, r in zip(third, right.astype(int))])  # noqa: B905
+
+
+def _corners(steps: pd.DataFrame, court: Court | None) -> Iterator[Row]:
+    if court is None or not court.net:
+        return
+    landed = steps[steps.onset_s.notna()]
+    words = "landings in this sixth of the own half: thirds from the net, sides as facing it"
+    found = corner(landed[["x_m", "y_m"]].to_numpy(), court) if len(landed) else np.array([])
+    for depth in DEPTHS:
+        for side in SIDES:
+            n = int((found == f"{depth}_{side}").sum())
+            yield f"steps_{depth}_{side}", float(n), NAN, "", n, words
+
+
+def _rallies(steps: pd.DataFrame) -> Iterator[Row]:
+    landed = steps[steps.onset_s.notna()].sort_values("onset_s")
+    number = (landed.onset_s.diff() > PAUSE_S).cumsum()
+    for at, own in landed.groupby(number):
+        lasts = own.onset_s.iloc[-1] - own.onset_s.iloc[0]
+        spread = float(np.hypot(own.onset_sigma_s.iloc[-1], own.onset_sigma_s.iloc[0]))
+        n, name = len(own), f"rally_{int(at) + 1}"
+        words = f"from its first to its last landing, no pause over {PAUSE_S:g} s between landings"
+        yield f"{name}_time", float(lasts), spread, "s", n, words
+        length, error = _path(own)
+        words = "ground path through the middles of successive landings"
+        yield f"{name}_distance", length, error, "m", n, words
+        rate, words = (n - 1) / lasts if lasts > 0 else NAN, "landings after the first, per second"
+        error = rate * spread / lasts if lasts > 0 else NAN
+        yield f"{name}_step_rate", rate, error, "1/s", n, words
+
+
+def _path(steps: pd.DataFrame) -> tuple[float, float]:
+    """Return the length of the path of the body, m, and its standard deviation.
+
+    The body is between the feet: the path goes through the middle of each landing and the one
+    before. An error of one place moves it by half, where the path turns.
+    """
+    xy, sigma = steps[["x_m", "y_m"]].to_numpy(), steps.sigma_m.to_numpy()
+    if len(xy) < 3:
+        return NAN, NAN
+    middle = (xy[1:] + xy[:-1]) / 2
+    legs = np.diff(middle, axis=0)
+    length = np.linalg.norm(legs, axis=1)
+    along = legs / np.maximum(length, 1e-9)[:, None]
+    by_middle = np.zeros_like(middle)
+    by_middle[1:] += along
+    by_middle[:-1] -= along
+    by_place = np.zeros_like(xy)
+    by_place[1:] += by_middle / 2
+    by_place[:-1] += by_middle / 2
+    return float(length.sum()), float(np.sqrt((by_place**2).sum(axis=1) @ sigma**2))
