@@ -13,6 +13,7 @@ from smoke.snakemake_runs import ROOT
 FRAMES, OF_CALIBRATION = "Columns of the frame table", "Columns of the evaluation"
 MOVEMENT, TIDY = "Columns of the movement table", "Columns of the 3D CSV"
 KINEMATICS, DEVICES = "Columns of the kinematics", "Columns of the devices' tables"
+FOOTWORK = "Columns of the footwork"
 TAKES, TOGETHER = "Columns of the evaluation of takes", "Columns of tables over takes and sessions"
 FIGURES = "Columns of the figures' CSVs"
 LABELS, QUANTILES = ": say what a row is of", ": are quantiles in percent"
@@ -52,6 +53,7 @@ PLACES = {
         f"*/evaluation/takes/*/{table}/*.csv": [f"{TAKES} | {table}", LABELS]
         for table in (
             *("errors", "gains", "clocks", "kinematics", "angles", "detection", "round_trip"),
+            "contacts",
         )
     },
     "*/evaluation/racket.csv": [f"{TAKES} | evaluation/racket.csv", OF_CALIBRATION],
@@ -64,6 +66,7 @@ PLACES = {
     "*/takes/*/kinematics/*.summary.csv": [": `.summary.csv`:"],
     "*/takes/*/kinematics/*.cutoffs.csv": [": `.cutoffs.csv`:"],
     "*/takes/*/motion/*.angles.csv": ["Columns of the joint angles"],
+    "*/takes/*/footwork/*.csv": [FOOTWORK],
     "*/takes/*/pose3d*/*.csv": [TIDY],
     "*/takes/*/quality.csv": ["Columns of the verdicts"],
     "figures/calibration.csv": [f"{TOGETHER} | calibration.csv", OF_CALIBRATION],
@@ -96,6 +99,7 @@ PLACES = {
     ],
     "*/figures/badminton_tab01.*": [f"{TAKES} | round_trip", LABELS],
     "*/figures/kinematics.*": [KINEMATICS],
+    "*/figures/footwork.*": [FOOTWORK],
     "*/figures/shake.*": [f"{FIGURES} | shake", SHAKE],
     "*/figures/three_cameras.*": [f"{FIGURES} | three_cameras", f"{TAKES} | errors", LABELS],
     "*/figures/source_errors.*": [

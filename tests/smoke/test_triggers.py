@@ -57,12 +57,13 @@ REAL_FUSED = {
     "export_take": 4,  # one person, four stages
     "export_motion": 1,
     "measure_kinematics": 1,
+    "find_contacts": 1,
     "judge_take": 1,
     "build_viewer": 1,
     "export_overlay_video": 4,  # one for each camera, all with the same skeleton
     **{
         f"draw_{name}": 1
-        for name in ("overlay", "skeletons", "reprojection", "visibility", "kinematics")
+        for name in ("overlay", "skeletons", "reprojection", "visibility", "kinematics", "footwork")
     },
 }
 # The virtual players once keypoints are new: two takes, and the way `two-robust` of table 1 in one
@@ -77,6 +78,8 @@ PLAYERS_FUSED = {
     "correct_joints": 2 * 5,
     "fit_skeleton": 2,
     "measure_kinematics": 2 + 4,  # the exported way in both takes, the others where they are drawn
+    "find_contacts": 2,
+    "evaluate_contacts": 2,
     "judge_take": 2,
     "evaluate_kinematics": 2 + 4,
     "evaluate_take": 2,

@@ -16,19 +16,30 @@ from smoke.snakemake_runs import FOLDER, TINY, changed, copy_repository, edited,
 # of them with two cameras for table 1.
 FUSED, FILTERED = 2 + 2 * 5 + 1, 1 + 2 * 5
 FILTER = "filter_motion:\n  max_gap_s: 0.2"  # in config/config.yaml
-TAKE_FIGURES = ("overlay", "skeletons", "reprojection", "visibility", "kinematics", "shake")
+TAKE_FIGURES = (
+    "overlay",
+    "skeletons",
+    "reprojection",
+    "visibility",
+    "kinematics",
+    "footwork",
+    "shake",
+)
 PAPER_FIGURES = ("badminton_fig09", "badminton_fig10", "badminton_fig11", "badminton_tab01")
 DOWNSTREAM_OF_FILTER = {
     "correct_joints": FILTERED,
     "fit_skeleton": 3,  # the exported way in three takes
     "export_motion": 1,
     "measure_kinematics": 7,  # all cameras in three takes, and the four others of the drawn take
+    "find_contacts": 3,
+    "evaluate_contacts": 2,
     "evaluate_take": 2,
     "evaluate_angles": 2,
     "evaluate_reliability": 2,
     "evaluate_kinematics": 6,
     "compare_sessions": 1,
     "draw_kinematics": 1,
+    "draw_footwork": 1,
     "draw_badminton_fig09": 1,
     "draw_three_cameras": 1,
     "tabulate_players": 1,

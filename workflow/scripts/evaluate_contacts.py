@@ -1,6 +1,6 @@
 """Evaluate the contacts of a take against its truth: contacts, steps, truth -> errors per foot."""
 
-from courtside.evaluation import contacts
+from courtside.evaluation.movement import contacts
 from courtside.records import footwork, tables
 from courtside.records.keypoints import keypoints
 from courtside.records.truth import take_truth

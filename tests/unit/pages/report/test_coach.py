@@ -10,6 +10,7 @@ from courtside.pages.report.warnings import DOUBT, GOOD, LOOK, Warned
 from fixtures.study.report_made import ROGUE
 
 FACTS = {"persons": {}, "left_out": {}, "seconds": None, "devices": [], "true_paths": []}
+FACTS |= {"footwork": {}}
 
 
 @pytest.mark.parametrize(
@@ -54,6 +55,24 @@ def test_a_take_says_distance_speeds_and_angles():
         assert words in html
     assert 'href="a/viewer.html"' in html and "Camera left moved." in html
     assert html.index("Look") < html.index("29.33")
+
+
+def test_a_take_says_what_the_feet_did():
+    feet = {
+        "steps": (66.0, math.nan, "", False),
+        "lunges": (5.0, math.nan, "", False),
+        "split_steps": (2.0, math.nan, "", False),
+        "stance_time": (0.4325, 0.0082, "s", False),
+        "swing_time": (math.nan, math.nan, "s", False),
+    }
+    said = {"id": "take-x", "name": "drill", "links": []}
+    facts = FACTS | {"persons": {"p1": {}, "p2": {}}, "footwork": {"p1": feet}}
+    html = coach.take(said, facts, [])
+    for words in ("landings of a foot", "<b>66</b>, 5 lunges, 2 split steps", "a foot stands for"):
+        assert words in html
+    assert "0.432 &plusmn; 0.008 s" in html
+    assert "swings" not in html
+    assert html.count("landings") == 1
 
 
 def test_a_simulated_take_compares_the_distance_with_the_truth():

@@ -121,6 +121,7 @@ def test_takes_are_told_with_their_measures_errors_and_links(content):
     assert take["files"] == {
         "summary": f"{REAL}/kinematics/{way}.summary.csv",
         "frames": f"{REAL}/kinematics/{way}.frames.csv",
+        "footwork": f"{REAL}/footwork/{way}.summary.csv",
         "pose3d": f"{REAL}/pose3d/{way}.npz",
         "sync": f"{REAL}/sync/file/cameras.blazepose-full.json",
         "movement": [f"{REAL}/movement/cam0{k}.csv" for k in (1, 2, 3)],
@@ -130,6 +131,7 @@ def test_takes_are_told_with_their_measures_errors_and_links(content):
     assert take["links"] == [
         (f"{short}/kinematics/{way}.summary.csv", "summary (CSV)"),
         (f"{short}/kinematics/{way}.frames.csv", "frames (CSV)"),
+        (f"{short}/footwork/{way}.steps.csv", "steps (CSV)"),
         (f"{short}/pages/viewer.blazepose-full.html", "3D viewer"),
         *((f"{short}/videos/{way}.cam0{k}.mp4", f"video cam0{k}") for k in (1, 2, 3, 4)),
     ]

@@ -88,7 +88,7 @@ def test_without_videos_only_pictures_are_left_out(study):
         f"{REAL}/motion/file/all-robust/blazepose-full.angles.csv",
     ]
     drawn = {path.split("/")[-1].split(".")[0] for path in takes.every_figure(study)}
-    assert drawn == {"skeletons", "reprojection", "visibility", "kinematics"}
+    assert drawn == {"skeletons", "reprojection", "visibility", "kinematics", "footwork"}
     assert pages.every_people_page(study) == pages.every_overlay_video(study) == []
     assert len(pages.every_viewer(study)) == 1
 
@@ -110,6 +110,18 @@ def test_measures_of_all_takes_with_cameras(study):
         for take, calibration in stems
         for kind, end in (("kinematics", "summary"), ("motion", "angles"))
     ]
+
+
+def test_footwork_of_all_takes_and_its_errors_of_virtual_ones(study):
+    found = takes.every_footwork(study)
+    way = "all-robust/blazepose-full"
+    assert found[0] == f"{REAL}/footwork/file/{way}.summary.csv"
+    virtual = ["shot", "rally"]
+    errors = "results/players-tiny/evaluation/takes"
+    assert [path for path in found if "evaluation" in path] == [
+        f"{errors}/{take}/contacts/known18/{way}.csv" for take in virtual
+    ]
+    assert len(found) == 5
 
 
 def test_sets_of_cameras_are_compared_in_real_takes(study):

@@ -1,8 +1,8 @@
 """Whether a foot stands: a hidden Markov model of speed and height of its heel and toe.
 
 The foot swings, or it stands on its heel, flat or on its toe. Speed and height of heel and toe
-tell events of gait from markers (O'Connor et al. 2007; Zeni et al. 2008); here they are noisy, and
-feet also shuffle, so that no threshold serves: each state has a density for velocity and height of
+tell events of gait from markers ([OConnor2007]; Zeni et al. 2008); here they are noisy, and feet
+also shuffle, so that no threshold serves: each state has a density for velocity and height of
 both points, widened by their stated variance, and the posterior of the states in time comes from
 the forward-backward algorithm (Rabiner 1989, sec. III).
 """
@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from courtside.footwork.tracks import Track
 
-# Chosen on the takes of players-dev, and on hops that the virtual gym plans. Standard deviations per axis and mean heights, beside what the
-# stated errors add: m/s and m.
+# Chosen on the takes of players-dev, and on hops that the virtual gym plans. Standard deviations
+# per axis and mean heights, beside what the stated errors add: m/s and m.
 STILL_M_S, STILL_M = 0.15, 0.012  # of a point that stands
 ODD, ODD_TIMES = 0.01, 3.0  # share and widening of a standing point's gross errors
 SWING_M_S = (0.6, 1.5, 4.0)  # of a swinging point: shuffling, stepping and running alike

@@ -50,11 +50,11 @@ def _of_track(track: Track, probability: NDArray) -> tuple[list[Stance], NDArray
     at = np.flatnonzero(stands[1:] != stands[:-1])
     share = (0.5 - probability[at]) / (probability[at + 1] - probability[at])
     raw_s = time_s[at] + share * (time_s[at + 1] - time_s[at])
-    whats = ["onset" if stands[i + 1] else "end" for i in at]
+    kinds = ["onset" if stands[i + 1] else "end" for i in at]
     moved_s, sigma_s = np.empty_like(raw_s), np.empty_like(raw_s)
     edges_s = np.concatenate([time_s[:1], raw_s, time_s[-1:]])
     speed = np.linalg.norm(track.velocity.mean(axis=1), axis=1)
-    for k, what in enumerate(whats):
+    for k, what in enumerate(kinds):
         swing_s = edges_s[k : k + 2] if what == "onset" else edges_s[k + 1 : k + 3]
         fastest = max(SLOWEST_M_S, speed[_between(time_s, swing_s)].max(initial=0.0))
         moved_s[k] = raw_s[k] + LATE[what] / fastest

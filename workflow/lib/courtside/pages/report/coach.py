@@ -66,9 +66,23 @@ def _person(person: str, facts: dict) -> dict:
     if facts["left_out"].get(person):
         lost, total, _ = facts["left_out"][person]
         phrases.append((f"from {total - lost} of {total} frames", "", ""))
+    phrases += _steps(facts["footwork"].get(person, {}))
     own = [row for row in facts["true_paths"] if (row["person"], row["point"]) == (person, "neck")]
     off = [value for row in own if not math.isnan(value := row["distance_error_percent"])]
     return {"name": person, "phrases": phrases, "off": off[:1], "angles": _angles(measures)}
+
+
+def _steps(measures: dict) -> list[tuple]:
+    """Return phrases on the feet; nothing of a take in which no step was found."""
+    n = {name: measures.get(name, (0.0,))[0] for name in ("steps", "lunges", "split_steps")}
+    if not n["steps"]:
+        return []
+    also = f", {n['lunges']:.0f} lunges, {n['split_steps']:.0f} split steps"
+    phrases: list[tuple] = [("landings of a foot", f"{n['steps']:.0f}", also)]
+    for name, words in (("stance_time", "a foot stands for"), ("swing_time", "and swings for")):
+        if not math.isnan(measures[name][0]):
+            phrases.append((words, with_error(*measures[name]), " on average"))
+    return phrases
 
 
 def _angles(measures: dict) -> list[tuple]:

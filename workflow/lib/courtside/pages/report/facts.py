@@ -17,21 +17,22 @@ from courtside.study.execution.files import read_json
 NINE_IN_TEN = 1.645  # half of the 90 % interval of normal errors, in standard deviations
 SUMMARY = ("person", "measure", "value", "sigma", "sigma_camera", "unit", "n")
 FRAMES = ("person", "time_s", "neck_reason")
+FOOTWORK = ("person", "measure", "value", "sigma", "unit", "n")
 
 
 def of_take(files: dict) -> dict:
     """Read the facts of a take.
 
     `persons`: {person: {measure: (value, half of the 90 % interval, unit, whether the error of the
-    calibration is known)}}; `left_out`: {person: (frames without a neck, frames, {reason:
-    frames})}; `seconds`; `joints` and `cameras` as `of_skeleton` returns them; `clocks`: {camera:
-    Clock}; `shake`: lines; `movement`, `devices`, `truth`, `true_paths` and `quality`: rows. Empty
-    without a file. `InputError` if a file is missing or has another content.
+    calibration is known)}}; `footwork` likewise; `left_out`: {person: (frames without a neck,
+    frames, {reason: frames})}; `seconds`; `joints` and `cameras` as `of_skeleton` returns them;
+    `clocks`: {camera: Clock}; `shake`: lines; `movement`, `devices`, `truth`, `true_paths` and
+    `quality`: rows. Empty without a file. `InputError` if a file is missing or has another content.
 
-    `files` are paths by `summary` and `frames` (kinematics), `pose3d`, `sync`, `movement` (a list),
-    `shake` (text), `checks` (clocks of devices), `errors` and `kinematics` (against the truth), and
-    by `quality` the `file` of verdicts and the `way` in which the take was measured; each may be
-    left out.
+    `files` are paths by `summary` and `frames` (kinematics), `footwork`, `pose3d`, `sync`,
+    `movement` (a list), `shake` (text), `checks` (clocks of devices), `errors` and `kinematics`
+    (against the truth), and by `quality` the `file` of verdicts and the `way` in which the take was
+    measured; each may be left out.
     """
     facts: dict = {"persons": {}, "left_out": {}, "seconds": None, "joints": {}, "cameras": {}}
     if files.get("summary"):
@@ -39,6 +40,8 @@ def of_take(files: dict) -> dict:
         frames = _table(files["frames"], FRAMES)
         facts["left_out"] = {p: _left_out(rows) for p, rows in frames.groupby("person")}
         facts["seconds"] = float(np.ptp(frames["time_s"])) if len(frames) else None
+    steps = _table(files["footwork"], FOOTWORK) if files.get("footwork") else None
+    facts["footwork"] = {} if steps is None else _measures(steps.assign(sigma_camera=np.nan))
     if files.get("pose3d"):
         facts |= of_skeleton(keypoints.read_3d(files["pose3d"]))
     facts["clocks"] = clocks.read(files["sync"])[1] if files.get("sync") else {}

@@ -20,6 +20,7 @@ KINDS = (
     ("skeletons of suits for other programs", "/devices/", (".trc", ".c3d", ".bvh")),
     ("calibrated cameras", "/calibration/", ("cameras.toml",)),
     ("measures of takes", "/kinematics/", (".summary.csv",)),
+    ("footwork of takes", "/footwork/", (".summary.csv",)),
     ("tables of errors", "/evaluation/", (".csv",)),
 )
 

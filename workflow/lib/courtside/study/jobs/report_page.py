@@ -181,6 +181,7 @@ def _take(study: Study, session: Session, take: Take) -> dict[str, Any]:
         known |= {"calibration": ways[0], "fusion": fusion}
         named = _measured(session, take, known)
         links = [(named["summary"], "summary (CSV)"), (named["frames"], "frames (CSV)")]
+        links.append((paths.STEPS.format(**known), "steps (CSV)"))
     if take.devices:
         named["checks"] = paths.DEVICE_CHECKS.format(**known)
     links += [(path, "3D viewer") for path in pages.viewers(session, take)]
@@ -199,6 +200,7 @@ def _measured(session: Session, take: Take, known: dict[str, str]) -> dict[str, 
     patterns = {
         "summary": paths.MEASURES,
         "frames": paths.FRAME_MEASURES,
+        "footwork": paths.FOOTWORK_MEASURES,
         "pose3d": paths.POSE3D,
         "sync": paths.CAMERA_CLOCKS,
     }

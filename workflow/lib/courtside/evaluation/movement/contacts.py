@@ -20,7 +20,7 @@ TOUCHES_M = 0.001
 NEAR_S = 0.15  # ASSUME: a true and a found onset further apart are not of one step
 EDGE_S = 0.1  # onsets and ends this near to the ends of what is known are not judged
 WITHIN_90 = 1.645  # standard deviations of normal errors
-WHATS = ("onset", "end")
+BOUNDARIES = ("onset", "end")
 POINTS = ("heel", "foot_index", "big_toe")  # of the measured foot, whose movement is given
 
 
@@ -77,7 +77,7 @@ def _boundaries(
 ) -> dict[str, float]:
     """Return counts of true and found steps and the errors of both boundaries."""
     row: dict[str, float] = {}
-    for what in WHATS:
+    for what in BOUNDARIES:
         inside = (time_s[0] + EDGE_S, time_s[-1] - EDGE_S)
         true = true_s[what][(true_s[what] > inside[0]) & (true_s[what] < inside[1])]
         found = steps[steps[f"{what}_s"].between(*inside)]

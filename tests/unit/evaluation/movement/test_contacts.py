@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from courtside.evaluation import contacts
+from courtside.evaluation.movement import contacts
 from courtside.footwork import feet
 from courtside.records.truth.take_truth import TakeTruth
 from fixtures.people import walking_feet
