@@ -59,7 +59,7 @@ def test_nothing_is_exported_of_whom_has_not_agreed(study):
 
 
 def test_figures_without_consent_to_pictures_show_nobody(study):
-    names = ("overlay", "skeletons", "reprojection", "visibility", "kinematics")
+    names = ("overlay", "skeletons", "reprojection", "visibility", "kinematics", "footwork")
     figures = [
         f"{REAL}/figures/{name}.file.all-robust.blazepose-full.{suffix}"
         for name in names
