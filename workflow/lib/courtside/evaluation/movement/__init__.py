@@ -1,4 +1,4 @@
 """What movement is made of, against virtual truth.
 
-contacts: `table`, `true_contact`: which foot stands, onsets and ends of stances
+contacts: `table`, `errors`, `true_contact`: which foot stands, onsets and ends of stances
 """

@@ -72,27 +72,45 @@ def _frames(
     }
 
 
+def errors(contacts: Contacts, steps: pd.DataFrame, truth: TakeTruth, what: str) -> NDArray:
+    """Return errors and stated standard deviations (N, 2) s of all paired onsets, or ends."""
+    found = [np.zeros((0, 2))]
+    for person in set(contacts.person_id.tolist()) & set(truth.person_id.tolist()):
+        for foot in contacts.foot.tolist():
+            own = steps[(steps.person == person) & (steps.foot == foot)]
+            _, true_s = true_contact(truth, person, foot)
+            found.append(_paired(contacts.time_s, own, true_s[what], what)[0])
+    return np.concatenate(found)
+
+
+def _paired(
+    time_s: NDArray, steps: pd.DataFrame, true_s: NDArray, what: str
+) -> tuple[NDArray, int, int]:
+    """Return errors and sigmas (N, 2) of pairs, and how many true and found times there are."""
+    inside = (time_s[0] + EDGE_S, time_s[-1] - EDGE_S)
+    true = true_s[(true_s > inside[0]) & (true_s < inside[1])]
+    found = steps[steps[f"{what}_s"].between(*inside)]
+    at_s, sigma_s = (found[f"{what}_{end}"].to_numpy() for end in ("s", "sigma_s"))
+    rows = [(at_s[j] - true[i], sigma_s[j]) for i, j in _pairs(true, at_s)]
+    return np.array(rows).reshape(-1, 2), len(true), len(found)
+
+
 def _boundaries(
     time_s: NDArray, steps: pd.DataFrame, true_s: dict[str, NDArray]
 ) -> dict[str, float]:
     """Return counts of true and found steps and the errors of both boundaries."""
     row: dict[str, float] = {}
     for what in BOUNDARIES:
-        inside = (time_s[0] + EDGE_S, time_s[-1] - EDGE_S)
-        true = true_s[what][(true_s[what] > inside[0]) & (true_s[what] < inside[1])]
-        found = steps[steps[f"{what}_s"].between(*inside)]
-        pairs = list(_pairs(true, found[f"{what}_s"].to_numpy()))
-        error = np.array([found[f"{what}_s"].iloc[j] - true[i] for i, j in pairs])
-        sigma = np.array([found[f"{what}_sigma_s"].iloc[j] for _, j in pairs])
-        row |= {f"n_true_{what}": len(true), f"n_found_{what}": len(found)}
-        row |= {f"n_matched_{what}": len(pairs)}
-        known = len(pairs) > 0
+        pairs, n_true, n_found = _paired(time_s, steps, true_s[what], what)
+        size, known = abs(pairs[:, 0]), len(pairs) > 0
+        row |= {f"n_true_{what}": n_true, f"n_found_{what}": n_found}
         row |= {
-            f"{what}_bias_ms": 1000 * float(np.median(error)) if known else np.nan,
-            f"{what}_median_ms": 1000 * float(np.median(abs(error))) if known else np.nan,
-            f"{what}_p90_ms": 1000 * float(np.quantile(abs(error), 0.9)) if known else np.nan,
-            f"{what}_sigma_ms": 1000 * float(np.median(sigma)) if known else np.nan,
-            f"{what}_within_90": int((abs(error) <= WITHIN_90 * sigma).sum()),
+            f"n_matched_{what}": len(pairs),
+            f"{what}_bias_ms": 1000 * float(np.median(pairs[:, 0])) if known else np.nan,
+            f"{what}_median_ms": 1000 * float(np.median(size)) if known else np.nan,
+            f"{what}_p90_ms": 1000 * float(np.quantile(size, 0.9)) if known else np.nan,
+            f"{what}_sigma_ms": 1000 * float(np.median(pairs[:, 1])) if known else np.nan,
+            f"{what}_within_90": int((size <= WITHIN_90 * pairs[:, 1]).sum()),
         }
     return row
 

@@ -41,7 +41,7 @@ STATED = (
     *("file-evidence", "file-mended", "networks"),
     *("file-faults", "refined-people", "mapping-checks", "click-model", "click-alarms", "worlds"),
     *("halls", "halls-strengths"),
-    *("body-model", "body-model-hall"),
+    *("body-model", "body-model-hall", "contacts"),
     *("speed", "costs", "stages", "faults", "trust"),
 )
 

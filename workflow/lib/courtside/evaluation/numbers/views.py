@@ -346,6 +346,21 @@ VIEWS = {
             "with": "{static.command}",
         },
     ),
+    "contacts": View(
+        "contacts",
+        {
+            "takes": "{row}",
+            "frames right": "{frames}",
+            "landing: error, median / 90 %": "{onset}",
+            "in its 90 % interval": "{onset_held}",
+            "leaving: error, median / 90 %": "{end}",
+            "in that of leaving": "{end_held}",
+            "landings found": "{steps}",
+            "a standing foot moves": "{moved}",
+            "by": "{frames.origin}",
+            "with": "{frames.command}",
+        },
+    ),
     "refined-people": View(
         "refined-people",
         {
