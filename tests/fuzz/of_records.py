@@ -9,6 +9,7 @@ from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records import tie_points
 from courtside.calibration.records.support import Support
 from courtside.pages.viewer import layers
+from courtside.records import footwork
 from courtside.records.cameras import frame_table, frame_times, shake_table
 from courtside.records.devices import device_motion
 from courtside.records.keypoints import body_motion, keypoints, people, sightings
@@ -136,6 +137,29 @@ def shake(folder):
     shake_table.write(folder / "shake.csv", pd.DataFrame(rows))
 
 
+def contacts(folder):
+    """Write contacts of feet."""
+    chance = np.array([[[1.0, 0.5], [0.25, np.nan]]])
+    feet, floor = np.array(footwork.FEET), np.full((1, 2, 2), 0.05)
+    made = footwork.Contacts(np.array(["p1"]), feet, np.array([0.0, 0.1]), chance, floor)
+    footwork.write_contacts(folder / "contacts.npz", made)
+
+
+def stances(folder):
+    """Write stances."""
+    rows = [("p1", "left", "stand", *[np.nan] * 2, 0.5, 0.01, 1.25, -2.5, 0.01, 0.95)]
+    rows += [("p1", "left", "lunge", 0.75, 0.02, *[np.nan] * 2, 1.5, -2.75, 0.01, 0.875)]
+    table = pd.DataFrame(rows, columns=list(footwork.STEP_COLUMNS))
+    footwork.write_steps(folder / "steps.csv", table)
+
+
+def foot_events(folder):
+    """Write events of feet."""
+    rows = [("p1", "split_step", "both", 0.5, 0.01, 0.75, 0.02, 1.5, -2.75, 0.875)]
+    table = pd.DataFrame(rows, columns=list(footwork.EVENT_COLUMNS))
+    footwork.write_events(folder / "events.csv", table)
+
+
 def named(folder):
     """Write names of people as their page saves them."""
     head = ",".join([*sightings.COLUMNS, *sightings.BOUNDS])
@@ -157,6 +181,7 @@ RECORDS = {
     "body-npz": (bodies, body_motion.read),
     "covariance-npz": (covariance, camera_covariance.read),
     "ties-npz": (tied, tie_points.read),
+    "contacts-npz": (contacts, footwork.read_contacts),
     "truth-npz": (session_truth, truth.read),
     "take-truth-npz": (of_take, take_truth.read),
 }
@@ -166,4 +191,6 @@ FORMATS += [
     Format("frames-csv", 600, frames, read_frames),
     Format("frame-times-csv", 500, device_times, read_times),
     Format("shake-csv", 500, shake, shake_table.read),
+    Format("steps-csv", 300, stances, footwork.read_steps),
+    Format("foot-events-csv", 300, foot_events, footwork.read_events),
 ]
