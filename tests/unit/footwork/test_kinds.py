@@ -60,6 +60,16 @@ def test_a_lunge_lands_far_from_the_other_foot_and_both_stand(apart, stays, leg_
     assert events.event.tolist() == [kind]
 
 
+def test_a_first_landing_is_a_step_and_stances_that_a_gap_cuts_keep_their_place():
+    early = Stance(0.2, 0.01, NAN, NAN, np.zeros(2), 0.01, 0.9, first_s=0.2)
+    cut = Stance(NAN, NAN, NAN, NAN, np.zeros(2), 0.01, 0.9, first_s=1.0)
+    late = Stance(2.0, 0.01, 2.5, 0.01, np.zeros(2), 0.01, 0.9, first_s=2.0)
+    steps, events = kinds.tables({"p1": ({"left": [early, cut, late], "right": []}, 0.9)})
+    assert steps.kind.tolist() == ["step", "stand", "step"]
+    assert steps.onset_s.tolist() == pytest.approx([0.2, NAN, 2.0], nan_ok=True)
+    assert events.empty  # of neither is known when the foot left
+
+
 def test_nobody_has_no_steps():
     steps, events = kinds.tables({"p1": ({"left": [], "right": []}, NAN)})
     assert steps.empty

@@ -29,7 +29,7 @@ def tables(people: Mapping[str, tuple[Feet, float]]) -> tuple[pd.DataFrame, pd.D
     steps: list[tuple] = []
     events: list[tuple] = []
     for person, (feet, leg_m) in people.items():
-        kinds = {(side, 0): "stand" for side in feet if feet[side]}
+        kinds: dict[tuple[str, int], str] = {}
         flights = _flights(feet)
         for left, right, kind, _ in flights:
             kinds |= {("left", left): kind, ("right", right): kind}
@@ -38,10 +38,10 @@ def tables(people: Mapping[str, tuple[Feet, float]]) -> tuple[pd.DataFrame, pd.D
             for at, stance in enumerate(feet[side]):
                 kind = kinds.get((side, at), "step") if np.isfinite(stance.onset_s) else "stand"
                 kind = "lunge" if kind == "step" and _is_lunge(feet, side, at, leg_m) else kind
-                own.append((person, side, kind, *_row(stance)))
+                own.append((_since(stance), (person, side, kind, *_row(stance))))
                 if kind in ("step", "lunge") and at and np.isfinite(feet[side][at - 1].end_s):
                     events.append(_event(person, kind, side, [feet[side][at - 1]], [stance]))
-        steps += sorted(own, key=lambda row: np.nan_to_num(row[3], nan=row[5] - 1e-6))
+        steps += [row for _, row in sorted(own, key=lambda each: each[0])]
         for left, right, kind, _ in flights:
             landing = [feet["left"][left], feet["right"][right]]
             before = [feet["left"][left - 1], feet["right"][right - 1]]
@@ -49,6 +49,12 @@ def tables(people: Mapping[str, tuple[Feet, float]]) -> tuple[pd.DataFrame, pd.D
     columns = list(footwork.STEP_COLUMNS), list(footwork.EVENT_COLUMNS)
     happened = pd.DataFrame(events, columns=columns[1]).sort_values(["person", "stop_s"])
     return pd.DataFrame(steps, columns=columns[0]), happened.reset_index(drop=True)
+
+
+def _since(stance: Stance) -> float:
+    """Return from when on a stance is known, s."""
+    known = [each for each in (stance.first_s, stance.onset_s) if np.isfinite(each)]
+    return known[0] if known else -np.inf
 
 
 def _row(stance: Stance) -> tuple:

@@ -41,7 +41,7 @@ def _counts(steps: pd.DataFrame, events: pd.DataFrame) -> Iterator[Row]:
 
 
 def _times(steps: pd.DataFrame) -> Iterator[Row]:
-    feet = {foot: own.sort_values("end_s") for foot, own in steps.groupby("foot")}
+    feet = dict(iter(steps.groupby("foot")))  # in order of time
     for name, own in (("", list(feet.values())), *((f"_{f}", [o]) for f, o in feet.items())):
         stood = pd.concat(own).dropna(subset=["onset_s", "end_s"])
         yield _mean(f"stance_time{name}", stood.onset_s, stood.end_s, *_sigmas(stood))

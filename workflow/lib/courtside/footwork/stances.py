@@ -30,6 +30,7 @@ class Stance:
     xy: NDArray  # (2,): mean of the middle of heel and toe, m
     sigma_m: float  # standard deviation of `xy` per axis, from the keypoints
     quality: float  # mean probability of contact in between
+    first_s: float = float("nan")  # from when on it is known, that stances may be put in order
 
 
 def of_tracks(tracks: Sequence[Track], n_frames: int) -> tuple[list[Stance], NDArray]:
@@ -104,6 +105,7 @@ def _stance(
         xy=weight @ track.place[inside][..., :2].mean(axis=1),
         sigma_m=float(np.sqrt(weight @ variance)),
         quality=float(probability[inside].mean()),
+        first_s=float(edges_s[k]),
     )
 
 

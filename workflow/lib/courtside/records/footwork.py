@@ -15,7 +15,7 @@ FEET = ("left", "right")
 KINDS = ("stand", "step", "lunge", "split_step", "jump")
 EVENTS = KINDS[1:]
 
-# One row per stance, in order of person and onset. Times on the reference clock; a time is empty
+# One row per stance, in order of person and time. Times on the reference clock; a time is empty
 # where the take or a gap cuts the stance. Sigma is a standard deviation: 90 % of errors should be
 # within 1.645 of it.
 STEP_COLUMNS = (
