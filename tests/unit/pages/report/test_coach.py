@@ -68,7 +68,11 @@ def test_a_take_says_what_the_feet_did():
     said = {"id": "take-x", "name": "drill", "links": []}
     facts = FACTS | {"persons": {"p1": {}, "p2": {}}, "footwork": {"p1": feet}}
     html = coach.take(said, facts, [])
-    for words in ("landings of a foot", "<b>66</b>, 5 lunges, 2 split steps", "a foot stands for"):
+    for words in (
+        "landings of a foot",
+        "<b>66</b> (lunges: 5, split steps: 2)",
+        "a foot stands for",
+    ):
         assert words in html
     assert "0.432 &plusmn; 0.008 s" in html
     assert "swings" not in html

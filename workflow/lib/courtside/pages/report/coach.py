@@ -77,7 +77,7 @@ def _steps(measures: dict) -> list[tuple]:
     n = {name: measures.get(name, (0.0,))[0] for name in ("steps", "lunges", "split_steps")}
     if not n["steps"]:
         return []
-    also = f", {n['lunges']:.0f} lunges, {n['split_steps']:.0f} split steps"
+    also = f" (lunges: {n['lunges']:.0f}, split steps: {n['split_steps']:.0f})"
     phrases: list[tuple] = [("landings of a foot", f"{n['steps']:.0f}", also)]
     for name, words in (("stance_time", "a foot stands for"), ("swing_time", "and swings for")):
         if not math.isnan(measures[name][0]):
