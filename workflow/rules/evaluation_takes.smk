@@ -151,33 +151,39 @@ rule evaluate_body_frames:
         "../scripts/evaluate_body_frames.py"
 
 
+# Of every take of a development session. People were found with clicked cameras; what is fitted is
+# fitted with the true ones.
+FITTED = {
+    "cameras": paths.part(paths.CAMERAS, calibration="known18"),
+    "session_truth": paths.TRUTH,
+    "pose2d": of_job(evaluation.fitted_keypoints),
+    "people": of_job(takes.every_take, paths.PEOPLE, calibration="known18"),
+    "sync": of_job(takes.every_take, paths.CAMERA_CLOCKS, calibration="known18"),
+    "truth": of_job(evaluation.true_takes),
+    "skeleton": of_job(Job.skeleton_file),
+}
+
+
 rule evaluate_joint_offsets:
     input:
-        pose3d_npz=of_job(
-            takes.every_take, paths.POSE3D_FILTERED, calibration="known18", fusion="all-robust"
-        ),
-        truth_npz=of_job(evaluation.true_takes),
+        **FITTED,
     output:
         offsets_csv=paths.JOINT_OFFSETS,
     log:
         "results/{session}/logs/evaluate_joint_offsets/{model}.log",
     params:
         code=code("evaluate_joint_offsets.py"),
-        sex_of=of_job(takes.sexes),
-        about=lambda w, output: evaluation.estimated_by(w.session, output.offsets),
+        takes=of_job(evaluation.fitted_takes),
+        about=lambda w, output: evaluation.estimated_by(w.session, w.model, output.offsets_csv),
+        step=step("triangulate"),
     script:
         "../scripts/evaluate_joint_offsets.py"
 
 
 rule evaluate_joint_errors:
     input:
-        cameras=paths.part(paths.CAMERAS, calibration="known18"),
-        pose2d=of_job(evaluation.fitted_keypoints),
-        people=of_job(takes.every_take, paths.PEOPLE, calibration="known18"),
-        sync=of_job(takes.every_take, paths.CAMERA_CLOCKS, calibration="known18"),
-        truth=of_job(evaluation.true_takes),
+        **FITTED,
         offsets=of_job(takes.known_of_network, paths.OFFSETS_CSV),
-        skeleton=of_job(Job.skeleton_file),
     output:
         errors_csv=paths.JOINT_ERRORS,
     log:
@@ -185,7 +191,7 @@ rule evaluate_joint_errors:
     params:
         code=code("evaluate_joint_errors.py"),
         takes=of_job(evaluation.fitted_takes),
-        about=lambda w, output: evaluation.estimated_by(w.session, output.errors_csv),
+        about=lambda w, output: evaluation.estimated_by(w.session, w.model, output.errors_csv),
         step=step("triangulate"),
     script:
         "../scripts/evaluate_joint_errors.py"
@@ -201,7 +207,7 @@ rule evaluate_skin_depths:
         "results/{session}/logs/evaluate_skin_depths/{device}.{model}.log",
     params:
         code=code("evaluate_skin_depths.py"),
-        about=lambda w, output: evaluation.estimated_by(w.session, output.depths),
+        about=lambda w, output: evaluation.estimated_by(w.session, w.model, output.depths_csv),
         step=step("lift_depth"),
     script:
         "../scripts/evaluate_skin_depths.py"

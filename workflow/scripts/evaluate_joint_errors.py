@@ -7,9 +7,7 @@ import numpy as np
 from courtside.evaluation import error_fit
 from courtside.reconstruction import joint_correction, joint_errors
 from courtside.records import tables
-from courtside.records.cameras import footage
 from courtside.records.keypoints import skeleton
-from courtside.records.truth import take_truth
 from courtside.study.execution import log
 from courtside.study.execution.script import run
 
@@ -17,12 +15,10 @@ from courtside.study.execution.script import run
 def main(paths, errors_csv, *, takes, about, step):
     table = joint_correction.read(paths.offsets) if paths.offsets else None
     joints, parts = skeleton.read(paths.skeleton), []
-    for take, people, sync, true in zip(takes, paths.people, paths.sync, paths.truth, strict=True):
-        seen = footage.read(paths.cameras, take["pose2d"], people, sync)
-        truth = take_truth.read(true)
+    for seen, sex_of, truth in error_fit.seen_truly(paths, takes):
         for count in range(2, len(seen) + 1):
             for used in combinations(seen, count):
-                parts.append(error_fit.joints_of(used, joints, take["sex_of"], table, truth, step))
+                parts.append(error_fit.joints_of(used, joints, sex_of, table, truth, step))
     columns, error, covariance, weight = map(np.concatenate, zip(*parts, strict=True))
     log.logger.info("joints: %d", len(columns))
     model = joint_errors.fit(columns, error, covariance, weight)

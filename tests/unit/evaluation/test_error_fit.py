@@ -1,19 +1,26 @@
-"""What the model of joint errors is fitted on: the offset is taken away, all limbs are there."""
+"""What offsets and errors are fitted on: true cameras, the offset taken away, all limbs there."""
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 
 from courtside.evaluation import error_fit
+from courtside.geometry import camera as camera_models
 from courtside.reconstruction import joint_correction, joint_errors
 from courtside.records.cameras.footage import Footage
+from courtside.records.devices import clocks
 from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints import keypoints, people
 from courtside.records.keypoints.skeleton import JOINTS
+from courtside.records.truth import session_truth, take_truth
 from fixtures.cameras import scene
+from fixtures.people import found as people_found
 from fixtures.people import true_motion, walker
 
 OPTIONS = {"min_score": 0.05, "min_views": 2, "max_error_px": 10, "fade_px": 13, "fix_sides": False}
+MOVED_M, LAST = np.array([[0.02], [0], [0]]), np.array([[0, 0, 0, 1]])
 OFFSETS = Path(__file__).parents[3] / "config" / "joint_offsets" / "blazepose-full.csv"
 
 
@@ -38,3 +45,38 @@ def test_errors_are_those_beside_the_known_offset():
     none = *given[:2], None, *given[3:]  # of a network without known offsets
     _, whole, _, _ = error_fit.joints_of(seen, *none)
     assert np.median(np.linalg.norm(whole, axis=1)) > np.median(np.linalg.norm(error, axis=1))
+
+
+def test_cameras_that_were_clicked_wrong_do_not_count(tmp_path):
+    cameras, record = scene.ring(3), walker.points(12)
+    wrong = [  # the world is moved by 2 cm along x
+        replace(one, cam_from_world=one.cam_from_world @ np.block([[np.eye(3), MOVED_M], [LAST]]))
+        for one in cameras
+    ]
+    camera_models.write_toml(tmp_path / "cameras.toml", wrong, source="made")
+    session_truth.write(tmp_path / "session.npz", cameras, {}, np.array(["a"]), np.zeros((1, 3)))
+    names = [camera.name for camera in cameras]
+    clocks.write(tmp_path / "sync.json", "c0", {name: Clock() for name in names})
+    index = {name: np.zeros((1, 12), dtype=int) for name in names}
+    found = people_found.people(index, record.person_id, model=record.model)
+    people.write(tmp_path / "people.npz", found)
+    pose2d = [tmp_path / f"{name}.npz" for name in names]
+    for path, view in zip(pose2d, walker.views(record, cameras), strict=True):
+        keypoints.write_2d(path, view)
+    true = take_truth.TakeTruth(
+        record.time_s, record.joints, record.person_id, record.xyz, np.zeros((1, 12, 2, 3)),
+        dict.fromkeys(names, 0.0), dict.fromkeys(names, 0.0),
+    )  # fmt: skip
+    take_truth.write(tmp_path / "take.npz", true)
+    paths = SimpleNamespace(
+        cameras=tmp_path / "cameras.toml",
+        session_truth=tmp_path / "session.npz",
+        people=[tmp_path / "people.npz"],
+        sync=[tmp_path / "sync.json"],
+        truth=[tmp_path / "take.npz"],
+    )
+    take = {"pose2d": pose2d, "sex_of": {"p1": "f"}}
+    ((seen, sex_of, truth),) = error_fit.seen_truly(paths, [take])
+    raw = error_fit.triangulated(seen, walker.SKELETON, list(sex_of), OPTIONS)
+    apart = np.linalg.norm(raw.xyz - truth.xyz, axis=-1)
+    assert sex_of == {"p1": "f"} and np.nanmax(apart) < 1e-6

@@ -91,9 +91,9 @@ def test_labels_are_some_wildcards_and_more(job):
 
 
 def test_a_table_says_the_command_that_made_it():
-    assert evaluation.estimated_by("players-dev", "results/x.csv") == (
+    assert evaluation.estimated_by("players-dev", "net", "results/x.csv") == (
         "Estimated on session players-dev by: "
-        "snakemake --config sessions=[players-dev] variations=[] -- results/x.csv"
+        "snakemake --config sessions=[players-dev] variations=[] models=[net] -- results/x.csv"
     )
 
 

@@ -1,6 +1,10 @@
-"""What the model of joint errors is fitted on: development players, seen by fewer cameras too."""
+"""What joint offsets and errors are fitted on: development players, by the true cameras.
 
-from collections.abc import Mapping, Sequence
+An error of the cameras moves all joints of a session: fitted by clicked cameras, it would be taken
+for the network's, and be carried into every other hall. Errors are fitted with fewer cameras, too.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -11,13 +15,41 @@ from numpy.typing import NDArray
 from courtside.evaluation import joints
 from courtside.evaluation.joints import Truth
 from courtside.reconstruction import error_signs, fusion, joint_correction, joint_errors
+from courtside.records.cameras import footage
 from courtside.records.cameras.footage import Footage
 from courtside.records.keypoints import skeleton as limbs
+from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.keypoints.skeleton import Skeleton
+from courtside.records.truth import session_truth, take_truth
+from courtside.records.truth.take_truth import TakeTruth
 
 # ASSUME: weight of a joint by the number of cameras of its set: all sets of four cameras of one
 # size together count about as much as the one of four.
 WEIGHT = {2: 0.25, 3: 0.4}
+
+
+def seen_truly(
+    paths: Any, takes: Sequence[Mapping[str, Any]]
+) -> Iterator[tuple[list[Footage], Mapping[str, str | None], TakeTruth]]:
+    """Yield of each take its cameras as they truly are, the sexes of its persons, and its truth.
+
+    `paths` has `cameras` (the calibration that people were found with), `session_truth`, and
+    `people`, `sync` and `truth` of each of the `takes`, which name their `pose2d` and `sex_of`.
+    """
+    true = {camera.name: camera for camera in session_truth.read(paths.session_truth).cameras}
+    for take, people, sync, path in zip(takes, paths.people, paths.sync, paths.truth, strict=True):
+        seen = footage.read(paths.cameras, take["pose2d"], people, sync)
+        own = [replace(one, camera=true[one.camera.name]) for one in seen]
+        yield own, take["sex_of"], take_truth.read(path)
+
+
+def triangulated(
+    seen: Sequence[Footage], skeleton: Skeleton, people: Sequence[str], options: Mapping[str, Any]
+) -> Keypoints3D:
+    """Return the raw skeletons of a take; `options` are those of the triangulation."""
+    cameras, views = [one.camera for one in seen], [one.view for one in seen]
+    clocks = [one.clock for one in seen]
+    return fusion.triangulate_take(cameras, views, skeleton, people, clocks=clocks, **options)
 
 
 def joints_of(
@@ -34,11 +66,10 @@ def joints_of(
     (N,) of the limbs' joints that are placed and true. `table` holds the offsets; None, where a
     network has none, leaves them in the errors. `options` are those of the triangulation.
     """
-    cameras, views = [one.camera for one in seen], [one.view for one in seen]
-    clocks = [one.clock for one in seen]
-    raw = fusion.triangulate_take(cameras, views, skeleton, list(sex_of), clocks=clocks, **options)
+    raw = triangulated(seen, skeleton, list(sex_of), options)
+    views, clocks = [one.view for one in seen], [one.clock for one in seen]
     xy, score = error_signs.keypoints_used(views, clocks, raw, skeleton)
-    signs = error_signs.of_points(cameras, raw, xy, score, skeleton)
+    signs = error_signs.of_points([one.camera for one in seen], raw, xy, score, skeleton)
     placed = raw
     if table is not None:
         placed = replace(raw, xyz=raw.xyz - joint_correction.offsets(raw, table, sex_of))

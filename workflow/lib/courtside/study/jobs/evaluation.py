@@ -95,9 +95,9 @@ def chosen(job: Job, names: Iterable[str], **more: str) -> dict[str, str]:
     return {**{name: job[name] for name in names}, **more}
 
 
-def estimated_by(session: str, file: str) -> str:
-    """Return a line on where a table of a development session comes from."""
-    command = f"snakemake --config sessions=[{session}] variations=[] -- {file}"
+def estimated_by(session: str, model: str, file: str) -> str:
+    """Return a line on where a network's table of a development session comes from."""
+    command = f"snakemake --config sessions=[{session}] variations=[] models=[{model}] -- {file}"
     return f"Estimated on session {session} by: {command}"
 
 
