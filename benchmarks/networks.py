@@ -8,7 +8,8 @@ OpenPose's keypoints in `openpose_body25b/cam1_json` to `cam4_json`; DATA is the
 study into FOLDER (by default a temporary one), in which each network is compared with them on the
 road that `evaluate_networks` has for recorded takes. Times are of the landmark stage, one person,
 one thread, all networks in turn on each picture; the least of the pictures counts. It writes
-docs/numbers/networks.csv, a source of docs/make_tables.py; what was not measured again stays.
+docs/numbers/networks.csv, a source of docs/make_tables.py, which takes virtual takes from RESULTS;
+what was not measured again stays.
 """
 
 import argparse
@@ -31,20 +32,20 @@ from many_sessions import ROOT, copied
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
 from courtside.evaluation import marker_system
+from courtside.evaluation.numbers import networks as numbers
 from courtside.evaluation.numbers import register, stated
 from courtside.pose import decoders
 from courtside.records.keypoints import skeleton
 from courtside.study import paths
 from courtside.study.configuration import sessions, yaml_files
 
-TABLE, OUTPUT = "networks", ROOT / stated.FOLDER / "networks.csv"
+OUTPUT = ROOT / stated.FOLDER / "networks.csv"
 COMMAND = "`python benchmarks/networks.py results --demo DEMO --hall DATA`"
 WALK, HALL = "walk-4cams", "hall-markers"
 WORDS = {
     (WALK, "body25b"): "real, `walk-4cams`, against OpenPose (no truth)",
     (HALL, "body25"): "real, sports hall, against joints set by hand",
 }
-DECIMALS = {"px": 1, "%": 1, "mm": 0, "jitter": 2}
 N_PICTURES, VIDEO = 20, "external/pose2sim/Pose2Sim/Demo_SinglePerson/videos/cam03.mp4"
 HAND = {f"{side}_shoulder": f"{side[0].upper()}Shoulder" for side in ("left", "right")}
 
@@ -128,20 +129,20 @@ def paths_of(model):
 
 
 def rows(table, ms):
-    """Yield the rows of docs/numbers; the time stands with the virtual takes."""
+    """Yield the rows of docs/numbers: recorded takes; of virtual ones the time alone."""
     for row in table.itertuples():
-        virtual = row.against == "truth"
-        words = f"virtual, `{row.session}`" if virtual else WORDS[row.session, row.against]
-        about = [TABLE, f"`{row.network}`; {words}"]
-        rest = [row.unit, row.session, row.n, 0, "benchmark", COMMAND]
-        for end, column in (("", "value"), ("_from", "value_from"), ("_to", "value_to")):
-            value = getattr(row, column)
-            text = register.printed(value, DECIMALS.get(row.measure, DECIMALS[row.unit]))
-            yield [*about, f"{row.measure}{end}", text, *rest]
-        if virtual and row.measure == "pck":
+        if row.against != "truth":
+            about = [numbers.TABLE, f"`{row.network}`; {WORDS[row.session, row.against]}"]
+            rest = [row.unit, row.session, row.n, 0, "benchmark", COMMAND]
+            decimals = numbers.DECIMALS.get(row.measure, numbers.DECIMALS[row.unit])
+            for end, column in numbers.ENDS.items():
+                text = register.printed(getattr(row, column), decimals)
+                yield [*about, row.measure + end, text, *rest]
+        elif row.measure == "pck":
+            about = [numbers.TABLE, numbers.label(row.network, row.session)]
             ratio = ms[row.network] / ms[table["network"].iloc[0]]
-            more = ["", row.session, N_PICTURES, 0, "benchmark", COMMAND]
-            yield [*about, "time", f"{ratio:.2f}", *more]
+            rest = ["", row.session, N_PICTURES, 0, "benchmark", COMMAND]
+            yield [*about, "time", f"{ratio:.2f}", *rest]
 
 
 def kept(measured):

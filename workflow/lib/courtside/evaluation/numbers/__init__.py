@@ -8,6 +8,7 @@ intervals: `bootstrap`: intervals over halls
 calibration: `calibrations`, `ways`, `growth`, `strengths`, `capture`
 players: `sessions`, `takes`, `angles`, `measures`
 footage: `corrections`, `joints`, `views`: raw and corrected joints, real beside virtual
+networks: `virtual`: networks on the same frames
 published: `walk`, `racket`, `round_trip`, `table_1`
 devices: `sources`, `body_frames`
 stated: `numbers`: measured by hand or by benchmarks, or published by others

@@ -1,0 +1,26 @@
+"""Networks on the same frames: virtual takes. Recorded ones, and times, are of a benchmark."""
+
+from courtside.evaluation.numbers.register import Builder, Cut, Number, Settings, Source
+
+TABLE, FILE = "networks", "figures/networks.table.csv"
+DECIMALS = {"px": 1, "%": 1, "mm": 0, "jitter": 2}  # by unit, of one measure by its name
+ENDS = {"": "value", "_from": "value_from", "_to": "value_to"}  # of parts: columns
+
+
+def label(network: str, session: str) -> str:
+    """Return the row of a network in a virtual session."""
+    return f"`{network}`; virtual, `{session}`"
+
+
+def virtual(source: Source) -> list[Number]:
+    """Return errors, shares and jitter of each network against the truth, with their intervals."""
+    build, table = Builder(TABLE), source.table(FILE)
+    for _, row in table[table["against"] == "truth"].iterrows():
+        where = f"against truth, network {row['network']}, measure {row['measure']}"
+        cut = Cut(source, FILE, where, row["session"])
+        decimals = DECIMALS.get(row["measure"], DECIMALS[row["unit"]])
+        more: Settings = {"decimals": decimals, "unit": row["unit"], "n": row["n"], "n_failed": 0}
+        for end, column in ENDS.items():
+            name = label(row["network"], row["session"])
+            build.add(name, row["measure"] + end, row[column], cut, column, **more)
+    return build.numbers
