@@ -45,3 +45,11 @@ def test_measures_are_of_the_furthest_person_and_the_clocks_of_the_take(source, 
 def test_a_rule_without_words_is_shown_by_its_name():
     assert players.words("all-robust") == "all cameras"
     assert players.words("five-robust") == "`five-robust`"
+
+
+def test_what_stated_errors_hold_is_told_for_large_errors_too(source, value):
+    found = players.held(source)
+    assert value(found, "joints, all sessions", "raw").printed == "95.0"
+    large = value(found, "joints, all sessions", "raw_large")
+    assert (large.printed, large.n) == ("50", 40)  # 60 % of 30 and 20 % of 10
+    assert {number.row for number in found[2:]} == {"joint angles, all sessions"}

@@ -6,7 +6,7 @@ views: `VIEWS`: the columns of each table
 study: `numbers`, `write`, `filled`, `report`: all of them
 intervals: `bootstrap`: intervals over halls
 calibration: `calibrations`, `ways`, `growth`, `strengths`, `capture`
-players: `sessions`, `takes`, `angles`, `measures`
+players: `sessions`, `takes`, `angles`, `measures`, `held`
 footage: `corrections`, `joints`, `views`: raw and corrected joints, real beside virtual
 networks: `virtual`: networks on the same frames
 published: `walk`, `racket`, `round_trip`, `table_1`

@@ -4,9 +4,10 @@ import numpy as np
 import pandas as pd
 
 from courtside.evaluation.numbers.register import Builder, Cut, Number, Settings, Source
+from courtside.evaluation.tables.players import STAGES as STAGE_OF
 from courtside.evaluation.tables.players import furthest
 
-TABLE, ANGLES = "figures/players.csv", "figures/angles.csv"
+TABLE, ANGLES, HELD = (f"figures/{name}.csv" for name in ("players", "angles", "reliability"))
 STAGES = ("raw", "filtered", "corrected")
 OURS = "all-robust"  # the default rule, all cameras of a take
 NETWORK = "blazepose-heavy"  # the default network
@@ -123,6 +124,36 @@ def _of_angle(build: Builder, row: str, stage: str, of: pd.DataFrame, cut: Cut) 
     held = np.average(of["within_90_percent"], weights=weights)
     count = {**count, "decimals": 0, "unit": "%"}
     build.add(row, f"{stage}_coverage", held, cut, "within_90_percent, by n", **count)
+
+
+GROUPS = {  # of the counts of stated errors, by their names: what is counted
+    ("all", "limbs"): "joints",
+    ("measure", "angle"): "joint angles",
+    ("measure", "speed"): "speeds of neck, centre and mass",
+    ("measure", "distance"): "distances of these",
+}
+LARGE_MM = ("100", "300")  # groups of joints by the size of the error: above 100 mm
+
+
+def held(source: Source) -> list[Number]:
+    """Return what 90 % ellipsoids and intervals hold, by session: all, and the large errors."""
+    build, table, part = Builder("held"), source.table(HELD), "held_90_percent"
+    table = table.assign(group=table["group"].astype(str))
+    for (by, group), words_ in GROUPS.items():
+        own = table[(table["by"] == by) & (table["group"] == group) & (table["n"] > 0)]
+        for _, row in own.iterrows():
+            session, stage = row["session"], STAGE_OF[row["stage"]]
+            cut = Cut(source, HELD, f"{session}, {row['stage']}, {by} {group}", session)
+            name = f"{words_}, " + ("all sessions" if session == "all" else f"`{session}`")
+            more: Settings = {"decimals": 1, "unit": "%"}
+            build.add(name, stage, row[part], cut, part, n=row["n"], **more)
+            alike = (table["session"] == session) & (table["stage"] == row["stage"])
+            large = table[alike & (table["by"] == "error") & table["group"].isin(LARGE_MM)]
+            if group == "limbs" and len(large):
+                share, n = np.average(large[part], weights=large["n"]), large["n"].sum()
+                more["decimals"] = 0
+                build.add(name, f"{stage}_large", share, cut, f"{part}, errors", n=n, **more)
+    return build.numbers
 
 
 CLOCKS = {  # part: column, decimals, unit

@@ -29,6 +29,7 @@ MEASURED = (  # of the results of a default run
     players.takes,
     players.angles,
     players.measures,
+    players.held,
     footage.joints,
     footage.views,
     networks.virtual,

@@ -305,6 +305,15 @@ VIEWS = {
         name: View(name, {"what": "{row}", "found": "{found}", **FOUND})
         for name in ("hall-points", "file-evidence", "mapping-checks", "costs")
     },
+    "held": View(
+        "held",
+        {
+            "stated 90 % of": "{row}",
+            "hold, raw / filtered / corrected, %": " / ".join(f"{{{stage}}}" for stage in STAGES),
+            "of errors above 100 mm, %": " / ".join(f"{{{stage}_large}}" for stage in STAGES),
+            "values, corrected": "{corrected.n}",
+        },
+    ),
     "stated-errors": View(
         "stated-errors",
         {
