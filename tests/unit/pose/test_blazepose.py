@@ -93,6 +93,33 @@ def test_a_landmark_moves_to_the_centre_of_its_heat():
     np.testing.assert_array_equal(refined[1], start[1])
 
 
+def centre_of_mass(start, logits):
+    """Return where one landmark (2,) moves by its heat map (H, W), step by step."""
+    column, row = (start * logits.shape[::-1]).astype(int)
+    cells = [
+        (x, y, 1 / (1 + np.exp(-float(logits[y, x]))))
+        for y in range(max(0, row - 3), min(logits.shape[0], row + 4))
+        for x in range(max(0, column - 3), min(logits.shape[1], column + 4))
+    ]
+    if max(weight for *_, weight in cells) < 0.5:
+        return start
+    middle = np.average([cell[:2] for cell in cells], axis=0, weights=[cell[2] for cell in cells])
+    return middle / logits.shape[::-1]
+
+
+def test_landmarks_move_to_the_centre_of_mass_at_edges_too():
+    rng = np.random.default_rng(0)
+    maps, start = rng.normal(-4, 2, (48, 64, 60)).astype(np.float32), rng.random((60, 2))
+    start[:8] *= 0.03
+    refined = blazepose.refine(start, maps)
+    wanted = [centre_of_mass(one, maps[:, :, at]) for at, one in enumerate(start)]
+    np.testing.assert_allclose(refined, wanted, rtol=0, atol=1e-12)
+    moved = (refined != start).any(axis=1)
+    assert moved[:8].any() and 10 < moved.sum() < 60  # near the edge too; not where all is unlikely
+    outside = np.array([[-0.1, 0.5], [0.5, 1.01]])
+    np.testing.assert_array_equal(blazepose.refine(outside, maps[:, :, :2]), outside)
+
+
 def test_the_detector_has_an_anchor_for_every_output():
     assert blazepose.anchors().shape == (2254, 2)
 

@@ -172,16 +172,23 @@ def refine(fraction: NDArray, heat_maps: NDArray) -> NDArray:
     `heat_maps` (H, W, J) are logits. A landmark stays if it lies outside, or no cell nearby reaches
     a probability of one half.
     """
-    height, width, _ = heat_maps.shape
-    refined = fraction.copy()
-    for joint, (column, row) in enumerate((fraction * [width, height]).astype(int)):
-        if not (0 <= column < width and 0 <= row < height):
-            continue
-        top, left = max(0, row - HEAT_MAP_REACH), max(0, column - HEAT_MAP_REACH)
-        bottom, right = row + HEAT_MAP_REACH + 1, column + HEAT_MAP_REACH + 1
-        weight = sigmoid(heat_maps[top:bottom, left:right, joint].astype(float))
-        if weight.max() >= HEAT_MAP_MIN:
-            x = np.arange(left, left + weight.shape[1]) @ weight.sum(axis=0)
-            y = np.arange(top, top + weight.shape[0]) @ weight.sum(axis=1)
-            refined[joint] = np.array([x / width, y / height]) / weight.sum()
+    size = np.array(heat_maps.shape[1::-1])
+    refined, cell = fraction.copy(), (fraction * size).astype(int)
+    low, high = np.maximum(cell - HEAT_MAP_REACH, 0), np.minimum(cell + HEAT_MAP_REACH + 1, size)
+    inside = ((cell >= 0) & (cell < size)).all(axis=1)
+    whole = inside & (high - low == 2 * HEAT_MAP_REACH + 1).all(axis=1)
+    # Whole windows together; those that the edge cuts, one by one.
+    for joints in [np.flatnonzero(whole), *np.flatnonzero(inside & ~whole)[:, None]]:
+        if len(joints):
+            across, down = high[joints[0]] - low[joints[0]]
+            columns = low[joints, :1] + np.arange(across)
+            rows = low[joints, 1:] + np.arange(down)
+            logits = heat_maps[rows[:, :, None], columns[:, None], joints[:, None, None]]
+            weight = sigmoid(logits.astype(float))
+            x = columns[:, None] @ weight.sum(axis=1)[:, :, None]
+            y = rows[:, None] @ weight.sum(axis=2)[:, :, None]
+            centre = np.concatenate([x, y], axis=2)[:, 0] / size
+            each = weight.reshape(len(joints), -1)
+            sure = each.max(axis=1) >= HEAT_MAP_MIN
+            refined[joints[sure]] = (centre / each.sum(axis=1, keepdims=True))[sure]
     return refined
