@@ -16,16 +16,19 @@ import pytest
 
 sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))  # last: both have a `scene`
 import body_model
+import find_persons
 import hall_markers
 import long_take
 import mapping_seeds
 import networks
+import pose_batches
 import real_footage
 import rows
 import run_log
 import structure_from_motion
 from comparisons import pose
 from courtside.devices import openpose
+from courtside.pose.detector import Region
 from courtside.records.keypoints import skeleton
 from courtside.study.configuration import configuration, yaml_files
 from courtside.study.targets import together
@@ -242,3 +245,36 @@ def test_times_of_networks_stand_over_the_first():
     assert [part for row, part in printed if "virtual" in row] == ["time", "time"]
     recorded = "`full`; real, `walk-4cams`, against OpenPose (no truth)"
     assert printed[recorded, "pck_from"] == "88.0" and printed[recorded, "pck_to"] == "-"
+
+
+def test_a_person_is_found_by_a_region_of_its_size_and_place():
+    person, far = np.array([[100.0, 100], [140, 300]]), np.array([[400.0, 100], [440, 300]])
+    short = np.array([[10.0, 10], [20, 80]])  # below 80 px: not counted, but no false region
+    there = [Region(125, 205, 280, box=(60, 210)), Region(15, 45, 100, box=(10, 70))]
+    wrong = [Region(420, 200, 280, box=(60, 90)), Region(300, 200, 280, box=(60, 210))]
+
+    class Detector:
+        side_px = 1000
+
+        def detect(self, image):
+            return there + wrong
+
+    picture = np.zeros((480, 640, 3), np.uint8)
+    counts, n_pictures, n_persons = find_persons.counted(
+        [(picture, [person, far, short])], {"made": Detector()}
+    )
+    assert (n_pictures, n_persons) == (1, 2)
+    assert counts["made", "whole"].tolist() == [1, 2]
+
+
+def test_a_network_is_brought_to_several_crops(tmp_path):
+    picture = onnx.helper.make_tensor_value_info("x", onnx.TensorProto.FLOAT, [1, 2, 2, 3])
+    flat = onnx.helper.make_tensor_value_info("y", onnx.TensorProto.FLOAT, [1, 12])
+    sizes = onnx.numpy_helper.from_array(np.array([1, 12]), "sizes")
+    node = onnx.helper.make_node("Reshape", ["x", "sizes"], ["y"])
+    graph = onnx.helper.make_graph([node], "made", [picture], [flat], [sizes])
+    opset = [onnx.helper.make_opsetid("", 17)]
+    onnx.save(onnx.helper.make_model(graph, opset_imports=opset, ir_version=8), tmp_path / "n.onnx")
+    measured = pose_batches.measure(tmp_path / "n.onnx", [1, 3], 1)
+    assert [apart for _, apart in measured.values()] == [0, 0]
+    assert all(ms < 1000 for ms, _ in measured.values())

@@ -303,8 +303,30 @@ VIEWS = {
     },
     **{
         name: View(name, {"what": "{row}", "found": "{found}", **FOUND})
-        for name in ("hall-points", "file-evidence", "mapping-checks", "costs")
+        for name in ("hall-points", "file-evidence", "mapping-checks", "costs", "batches")
     },
+    "offset-cameras": View(
+        "offset-cameras",
+        {
+            "corrected, median / 95 %, mm": "{row}",
+            "offsets fitted by clicked cameras": "{before}",
+            "by true cameras (used)": "{after}",
+            "by": "{after.origin}",
+            "with": "{after.command}",
+        },
+    ),
+    "persons-found": View(
+        "persons-found",
+        {
+            "persons of 80 px or more; detector": "{row}",
+            "found in the whole picture, %": "{whole}",
+            "in tiles, as the study looks, %": "{tiles}",
+            "regions elsewhere, a picture": "{whole_others}; {tiles_others}",
+            "persons": "{tiles.n}",
+            "by": "{tiles.origin}",
+            "with": "{tiles.command}",
+        },
+    ),
     "held": View(
         "held",
         {

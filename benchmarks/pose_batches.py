@@ -1,0 +1,94 @@
+"""Whether a landmark network gains by several crops at once, on the processor.
+
+    python benchmarks/pose_batches.py RESULTS [--models blazepose-full blazepose-heavy]
+        [--sizes 1 2 4 8] [--rounds 12]
+
+RESULTS is of a run that converted the networks. Each is brought to a number of crops (the first
+dimension of its input and of the sizes that it states) and runs on the same made crops, one thread,
+all sizes in turn in each round; the least processor time a crop counts. `apart` is the largest
+difference of any output from that of single crops, over the output's largest value.
+"""
+
+import argparse
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import onnx
+import onnxruntime
+from onnx import numpy_helper
+
+from many_sessions import ROOT
+
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
+
+from courtside.pose.networks import session
+
+SIZED = {"Reshape": 1, "Resize": 3}  # operators that state sizes: which of their inputs
+
+
+def of_size(path, count):
+    """Return the network for `count` crops, as bytes."""
+    model = onnx.load(str(path))
+    graph = model.graph
+    stated = {
+        node.input[SIZED[node.op_type]]
+        for node in graph.node
+        if node.op_type in SIZED and len(node.input) > SIZED[node.op_type]
+    }
+    for value in graph.initializer:
+        if value.name in stated:
+            sizes = numpy_helper.to_array(value).copy()
+            sizes[0] = count
+            value.CopyFrom(numpy_helper.from_array(sizes, value.name))
+    for value in (*graph.input, *graph.output):
+        value.type.tensor_type.shape.dim[0].dim_value = count
+    del graph.value_info[:]
+    return model.SerializeToString()
+
+
+def opened(content):
+    """Open a network as the study does, on one thread of the processor."""
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = options.inter_op_num_threads = 1
+    options.log_severity_level = 3
+    return onnxruntime.InferenceSession(content, options, [session.PROVIDERS["cpu"][0]])
+
+
+def measure(path, sizes, rounds):
+    """Return {size: (ms of processor time a crop, largest relative difference)}."""
+    networks = {size: opened(of_size(path, size)) for size in sizes}
+    name, shape = networks[sizes[0]].get_inputs()[0].name, networks[sizes[0]].get_inputs()[0].shape
+    crops = np.random.default_rng(0).random((max(sizes), *shape[1:]), np.float32)
+    single = opened(of_size(path, 1))
+    alone = [
+        np.concatenate(each)
+        for each in zip(*(single.run(None, {name: one[None]}) for one in crops), strict=True)
+    ]
+    ms, apart = {size: np.inf for size in sizes}, {}
+    for _ in range(rounds):
+        for size, network in networks.items():
+            start = time.process_time()
+            found = network.run(None, {name: crops[:size]})
+            ms[size] = min(ms[size], 1000 * (time.process_time() - start) / size)
+            pairs = zip(found, alone, strict=True)
+            apart[size] = max(float(np.abs(a - b[:size]).max() / np.abs(b).max()) for a, b in pairs)
+    return {size: (ms[size], apart[size]) for size in sizes}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("results", type=Path)
+    parser.add_argument("--models", nargs="+", default=["blazepose-full", "blazepose-heavy"])
+    parser.add_argument("--sizes", type=int, nargs="+", default=[1, 2, 4, 8])
+    parser.add_argument("--rounds", type=int, default=12)
+    given = parser.parse_args()
+    for name in given.models:
+        path = given.results / "networks" / name / "landmarks.onnx"
+        for size, (ms, apart) in measure(path, given.sizes, given.rounds).items():
+            print(f"{name}, {size} at once: {ms:.2f} ms a crop, apart {apart:.1e}")
+
+
+if __name__ == "__main__":
+    main()

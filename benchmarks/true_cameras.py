@@ -1,0 +1,99 @@
+"""How much of the error of virtual players is of their cameras: corrected by both, the same 2D.
+
+    python benchmarks/true_cameras.py RESULTS [--takes players-b/footwork ...] [--model NETWORK]
+        [--fusion all-robust] [--offsets FILE]
+
+RESULTS is of a default run. Skeletons of its 3D keypoints, and of the same 2D keypoints
+triangulated anew by the cameras as they truly are, are filtered, corrected by the offsets of FILE
+(config/joint_offsets), and compared with the truth: median and 95 % over the limbs' joints, mean
+error along x, y and z, median of the elbows, mm.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from many_sessions import ROOT
+
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
+
+from courtside.evaluation import error_fit, joints
+from courtside.kinematics import cutoffs, skeleton_filter
+from courtside.reconstruction import joint_correction
+from courtside.records.keypoints import keypoints, skeleton
+from courtside.study.configuration import yaml_files
+
+TAKES = ("players-b/footwork", "players-a/shot", "repeats/m3-1", "repeats/f3-1", "repeats/f4-1")
+SHAPE = skeleton.read(ROOT / "config" / "skeletons" / "blazepose33.yaml")
+
+
+class Take:
+    """The files of one take of a default run, and what `error_fit.seen_truly` asks of them."""
+
+    def __init__(self, results, name, model, fusion):
+        session, take = name.split("/")
+        folder, virtual = results / session / "takes" / take, results / "virtual"
+        (raw,) = folder.glob(f"pose3d/*/{fusion}/{model}.npz")
+        calibration = raw.parts[-3]
+        self.raw = keypoints.read_3d(raw)
+        self.cameras = results / session / "calibration" / calibration / "cameras.toml"
+        owners = (session, "players-b")  # sessions without own cameras have those of players-b
+        self.session_truth = next(p for o in owners if (p := virtual / o / "truth.npz").is_file())
+        self.people = [folder / "people" / calibration / f"{model}.npz"]
+        self.sync = [folder / "sync" / calibration / f"cameras.{model}.json"]
+        self.truth = [virtual / session / "takes" / take / "truth.npz"]
+        views = [folder / "pose2d" / model / f"{camera}.npz" for camera in self.raw.cameras]
+        sexes = yaml_files.read(ROOT / "config" / "sessions" / f"{session}.yaml")["subjects"]
+        self.sex_of = {str(who): sexes[str(who)]["sex"] for who in self.raw.person_id}
+        self.take = {"pose2d": views, "sex_of": self.sex_of}
+
+
+def corrected(raw, table, sex_of, step):
+    """Return the corrected, filtered skeletons of raw ones."""
+    how = step["filter_motion"]
+    points = skeleton_filter.prepare(raw, how["max_gap_s"])
+    choices = cutoffs.by_group(points, SHAPE, how["cutoff_hz"], how["order"], path="made again")
+    per_joint = SHAPE.by_group({group: one.cutoff_hz for group, one in choices.items()})
+    filtered = skeleton_filter.smooth(points, per_joint, how["order"])
+    return joint_correction.correct_then_filter(
+        points, filtered, table, sex_of, per_joint, how["order"]
+    )
+
+
+def line(points, truth):
+    """Return what the errors of skeletons are, in words."""
+    points = points.between(truth.time_s[0], truth.time_s[-1])
+    names, error, _ = joints.errors(points, truth.joints, joints.true_places(points, truth))
+    error = 1000 * error[:, :, [names.index(joint) for joint in skeleton.JOINTS]]
+    elbows = error[:, :, [at for at, name in enumerate(skeleton.JOINTS) if name.endswith("elbow")]]
+    apart, shift = np.linalg.norm(error, axis=-1), np.nanmean(error, axis=(0, 1, 2))
+    return (
+        f"median {np.nanmedian(apart):.1f}, 95 % {np.nanpercentile(apart, 95):.1f}, "
+        f"shift ({', '.join(f'{one:.1f}' for one in shift)}), "
+        f"elbows {np.nanmedian(np.linalg.norm(elbows, axis=-1)):.1f} mm"
+    )
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("results", type=Path)
+    parser.add_argument("--takes", nargs="+", default=TAKES)
+    parser.add_argument("--model", default="blazepose-heavy")
+    parser.add_argument("--fusion", default="all-robust")
+    parser.add_argument("--offsets", type=Path, help="a file of config/joint_offsets")
+    given = parser.parse_args()
+    own = ROOT / "config" / "joint_offsets" / f"{given.model}.csv"
+    table = joint_correction.read(given.offsets or own)
+    step = yaml_files.read(ROOT / "config" / "config.yaml")
+    for name in given.takes:
+        files = Take(given.results, name, given.model, given.fusion)
+        ((seen, sex_of, truth),) = error_fit.seen_truly(files, [files.take])
+        raw = error_fit.triangulated(seen, SHAPE, list(sex_of), step["triangulate"])
+        for words, points in (("cameras of the study", files.raw), ("true cameras", raw)):
+            print(f"{name}, {words}: {line(corrected(points, table, sex_of, step), truth)}")
+
+
+if __name__ == "__main__":
+    main()
