@@ -1,6 +1,6 @@
 """Networks on the same frames: virtual takes. Recorded ones, and times, are of a benchmark."""
 
-from courtside.evaluation.numbers.register import Builder, Cut, Number, Settings, Source
+from courtside.evaluation.numbers.register import Builder, Cut, Number, Source
 
 TABLE, FILE = "networks", "figures/networks.table.csv"
 DECIMALS = {"px": 1, "%": 1, "mm": 0, "jitter": 2}  # by unit, of one measure by its name
@@ -19,8 +19,9 @@ def virtual(source: Source) -> list[Number]:
         where = f"against truth, network {row['network']}, measure {row['measure']}"
         cut = Cut(source, FILE, where, row["session"])
         decimals = DECIMALS.get(row["measure"], DECIMALS[row["unit"]])
-        more: Settings = {"decimals": decimals, "unit": row["unit"], "n": row["n"], "n_failed": 0}
-        for end, column in ENDS.items():
-            name = label(row["network"], row["session"])
-            build.add(name, row["measure"] + end, row[column], cut, column, **more)
+        shown = {
+            f"{row['measure']}{end}": (name, decimals, row["unit"]) for end, name in ENDS.items()
+        }
+        name = label(row["network"], row["session"])
+        build.add_columns(name, row, shown, cut, n=row["n"], n_failed=0)
     return build.numbers

@@ -145,14 +145,13 @@ def held(source: Source) -> list[Number]:
             session, stage = row["session"], STAGE_OF[row["stage"]]
             cut = Cut(source, HELD, f"{session}, {row['stage']}, {by} {group}", session)
             name = f"{words_}, " + ("all sessions" if session == "all" else f"`{session}`")
-            more: Settings = {"decimals": 1, "unit": "%"}
-            build.add(name, stage, row[part], cut, part, n=row["n"], **more)
+            build.add(name, stage, row[part], cut, part, n=row["n"], decimals=1, unit="%")
             alike = (table["session"] == session) & (table["stage"] == row["stage"])
             large = table[alike & (table["by"] == "error") & table["group"].isin(LARGE_MM)]
             if group == "limbs" and len(large):
-                share, n = np.average(large[part], weights=large["n"]), large["n"].sum()
-                more["decimals"] = 0
-                build.add(name, f"{stage}_large", share, cut, f"{part}, errors", n=n, **more)
+                share = np.average(large[part], weights=large["n"])
+                more: Settings = {"n": large["n"].sum(), "decimals": 0, "unit": "%"}
+                build.add(name, f"{stage}_large", share, cut, f"{part}, errors", **more)
     return build.numbers
 
 
