@@ -159,7 +159,7 @@ def main():
             about = [TABLE, f"{words}; `{name}`"]
             rest = ["", n_persons, n_persons - hits, "benchmark", COMMAND]
             share, more = f"{100 * hits / n_persons:.1f}", f"{others / n_pictures:.1f}"
-            rows += [[*about, way, share, "%", *rest], [*about, f"{way}_others", more, "", *rest]]
+            rows.append([*about, way, share, "%", *rest])
             print(f"{words}; {name}, {way}: {hits} of {n_persons}, {share} %; others {more}")
     stated.write(OUTPUT, rows)
 

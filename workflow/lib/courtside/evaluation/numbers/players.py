@@ -136,12 +136,13 @@ LARGE_MM = ("100", "300")  # groups of joints by the size of the error: above 10
 
 
 def held(source: Source) -> list[Number]:
-    """Return what 90 % ellipsoids and intervals hold, by session: all, and the large errors."""
+    """Return what 90 % ellipsoids and intervals hold: joints by session, measures of all."""
     build, table, part = Builder("held"), source.table(HELD), "held_90_percent"
-    table = table.assign(group=table["group"].astype(str))
+    table = table[table["stage"].isin(STAGE_OF)].assign(group=table["group"].astype(str))
     for (by, group), words_ in GROUPS.items():
-        own = table[(table["by"] == by) & (table["group"] == group) & (table["n"] > 0)]
-        for _, row in own.iterrows():
+        own = table[(table["by"] == by) & (table["group"] == group)]
+        own = own if by == "all" else own[own["session"] == "all"]
+        for _, row in own[own["n"] > 0].iterrows():
             session, stage = row["session"], STAGE_OF[row["stage"]]
             cut = Cut(source, HELD, f"{session}, {row['stage']}, {by} {group}", session)
             name = f"{words_}, " + ("all sessions" if session == "all" else f"`{session}`")

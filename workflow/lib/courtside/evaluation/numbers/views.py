@@ -321,7 +321,6 @@ VIEWS = {
             "persons of 80 px or more; detector": "{row}",
             "found in the whole picture, %": "{whole}",
             "in tiles, as the study looks, %": "{tiles}",
-            "regions elsewhere, a picture": "{whole_others}; {tiles_others}",
             "persons": "{tiles.n}",
             "by": "{tiles.origin}",
             "with": "{tiles.command}",
