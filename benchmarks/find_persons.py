@@ -33,10 +33,7 @@ from courtside.pose.detector import SIDE_OF_BOX, Region
 from courtside.records.truth import session_truth, take_truth
 
 TABLE, OUTPUT = "persons-found", ROOT / stated.FOLDER / "find_persons.csv"
-COMMAND = (
-    "`python benchmarks/find_persons.py results --models FOLDER --demo DEMO --hall DATA "
-    "--session crowd-dev`"
-)
+COMMAND = "`python benchmarks/find_persons.py`"  # its arguments stand in benchmarks/README.md
 MIN_HEIGHT_PX, NEAR, FACTOR, SURE = 80, 0.25, 1.7, 0.3
 OWN = {  # as config/README.md, "Your own network", declares them
     "yolox_nano": {"decoder": "yolox", "input": {"size": [416, 416], "channels": "bgr"}},

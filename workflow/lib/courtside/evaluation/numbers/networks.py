@@ -16,8 +16,7 @@ def virtual(source: Source) -> list[Number]:
     """Return errors, shares and jitter of each network against the truth, with their intervals."""
     build, table = Builder(TABLE), source.table(FILE)
     for _, row in table[table["against"] == "truth"].iterrows():
-        where = f"against truth, network {row['network']}, measure {row['measure']}"
-        cut = Cut(source, FILE, where, row["session"])
+        cut = Cut(source, FILE, f"{row['network']}, {row['measure']}", row["session"])
         decimals = DECIMALS.get(row["measure"], DECIMALS[row["unit"]])
         shown = {
             f"{row['measure']}{end}": (name, decimals, row["unit"]) for end, name in ENDS.items()
