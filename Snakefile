@@ -92,6 +92,7 @@ rule all:
         targets.devices.every_body_frame(STUDY),
         targets.pages.every_clicking_page(STUDY),
         targets.pages.every_people_page(STUDY),
+        targets.pages.every_quality_page(STUDY),
         targets.pages.every_viewer(STUDY),
         targets.pages.every_overlay_video(STUDY),
         targets.pages.every_plan(STUDY),

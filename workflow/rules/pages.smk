@@ -1,8 +1,8 @@
-"""Pages and videos to look around in: people to be named, viewers, videos, Pose2Sim projects.
+"""Pages and videos to look around in: people to be named, verdicts, viewers, videos, Pose2Sim projects.
 
 Inputs: 3D keypoints of all stages, devices, cameras, videos. Outputs:
-results/{session}/takes/{take}/pages/, videos/, pose2sim/.
-Steps: build_people_page, build_viewer, export_overlay_video, export_pose2sim.
+results/{session}/pages/, results/{session}/takes/{take}/pages/, videos/, pose2sim/.
+Steps: build_people_page, build_quality_page, build_viewer, export_overlay_video, export_pose2sim.
 """
 
 
@@ -32,6 +32,22 @@ rule build_people_page:
         shown=of_job(takes.blur_faces),  # demands the consent to pictures; faces are always hidden
     script:
         "../scripts/build_people_page.py"
+
+
+rule build_quality_page:
+    input:
+        files=of_job(pages.judged_files),
+        assets=sorted(ASSETS.glob("[pqr]*")),
+    output:
+        page_html=paths.QUALITY_PAGE,
+    log:
+        "results/{session}/logs/build_quality_page/all.log",
+    params:
+        code=code("build_quality_page.py"),
+        session=lambda w: w.session,
+        takes=of_job(pages.judged_takes),
+    script:
+        "../scripts/build_quality_page.py"
 
 
 rule build_viewer:

@@ -44,6 +44,7 @@ def test_the_page_requests_nothing_from_outside(study):
     assert sorted(set(outside)) == [
         "calibration.csv",
         "hall/figures/overlay.csv",
+        "hall/pages/quality.html",
         "hall/takes/smash/viewer.html",
     ]
     assert [one["src"][:22] for one in read.pictures] == ["data:image/png;base64,"] * 2

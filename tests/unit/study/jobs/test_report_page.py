@@ -90,6 +90,9 @@ def test_a_session_is_told_with_its_first_calibration_and_its_overrides(content)
     ]
     assert plain["overrides"] == {"extract_features": {"first_octave": -1}}
     assert (players["fusion"], players["model"]) == ("all-robust", "blazepose-full")
+    words = "verdicts on takes and cameras, with pictures"
+    assert real["links"] == [("walk-4cams-tiny/pages/quality.html", words)]
+    assert single["links"] == []
     assert (single["calibration"], single["takes"][0]["name"]) == (None, "claps")
 
 

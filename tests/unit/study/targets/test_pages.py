@@ -47,6 +47,13 @@ def test_people_are_named_on_a_page_of_real_takes_and_of_takes_of_several(study)
     )
 
 
+def test_sessions_with_judged_takes_have_a_page_for_quality(study):
+    assert pages.every_quality_page(study) == [
+        "results/walk-4cams-tiny/pages/quality.html",
+        "results/players-tiny/pages/quality.html",
+    ]
+
+
 def test_plans_are_drawn_twice(study):
     stems = ("results/plans/plain-a/growth", "results/plans/plain-a/map")
     expected = [f"{stem}.{suffix}" for stem in stems for suffix in ("pdf", "png", "csv")]

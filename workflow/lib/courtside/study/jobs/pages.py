@@ -4,9 +4,11 @@ from pathlib import Path
 from typing import Any
 
 from courtside.study import paths
+from courtside.study.configuration import consent
 from courtside.study.jobs import devices, takes
 from courtside.study.jobs.job import Job
 from courtside.study.targets import pages as page_targets
+from courtside.study.targets import takes as targets
 
 STAGE_WORDS = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
 
@@ -70,6 +72,34 @@ def people_page(job: Job) -> list[str]:
 def people_target(job: Job) -> str:
     """Return where the file with names is to be saved."""
     return job.session.people or job.fill(paths.PEOPLE_CSV)
+
+
+def judged_takes(job: Job) -> list[dict[str, Any]]:
+    """Return what a session's page for quality shows of each judged take.
+
+    `pose2d` and `videos` are of each camera; none, with the reason in `left_out`, where pictures
+    are not agreed to or there are no videos.
+    """
+    session, found = job.session, []
+    for take in (one for one in session.takes.values() if targets.verdicts(session, one)):
+        refused = consent.refusing(session, take, "pictures")
+        why = f"No pictures: {', '.join(refused)} not agreed to pictures." if refused else ""
+        why = why or ("" if take.videos else "No pictures: there are keypoints alone, no videos.")
+        of_take = Job(job.study, {**job.wildcards, **_first(job), "take": take.name})
+        videos = {} if why else take.videos
+        entry = {"name": take.name, "quality": of_take.fill(paths.QUALITY), "left_out": why}
+        entry |= {"people": of_take.fill(paths.PEOPLE)}
+        entry |= {"skeleton": of_take.skeleton_file().as_posix()}
+        pose2d = of_take.of_each(paths.POSE2D, camera=videos) if videos else []
+        found.append({**entry, "pose2d": pose2d, "videos": list(videos.values())})
+    return found
+
+
+def judged_files(job: Job) -> list[str]:
+    """Return the files that a session's page for quality is made of."""
+    of_takes = judged_takes(job)
+    named = {one[key] for one in of_takes for key in ("quality", "people", "skeleton")}
+    return sorted(named) + [path for one in of_takes for path in one["pose2d"] + one["videos"]]
 
 
 def known_takes(job: Job) -> list[str]:

@@ -42,6 +42,17 @@ def people_pages(session: Session, take: Take) -> list[str]:
     return takes.files(paths.PEOPLE_PAGE, session, take)
 
 
+def every_quality_page(study: Study) -> list[str]:
+    """Return the pages with the verdicts on all takes of a session."""
+    return [path for session in study.sessions.values() for path in quality_pages(session)]
+
+
+def quality_pages(session: Session) -> list[str]:
+    """Return the page with the verdicts of a session; none where no take is judged."""
+    judged = any(takes.verdicts(session, take) for take in session.takes.values())
+    return [paths.QUALITY_PAGE.format(session=session.name)] if judged else []
+
+
 def every_overlay_video(study: Study) -> list[str]:
     """Return the videos with skeletons that the study asks for."""
     return [

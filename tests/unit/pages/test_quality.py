@@ -1,0 +1,85 @@
+"""The page for quality: its lines, its pictures, and nobody to be recognised."""
+
+import cv2
+import numpy as np
+import pytest
+
+from courtside.pages import quality
+from courtside.records.keypoints.skeleton import Skeleton
+from courtside.study.execution import verdicts
+from courtside.video import writer
+from fixtures.people import named_takes
+from fixtures.study import report_made
+
+SKELETON = Skeleton(
+    "made", ("a", "b", "c", "d", "e"), (("a", "c"), ("b", "d")), {}, {"face": ("a", "b")}
+)
+
+
+@pytest.fixture
+def rows(tmp_path):
+    (tmp_path / "quality.csv").write_text(report_made.VERDICTS)
+    return verdicts.read(tmp_path / "quality.csv")
+
+
+def test_a_camera_has_the_reported_verdict_and_those_that_differ(rows):
+    take, camera = quality.lines(rows)
+    assert take == ("all", "doubtful", "Camera c1: its clock is off.", ())
+    assert camera[:3] == ("c1", "doubtful", "Its clock is off.")
+    assert camera.others == ("failed by file all-robust blazepose-full",)
+    same = [{**row, "verdict": "doubtful"} for row in rows]
+    assert quality.lines(same)[1].others == ()
+
+
+def test_the_frame_shown_has_most_persons_and_is_nearest_to_the_middle():
+    view = named_takes.take(2).seen[0].tracklets
+    assert quality.shown_frame(view) == 30
+    view.xy[1, 10:] = np.nan
+    assert quality.shown_frame(view) == 9
+    view.xy[1, :, :2] = np.nan  # three of five joints still show somebody
+    assert quality.shown_frame(view) == 9
+    view.xy[:] = np.nan
+    assert quality.shown_frame(view) == 30
+
+
+def test_a_picture_hides_face_and_surroundings_and_shows_the_joints(tmp_path):
+    width, height = named_takes.SIZE
+    image = np.zeros((height, width, 3), np.uint8)
+    image[::8] = image[1::8] = image[2::8] = image[3::8] = 255  # survives the smaller size
+    video = tmp_path / "c0.mp4"
+    frames = [image] * len(named_takes.TIMES)
+    writer.write_video(video, frames, named_takes.RATE_HZ, crf=10, effort="ultrafast")
+    take = named_takes.take(2)
+    view, people = take.seen[0].tracklets, take.found
+    people.index["c0"][1] = -1  # the second person is nobody of the take
+    found = cv2.imdecode(
+        np.frombuffer(quality.thumbnail(view, people, video, SKELETON), np.uint8), cv2.IMREAD_COLOR
+    )
+    assert found.shape == (160, 320, 3)
+    blue, _, red = (found[..., at].astype(float) for at in range(3))
+    detail = np.abs(np.diff(found.max(axis=2).astype(float), axis=0))
+    x, y = (round(0.4 * value) for value in named_takes.place_px(0))
+    other = round(0.4 * named_takes.place_px(1)[0])
+    yellow, blueish = red - blue > 80, blue - red > 80
+    assert detail[:, 200:].mean() < 12  # surroundings
+    assert detail[y - 26 : y - 21, x - 8 : x + 8].mean() < 15  # the face
+    assert detail[y - 8 : y + 4, x - 4 : x + 4].mean() > 30  # the body
+    assert yellow[y - 24 : y + 24, x - 10 : x + 10].sum() > 20
+    assert blueish[y - 24 : y + 24, other - 10 : other + 10].sum() > 20
+    assert yellow[:, other - 20 :].sum() == 0
+    assert detail[y - 8 : y + 4, other - 4 : other + 4].mean() < 12  # nobody of the take
+
+
+def test_the_page_has_a_row_for_each_line_and_says_why_pictures_are_missing(rows):
+    lines = quality.lines(rows)
+    takes = [
+        {"name": "smash", "lines": lines, "pictures": {"c1": b"jpeg"}, "left_out": ""},
+        {"name": "<b>", "lines": lines, "pictures": {}, "left_out": "No pictures: why."},
+    ]
+    html = quality.build("hall", takes)
+    assert html.count("<img ") == 1
+    assert 'src="data:image/jpeg;base64,' in html
+    assert html.count("<tr><th") == 2 * (1 + 2)
+    assert "No pictures: why." in html
+    assert "&lt;b&gt;" in html
+    assert "failed by file all-robust blazepose-full" in html
