@@ -87,6 +87,7 @@ rule all:
         targets.takes.every_verdict(STUDY),
         targets.takes.every_comparison_of_views(STUDY),
         targets.together.every_players_figure(STUDY),
+        targets.together.every_study_table(STUDY),
         targets.devices.every_device_export(STUDY),
         targets.devices.every_device_figure(STUDY),
         targets.devices.every_body_frame(STUDY),

@@ -8,8 +8,9 @@ from courtside.calibration.court import joint_adjustment
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records import tie_points
 from courtside.calibration.records.support import Support
+from courtside.exports import study_table
 from courtside.pages.viewer import layers
-from courtside.records import footwork
+from courtside.records import footwork, tables
 from courtside.records.cameras import frame_table, frame_times, shake_table
 from courtside.records.devices import device_motion
 from courtside.records.keypoints import body_motion, keypoints, people, sightings
@@ -173,6 +174,13 @@ def read_named(path):
     return found, sightings.of_other_takes(path, "walk", ["walk", "run"])
 
 
+def measured(folder):
+    """Write the table of a study."""
+    values = {name: ["a", "b"] for name in study_table.COLUMNS}
+    values |= {name: [1.5, np.nan] for name in study_table.NUMBERS}
+    tables.write(folder / "study.csv", pd.DataFrame(values))
+
+
 RECORDS = {
     "points-npz": (points, keypoints.read_3d),
     "views-npz": (views, keypoints.read_2d),
@@ -193,4 +201,5 @@ FORMATS += [
     Format("shake-csv", 500, shake, shake_table.read),
     Format("steps-csv", 300, stances, footwork.read_steps),
     Format("foot-events-csv", 300, foot_events, footwork.read_events),
+    Format("study-csv", 500, measured, study_table.read),
 ]

@@ -73,6 +73,7 @@ PLACES = {
     "figures/players.csv": [f"{TOGETHER} | players.csv", f"{TAKES} | errors", LABELS],
     "figures/angles.csv": [f"{TOGETHER} | {end}.csv" for end in ("angles", "players")]
     + [f"{TAKES} | errors", LABELS],
+    "figures/study.csv": [f"{TOGETHER} | study.csv"],
     "figures/clock_errors.csv": [f"{TOGETHER} | clock_errors.csv", f"{TAKES} | clocks", LABELS],
     "figures/reliability.csv": [
         f"{TOGETHER} | reliability.csv",

@@ -4,7 +4,7 @@ Inputs: 3D keypoints, kinematics, errors, truth of virtual takes. Outputs: resul
 results/figures/.
 Steps: compare_views (real takes), tabulate_players, tabulate_angles, draw_clock_errors,
 draw_reliability, compare_networks, draw_agreement, evaluate_networks, draw_networks,
-compare_sessions.
+tabulate_study (every measure of every take), compare_sessions.
 """
 
 
@@ -150,9 +150,23 @@ rule draw_networks:
         "../scripts/draw_networks.py"
 
 
+rule tabulate_study:
+    input:
+        files=lambda w: targets.together.tabulated_files(STUDY),
+    output:
+        table_csv=paths.STUDY_TABLE,
+    log:
+        "results/figures/logs/tabulate_study/all.log",
+    params:
+        code=code("tabulate_study.py"),
+        takes=lambda w: targets.together.tabulated_takes(STUDY),
+    script:
+        "../scripts/tabulate_study.py"
+
+
 rule compare_sessions:
     input:
-        measures_csv=[row.measures for row in targets.together.archived_takes(STUDY)],
+        study_csv=paths.STUDY_TABLE,
         agreement_csv=paths.NETWORK_AGREEMENT if targets.together.compared_takes(STUDY) else [],
     output:
         **study_figure("archive", "archive", ("players", "sessions")),
@@ -161,7 +175,10 @@ rule compare_sessions:
     params:
         code=code("compare_sessions.py"),
         step=lambda w: {
-            "labels": [row.labels for row in targets.together.archived_takes(STUDY)],
+            "ways": [
+                {**row.labels, "fusion": row.fusion}
+                for row in targets.together.archived_takes(STUDY)
+            ],
             **{
                 key: STUDY.parameters["compare_sessions"][key]
                 for key in ("subject", "measures", "allow_mixed")

@@ -1,7 +1,8 @@
-"""Compare the sessions of one subject: measures of many takes -> values, changes, figure."""
+"""Compare the sessions of one subject: table of the study -> values, changes, figure."""
 
 import pandas as pd
 
+from courtside.exports import study_table
 from courtside.figures.comparison import archive
 from courtside.figures.style import style
 from courtside.statistics import longitudinal
@@ -9,8 +10,8 @@ from courtside.study.execution import log
 from courtside.study.execution.script import run
 
 
-def main(measures_csv, agreement_csv, pdf, png, csv, *, labels, subject, measures, allow_mixed):
-    rows = longitudinal.read(measures_csv, labels)
+def main(study_csv, agreement_csv, pdf, png, csv, *, ways, subject, measures, allow_mixed):
+    rows = longitudinal.of_study(study_table.read(study_csv), ways)
     rows = longitudinal.of_subject(rows, subject, measures, allow_mixed=allow_mixed)
     known = pd.read_csv(agreement_csv) if agreement_csv else None
     values = longitudinal.over_sessions(rows)

@@ -161,3 +161,14 @@ def test_a_take_named_twice_and_a_table_without_units_are_refused(tmp_path):
     pd.read_csv(path).drop(columns="unit").to_csv(path, index=False)
     with pytest.raises(InputError, match=r"a\.csv: expected the columns .* missing: \['unit'\]"):
         longitudinal.read([path], [LABEL])
+
+
+def test_takes_are_found_in_the_table_of_the_study_as_in_their_own(tmp_path):
+    one = pd.read_csv(summary(tmp_path / "a.csv")).fillna({"definition": ""})
+    ways = [LABEL | {"fusion": "all"}, LABEL | {"fusion": "all", "take": "t2"}]
+    table = pd.concat([one.assign(**way) for way in [*ways, LABEL | {"fusion": "two"}]])
+    rows = longitudinal.of_study(table, ways)
+    expected = longitudinal.read([tmp_path / "a.csv"] * 2, [LABEL, LABEL | {"take": "t2"}])
+    pd.testing.assert_frame_equal(rows, expected)
+    with pytest.raises(InputError, match=r"expected measures of s t3 net file all, found none"):
+        longitudinal.of_study(table, [ways[0] | {"take": "t3"}])

@@ -2,7 +2,7 @@
 
 agreement: `pair`, `compare`, `verdict`, `limits`, `smallest_detectable_change`
 longitudinal: `read`, `of_subject`, `over_sessions`, `errors_of_measurement`, `changes`,
-    `labelled`, `check_single`
+    `of_study`, `labelled`, `check_single`
 autocorrelation: `share`, `interval`, `frames_per_trial`, `covariance_of_sum`, `distinct`
 moving_blocks: `frames`: takes drawn again, for intervals
 """

@@ -189,6 +189,24 @@ def read(paths: Sequence[StrPath], labels: Sequence[Mapping[str, str]]) -> pd.Da
     return check_single(rows)
 
 
+def of_study(table: pd.DataFrame, ways: Sequence[Mapping[str, str]]) -> pd.DataFrame:
+    """Return the rows of the table of a study of some takes and ways of measuring, as `read` does.
+
+    `ways` have session, take, calibration, fusion and model, alike in the table. An `InputError` if
+    one of them is not in it.
+    """
+    parts = []
+    for way in ways:
+        rows = table[(table[list(way)] == pd.Series(way)).all(axis=1)]
+        if rows.empty:
+            raise InputError(
+                f"table of the study: expected measures of {' '.join(way.values())}, found none; "
+                "delete it and run the study again"
+            )
+        parts.append(labelled(rows, way))
+    return check_single(pd.concat(parts, ignore_index=True))
+
+
 def labelled(table: pd.DataFrame, label: Mapping[str, str]) -> pd.DataFrame:
     """Return the rows of one take as `COLUMNS`, with its labels; both arguments as for `read`."""
     rows = table.rename(columns={"person": "subject"}).assign(**label)

@@ -166,6 +166,7 @@ SHAKE_TEXT = TAKE_FIGURE.replace("{figure}", "shake") + ".txt"
 CALIBRATION_TABLE = "results/figures/calibration.csv"
 PLAYERS_TABLE = "results/figures/players.csv"
 ANGLES_TABLE = "results/figures/angles.csv"
+STUDY_TABLE = "results/figures/study.csv"
 NETWORK_PAIRS = "results/figures/agreement.pairs.csv"
 NETWORK_AGREEMENT = "results/figures/agreement.table.csv"
 NETWORK_ERRORS = "results/figures/networks.table.csv"
@@ -183,6 +184,7 @@ SESSION_YAML = "sessions/{session}.yaml"
 # Of a run.
 REPORT = "results/report.html"
 RUN = "results/run"
+SIDECAR = "run/provenance/{file}.json"  # below `RESULTS`, as is the file
 
 
 def part(pattern: str, **known: str) -> str:

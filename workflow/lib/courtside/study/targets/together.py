@@ -3,10 +3,13 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import product
+from typing import Any
 
 from courtside.study import paths
 from courtside.study.configuration import consent
 from courtside.study.configuration.sessions import Study
+from courtside.study.execution.verdicts import WAY
+from courtside.study.methods import IMPORTED
 from courtside.study.targets import takes
 
 STROKE_FIGURES = ("badminton_fig09", "badminton_fig10", "badminton_fig11")
@@ -19,6 +22,7 @@ class MeasuredTake:
     measures: str  # the file of its summary of measures
     pose3d: str  # the file of the skeletons that were measured
     labels: dict[str, str]  # session, take, calibration and model
+    fusion: str
 
     @property
     def joint_labels(self) -> dict[str, str]:
@@ -78,11 +82,51 @@ def measured_takes(
     for session in (study.sessions[name] for name in sessions if name in study.sessions):
         for take, way, model in product(session.takes, session.take_calibrations(), models):
             labels = {"session": session.name, "take": take, "calibration": way, "model": model}
-            known = {**labels, "fusion": session.fusions()[0]}
+            fusion = session.fusions()[0]
+            known = {**labels, "fusion": fusion}
             measures = paths.MEASURES.format(**known)
             pose3d = paths.SKELETONS.format(stage=study.stages(model)[-1], **known)
-            found.append(MeasuredTake(measures, pose3d, labels))
+            found.append(MeasuredTake(measures, pose3d, labels, fusion))
     return found
+
+
+def every_study_table(study: Study) -> list[str]:
+    """Return the table of the study; none where nothing is measured."""
+    return [paths.STUDY_TABLE] if tabulated_takes(study) else []
+
+
+def tabulated_takes(study: Study) -> list[dict[str, Any]]:
+    """Return what the table of the study has of each take and way of measuring it.
+
+    `labels` are session, take and way; `measures_csv`, `quality_csv` (None of other programs'
+    skeletons) and `provenance`, the record of the measures below the folder of results.
+    """
+    found = []
+    for session, take in study.takes():
+        ways = list(product([IMPORTED], ["trc"], take.pose3d))
+        methods = session.take_calibrations(), session.fusions(), session.parameters["models"]
+        for way in [*ways, *product(*methods)]:
+            labels = {"session": session.name, "take": take.name}
+            labels |= dict(zip(WAY, way, strict=True))
+            measures = paths.MEASURES.format(**labels)
+            below = measures.removeprefix(f"{paths.RESULTS}/")
+            judged = takes.verdicts(session, take) if way not in ways else []
+            found.append(
+                {
+                    "labels": labels,
+                    "measures_csv": measures,
+                    "quality_csv": next(iter(judged), None),
+                    "provenance": paths.SIDECAR.format(file=below),
+                }
+            )
+    return found
+
+
+def tabulated_files(study: Study) -> list[str]:
+    """Return the files that the table of the study is made of."""
+    names = ("measures_csv", "quality_csv")
+    found = [take[name] for take in tabulated_takes(study) for name in names]
+    return list(dict.fromkeys(filter(None, found)))
 
 
 def compared_takes(study: Study) -> list[MeasuredTake]:
