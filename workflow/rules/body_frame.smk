@@ -15,6 +15,7 @@ rule correct_inertial:
         sync_json=paths.DEVICE_CLOCKS,
     output:
         corrected_bvh=paths.CORRECTED_BVH,
+        corrected_glb=paths.CORRECTED_GLB,
         motion_npz=paths.CORRECTED_SOURCE,
         events_json=paths.CORRECTED_EVENTS,
         report_json=paths.CORRECTION_REPORT,

@@ -1,7 +1,8 @@
 """Devices beside the fixed cameras, or alone: mocopi, depth cameras, single videos, Nuitrack.
 
 Inputs: recordings of devices. Outputs: results/{session}/takes/{take}/ devices, sync.
-Steps: import_device, export_device (of inertial suits), extract_colour, convert_landmarks, lift_depth, select_person (of the fixed
+Steps: import_device, export_device (of inertial suits), export_source
+(of others), extract_colour, convert_landmarks, lift_depth, select_person (of the fixed
 cameras), detect_events (whatever happens to the clocks), synchronise_devices.
 """
 
@@ -33,6 +34,7 @@ rule export_device:
         c3d_path=paths.part(paths.DEVICE_EXPORT, suffix="c3d"),
         csv_path=paths.part(paths.DEVICE_EXPORT, suffix="csv"),
         bvh_path=paths.part(paths.DEVICE_EXPORT, suffix="bvh"),
+        glb_path=paths.part(paths.DEVICE_EXPORT, suffix="glb"),
     log:
         "results/{session}/logs/export_device/{take}.{device}.log",
     params:
@@ -40,6 +42,24 @@ rule export_device:
         person=lambda w: device_of(w).subject,
     script:
         "../scripts/export_device.py"
+
+
+rule export_source:
+    input:
+        device_npz=of_job(devices.exported_source),
+        skeleton_yaml=of_job(devices.source_skeleton),
+    output:
+        bvh_path=paths.part(paths.SOURCE_EXPORT, suffix="bvh"),
+        glb_path=paths.part(paths.SOURCE_EXPORT, suffix="glb"),
+    log:
+        "results/{session}/logs/export_source/{take}.{source}.{model}.log",
+    wildcard_constraints:
+        source=f"(?!cameras){NAME}(?<!-corrected)",
+    params:
+        code=code("export_source.py"),
+        person=of_job(devices.person),
+    script:
+        "../scripts/export_source.py"
 
 
 rule extract_colour:

@@ -189,10 +189,13 @@ rule export_motion:
 rule export_take:
     input:
         pose3d_npz=of_job(takes.exported),
+        skeleton_yaml=of_job(Job.skeleton_file),
     output:
         trc_path=paths.part(paths.EXPORT, suffix="trc"),
         c3d_path=paths.part(paths.EXPORT, suffix="c3d"),
         csv_path=paths.part(paths.EXPORT, suffix="csv"),
+        bvh_path=paths.part(paths.EXPORT, suffix="bvh"),
+        glb_path=paths.part(paths.EXPORT, suffix="glb"),
     log:
         "results/{session}/logs/export_take/{take}.{stage}.{calibration}.{fusion}.{model}.{person}.log",
     params:

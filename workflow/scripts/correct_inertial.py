@@ -1,13 +1,14 @@
 """Correct a mocopi recording by vision.
 
-Reads its motion, a camera's skeleton and clocks; writes corrected BVH, motion, events and report.
+Reads its motion, a camera's skeleton and clocks; writes corrected BVH and GLB, motion, events and
+report.
 """
 
 from dataclasses import replace
 from math import hypot
 
 from courtside.events import detect
-from courtside.exports import bvh
+from courtside.exports import bvh, gltf
 from courtside.exports import device as device_export
 from courtside.inertial import correction
 from courtside.records.devices import clocks as sync
@@ -27,6 +28,7 @@ def main(
     sync_json,
     motion_npz,
     corrected_bvh,
+    corrected_glb,
     events_json,
     report_json,
     *,
@@ -56,6 +58,8 @@ def main(
     device_motion.write(motion_npz, motion)
     events.write(events_json, detect.detect([motion]))
     bvh.write(corrected_bvh, device_export.named(corrected, names))
+    shown = device_export.named(device_export.performed(motion), names)
+    gltf.write(corrected_glb, shown, motion.source)
     report.write(report_json)
 
 

@@ -25,7 +25,7 @@ def test_a_real_suit_is_in_every_file_as_it_moved(tmp_path, name, rate_hz):
     motion = mocopi.read(REAL / "mocopi" / f"{name}.bvh", skeleton.read(YAML))
     device_motion.write(tmp_path / "suit.npz", motion)
     script = runpy.run_path(str(ROOT / "workflow" / "scripts" / "export_device.py"))
-    files = [tmp_path / f"out.{suffix}" for suffix in ("trc", "c3d", "csv", "bvh")]
+    files = [tmp_path / f"out.{suffix}" for suffix in ("trc", "c3d", "csv", "bvh", "glb")]
     script["main"](tmp_path / "suit.npz", YAML, *files, person="p1")
     performed = motion.xyz[1:]  # the first row is the rest pose, which nobody performed
     upright = performed[..., [2, 0, 1]] * [-1, 1, 1]  # turned about z: their y is our z

@@ -47,6 +47,12 @@ def test_a_suit_is_exported_only_where_its_person_agreed(job, study):
     silent = replace(study, sessions={session.name: replace(session, subjects=subjects)})
     with pytest.raises(InputError, match="expected export in the consent of"):
         devices.exported(job(silent, **wildcards))
+    source = {**CLAPS, "source": "d415-depth"}
+    folder = study.folder / "skeletons"
+    assert devices.exported_source(job(**source)).endswith("/d415-depth.blazepose-full.npz")
+    assert devices.source_skeleton(job(**source)) == folder / "blazepose33.yaml"
+    with pytest.raises(InputError, match="expected export in the consent of p1"):
+        devices.exported_source(job(silent, **source))
 
 
 def test_fixed_cameras_are_the_first_source(job, study):

@@ -29,10 +29,12 @@ def test_figures_of_devices_and_of_the_thesis(study):
     assert devices.every_device_figure(study) == expected
 
 
-def test_suits_are_exported_where_their_person_agreed(study):
-    folder = f"{TAKE}/devices/mocopi"
-    expected = [f"{folder}.{suffix}" for suffix in ("trc", "c3d", "csv", "bvh")]
-    assert devices.every_device_export(study) == expected
+def test_devices_are_exported_where_their_person_agreed(study):
+    folder, depth = f"{TAKE}/devices", ("d415-depth.blazepose-full", "d415-rgb.blazepose-full")
+    expected = {f"{folder}/mocopi.{suffix}" for suffix in ("trc", "c3d", "csv", "bvh", "glb")}
+    expected |= {f"{folder}/{name}.{suffix}" for name in depth for suffix in ("bvh", "glb")}
+    found = devices.every_device_export(study)
+    assert len(found) == len(set(found)) and set(found) == expected
     session = study.sessions["single-view-tiny"]
     subjects = {name: replace(s, consent=("analysis",)) for name, s in session.subjects.items()}
     silent = replace(study, sessions={session.name: replace(session, subjects=subjects)})

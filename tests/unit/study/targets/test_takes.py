@@ -42,7 +42,7 @@ def test_skeletons_of_every_stage_are_exported(study):
     exported = [
         f"{REAL}/{stage}/file/all-robust/blazepose-full.p1.{suffix}"
         for stage in stages
-        for suffix in ("trc", "c3d", "csv")
+        for suffix in ("trc", "c3d", "csv", "bvh", "glb")
     ]
     motion = f"{REAL}/pose3d_ik/file/all-robust/blazepose-full.p1.mot"
     assert takes.every_export(study) == [*exported, motion]
@@ -50,7 +50,7 @@ def test_skeletons_of_every_stage_are_exported(study):
 
 def test_joints_are_corrected_only_of_networks_with_offsets(studies):
     found = takes.every_export(studies(models=["blazepose-static"]))
-    assert len(found) == 6
+    assert len(found) == 10
     assert not any("corrected" in path for path in found)
 
 

@@ -40,6 +40,17 @@ def points(motion: DeviceMotion, person: str) -> Keypoints3D:
     )
 
 
+def performed(motion: DeviceMotion) -> PosedHierarchy:
+    """Return the rotations of the performed frames of a device that gives rotations."""
+    posed = motion.posed
+    if posed is None:
+        raise ValueError(f"{motion.source}: expected rotations")
+    kept = np.asarray(motion.performed, dtype=bool)
+    moved = {"translation": posed.translation[kept]}
+    moved |= {"parent_from_joint": posed.parent_from_joint[kept]}
+    return replace(posed, time_s=posed.time_s[kept], **moved)
+
+
 def named(posed: PosedHierarchy, skeleton: Skeleton) -> PosedHierarchy:
     """Return rotations whose joints have the names of the device's own files."""
     called = dict(zip(skeleton.joints, skeleton.device_names(), strict=True))

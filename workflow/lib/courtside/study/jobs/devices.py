@@ -71,6 +71,19 @@ def exported(job: Job) -> str:
     return job.fill(paths.DEVICE)
 
 
+def exported_source(job: Job) -> str:
+    """Return the joints of a source that files for other programs are made from, where agreed."""
+    source = sources(job, corrected=False)[job["source"]]
+    exported(Job(job.study, {**job.wildcards, "device": source.device}))  # demands the consent
+    return source.file
+
+
+def source_skeleton(job: Job) -> Path:
+    """Return the skeleton of a source."""
+    name = sources(job)[job["source"]].skeleton
+    return job.study.folder / paths.SKELETON_YAML.format(skeleton=name)
+
+
 def colour_frames(job: Job) -> str | list:
     """Return the times of a depth camera's colour pictures; nothing for a plain video."""
     return job.fill(paths.COLOUR_FRAMES) if job.device.kind == "rgbd" else []

@@ -18,7 +18,7 @@ from courtside.study.execution import checksums, files
 
 FORMAT = 1
 # Of files that people or other programs read.
-FINAL = {".pdf", ".png", ".csv", ".html", ".trc", ".c3d", ".bvh", ".txt"}
+FINAL = {".pdf", ".png", ".csv", ".html", ".trc", ".c3d", ".bvh", ".glb", ".txt"}
 Job = Mapping[str, Any]
 
 

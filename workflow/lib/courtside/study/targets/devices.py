@@ -7,7 +7,8 @@ from courtside.study.configuration import consent
 from courtside.study.configuration.sessions import Session, Study, Take
 
 FIGURES = ("wrist_distance.devices", "wrist_distance.events", "wrist_arcs", "skeleton_plates")
-EXPORTED = ("trc", "c3d", "csv", "bvh")
+EXPORTED = ("trc", "c3d", "csv", "bvh", "glb")
+POSED = ("bvh", "glb")  # of depth cameras, single videos and Nuitrack
 THESIS_FIGURES = ("thesis_fig3_1", "thesis_fig3_2")
 
 
@@ -55,15 +56,20 @@ def every_body_frame(study: Study) -> list[str]:
 
 
 def every_device_export(study: Study) -> list[str]:
-    """Return the files of inertial suits for other programs, of persons who agreed to them."""
-    return [
-        path
-        for one in device_takes(study)
-        for name, device in one.take.devices.items()
-        if device.kind == "inertial"
-        and device.subject not in consent.refusing(one.session, one.take, "export")
-        for path in paths.each(paths.DEVICE_EXPORT, **one.labels, device=name, suffix=EXPORTED)
-    ]
+    """Return the files of devices for other programs, of persons who agreed to them."""
+    found = []
+    for one in device_takes(study):
+        refusing = consent.refusing(one.session, one.take, "export")
+        for name, device in one.take.devices.items():
+            if device.subject in refusing:
+                continue
+            if device.kind == "inertial":
+                known = {**one.labels, "device": name, "suffix": EXPORTED}
+                found += paths.each(paths.DEVICE_EXPORT, **known)
+            else:
+                known = {**one.labels, "source": device.sources(name), "model": one.model}
+                found += paths.each(paths.SOURCE_EXPORT, **known, suffix=POSED)
+    return found
 
 
 def every_device_figure(study: Study) -> list[str]:

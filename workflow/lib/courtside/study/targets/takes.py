@@ -51,7 +51,7 @@ def every_export(study: Study) -> list[str]:
         for person, way, fusion, model in product(persons, *methods):
             known = {"person": person, "calibration": way, "fusion": fusion, "model": model}
             there = [stage for stage in stages if stage in study.written_stages(model)]
-            kinds = {"stage": there, "suffix": ("trc", "c3d", "csv")}
+            kinds = {"stage": there, "suffix": ("trc", "c3d", "csv", "bvh", "glb")}
             found += files(paths.EXPORT, session, take, **known, **kinds)
             if paths.MODELLED in there:
                 found += files(paths.OPENSIM_MOTION, session, take, **known)

@@ -1,0 +1,151 @@
+"""GLB written, and read back by pygltflib: every joint where the motion has it, in every frame."""
+
+import numpy as np
+import pygltflib
+import pytest
+from scipy.spatial.transform import Rotation
+
+from courtside.exports import gltf
+from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy, forward
+from courtside.study.errors import InputError
+
+TIPS = {"leg": np.array([0, -0.4, 0.1]), "right_arm": np.array([0, -0.3, 0.0])}
+
+
+def made(n_frames=30):
+    rng = np.random.default_rng(5)
+    offsets = rng.normal(0, 0.3, (5, 3))
+    parents = np.array([NO_PARENT, 0, 1, 1, 0])
+    names = ("root", "chest", "left_arm", "right_arm", "leg")
+    translation = np.repeat(offsets[None], n_frames, axis=0)
+    translation[:, 0] = rng.normal(0, 2, (n_frames, 3))
+    steps = Rotation.from_rotvec(rng.normal(0, 0.5, (n_frames * 5, 3))).as_matrix()
+    turns = steps.reshape(n_frames, 5, 3, 3)
+    for frame in range(1, n_frames):
+        turns[frame] = turns[frame - 1] @ turns[frame]
+    time_s = 7.5 + np.arange(n_frames) / 60
+    return PosedHierarchy(Hierarchy(names, parents, offsets, TIPS), time_s, translation, turns)
+
+
+def values(read, index):
+    """Return the numbers of an accessor, as the specification lays them out."""
+    accessor = read.accessors[index]
+    view = read.bufferViews[accessor.bufferView]
+    kind = {pygltflib.FLOAT: "<f4", pygltflib.UNSIGNED_SHORT: "<u2"}[accessor.componentType]
+    width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[accessor.type]
+    raw = read.binary_blob()[view.byteOffset : view.byteOffset + view.byteLength]
+    found = np.frombuffer(raw, kind).reshape(accessor.count, width)
+    assert found.min(axis=0).tolist() == accessor.min
+    assert found.max(axis=0).tolist() == accessor.max
+    return found.astype(float)
+
+
+def local(read, frame):
+    """Return {node: (rotation, translation, scale)} in a frame: keys, else the node's own."""
+    found = {}
+    for index, node in enumerate(read.nodes):
+        turn = Rotation.from_quat(node.rotation or [0, 0, 0, 1]).as_matrix()
+        place = node.translation or [0, 0, 0]
+        found[index] = [turn, np.array(place, float), np.array(node.scale or [1, 1, 1], float)]
+    (animation,) = read.animations
+    for channel in animation.channels:
+        keys = values(read, animation.samplers[channel.sampler].output)[frame]
+        if channel.target.path == "rotation":
+            found[channel.target.node][0] = Rotation.from_quat(keys).as_matrix()
+        else:
+            found[channel.target.node][1] = keys
+    return found
+
+
+def world(read, frame):
+    """Return {name: 4 x 4 matrix} of all nodes."""
+    own, found = local(read, frame), {}
+
+    def walk(index, above):
+        turn, place, scale = own[index]
+        here = np.eye(4)
+        here[:3, :3], here[:3, 3] = turn * scale, place
+        found[read.nodes[index].name] = above @ here
+        for child in read.nodes[index].children or []:
+            walk(child, above @ here)
+
+    for root in read.scenes[read.scene].nodes:
+        walk(root, np.eye(4))
+    return found
+
+
+@pytest.fixture
+def written(tmp_path):
+    gltf.write(tmp_path / "a.glb", made(), "p1 walk")
+    return pygltflib.GLTF2().load(str(tmp_path / "a.glb"))
+
+
+def test_every_joint_is_where_the_motion_has_it(written):
+    xyz, turns = forward(made())
+    for frame in (0, 1, 17, 29):
+        found = world(written, frame)
+        for joint, name in enumerate(made().hierarchy.joints):
+            np.testing.assert_allclose(found[name][:3, 3], xyz[frame, joint], atol=2e-6)
+            np.testing.assert_allclose(found[name][:3, :3], turns[frame, joint], atol=2e-6)
+
+
+def test_times_start_at_zero_and_only_the_root_is_moved(written):
+    (animation,) = written.animations
+    assert animation.name == "p1 walk"
+    assert animation.extras == {"start_s": 7.5}
+    times = values(written, animation.samplers[0].input)[:, 0]
+    np.testing.assert_allclose(times, np.arange(30) / 60, atol=1e-6)
+    moved = [one.target.node for one in animation.channels if one.target.path == "translation"]
+    assert [written.nodes[node].name for node in moved] == ["root"]
+    assert len(animation.channels) == 5 + 1
+    for one in animation.channels:
+        if one.target.path == "rotation":
+            keys = values(written, animation.samplers[one.sampler].output)
+            np.testing.assert_allclose(np.linalg.norm(keys, axis=1), 1, atol=1e-6)
+            assert (np.sum(keys[1:] * keys[:-1], axis=1) >= 0).all()
+
+
+def test_sticks_reach_from_joint_to_joint_and_to_tips(written):
+    found, xyz = world(written, 11), forward(made())[0][11]
+    sticks = [at for at, node in enumerate(written.nodes) if node.mesh is not None]
+    assert len(sticks) == 4 + len(TIPS)
+    (part,) = written.meshes[0].primitives
+    corners = values(written, part.attributes.POSITION)
+    top = [*corners[corners[:, 1].argmax()], 1]
+    assert "left_arm stick" not in found  # nothing hangs on it, and it has no tip
+    np.testing.assert_allclose((found["right_arm stick"] @ top)[:3], tip("right_arm"), atol=3e-6)
+    np.testing.assert_allclose((found["leg stick"] @ top)[:3], tip("leg"), atol=3e-6)
+    ends = [(matrix(written, 11, at) @ top)[:3] for at in sticks[:4]]
+    np.testing.assert_allclose(ends, xyz[1:], atol=3e-6)
+    normals = values(written, part.attributes.NORMAL)
+    assert (np.sum(normals * (corners - [0, 0.4, 0]), axis=1) > 0).all()  # outwards
+    assert values(written, part.indices).max() == len(corners) - 1
+
+
+def tip(name, frame=11):
+    xyz, turns = forward(made())
+    at = made().hierarchy.joints.index(name)
+    return xyz[frame, at] + turns[frame, at] @ TIPS[name]
+
+
+def matrix(read, frame, node):
+    """Return the matrix of a node by its index: sticks of one joint share a name."""
+    name, read.nodes[node].name = read.nodes[node].name, "wanted"
+    found = world(read, frame)["wanted"]
+    read.nodes[node].name = name
+    return found
+
+
+def test_gaps_are_refused(tmp_path):
+    posed = made()
+    posed.translation[3, 0] = np.nan
+    with pytest.raises(InputError, match=r"a\.glb: expected .* found 30 frames with gaps"):
+        gltf.write(tmp_path / "a.glb", posed, "a")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_without_frames_there_is_the_pose_at_rest(tmp_path):
+    gltf.write(tmp_path / "a.glb", made(0), "a")
+    read = pygltflib.GLTF2().load(str(tmp_path / "a.glb"))
+    assert read.animations == []
+    assert read.nodes[1].translation == made().hierarchy.offsets[1].tolist()

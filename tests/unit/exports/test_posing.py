@@ -1,0 +1,113 @@
+"""Motion turned upright and made even: nothing else changes."""
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from courtside.exports import posing
+from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy, forward
+from courtside.records.keypoints.skeleton import Skeleton
+
+SHAPE = Hierarchy(("hip", "knee"), np.array([NO_PARENT, 0]), np.array([[0, 0, 0], [0, -0.4, 0.0]]))
+
+
+def spinning(time_s, rate=2.0):
+    """Return a leg that turns evenly and moves straight on."""
+    turns = Rotation.from_rotvec(np.outer(rate * time_s, [0.0, 0, 1])).as_matrix()
+    both = np.stack([turns, np.swapaxes(turns, 1, 2)], axis=1)
+    places = np.repeat(SHAPE.offsets[None], len(time_s), axis=0)
+    places[:, 0] = np.outer(time_s, [1.0, 2, 3])
+    return PosedHierarchy(SHAPE, time_s, places, both)
+
+
+def test_z_up_becomes_y_up():
+    posed = spinning(np.arange(5) / 10)
+    xyz = forward(posing.turned(posed))[0]
+    x, y, z = np.moveaxis(forward(posed)[0], -1, 0)
+    np.testing.assert_allclose(xyz, np.stack([x, z, -y], axis=-1), atol=1e-12)
+
+
+def test_missing_frames_are_interpolated_and_others_kept():
+    time_s = 3 + np.arange(20) / 10
+    kept = np.delete(np.arange(20), [4, 5, 6, 11])
+    found = posing.even(spinning(time_s[kept]))
+    whole = spinning(time_s)
+    np.testing.assert_allclose(found.time_s, time_s, atol=1e-12)
+    np.testing.assert_allclose(forward(found)[0], forward(whole)[0], atol=1e-9)
+    np.testing.assert_allclose(found.parent_from_joint, whole.parent_from_joint, atol=1e-9)
+    assert posing.even(whole) is whole
+    jittered = spinning(time_s + 0.01 * (-1.0) ** np.arange(20))
+    found = posing.even(jittered)
+    assert np.ptp(np.diff(found.time_s)) < 1e-12
+    np.testing.assert_allclose(found.translation[:, 0, 1], 2 * found.time_s, atol=1e-9)
+
+
+BODY = Skeleton(
+    "made",
+    ("face", "ankle", "knee", "left_hip", "chest", "hand", "head"),
+    (
+        *(("left_hip", "knee"), ("knee", "ankle"), ("left_hip", "chest")),
+        *(("chest", "hand"), ("head", "chest")),
+    ),
+    {},
+    {},
+)
+
+
+def moving(n_frames=25, seed=2):
+    """Return joints (T, J, 3) with constant bones between them."""
+    rng = np.random.default_rng(seed)
+    names = ("left_hip", "knee", "ankle", "chest", "hand", "head")
+    offsets = np.array(
+        [[0, 0, 0], [0, 0, -0.4], [0, 0, -0.4], [0, 0, 0.5], [0.6, 0, 0], [0, 0, 0.3]]
+    )
+    shape = Hierarchy(names, np.array([NO_PARENT, 0, 1, 0, 3, 3]), offsets)
+    turns = Rotation.from_rotvec(rng.normal(0, 0.4, (n_frames * 6, 3))).as_matrix()
+    places = np.repeat(offsets[None], n_frames, axis=0)
+    places[:, 0] = rng.normal(0, 1, (n_frames, 3))
+    time_s = np.arange(n_frames) / 30
+    posed = PosedHierarchy(shape, time_s, places, turns.reshape(n_frames, 6, 3, 3))
+    xyz = forward(posed)[0]
+    order = [names.index(name) if name in names else 0 for name in BODY.joints]
+    return time_s, xyz[:, order]
+
+
+def test_joints_of_constant_bones_are_met_and_bones_keep_their_length():
+    time_s, xyz = moving()
+    found = posing.of_joints(time_s, xyz, BODY)
+    names = found.hierarchy.joints
+    assert "face" not in names
+    assert {"left_hip_to_knee", "left_hip_to_chest", "chest_to_head"} <= set(names)
+    own = [at for at, name in enumerate(names) if name in BODY.joints]
+    made = forward(found)[0]
+    joints = [BODY.joints.index(names[at]) for at in own]
+    np.testing.assert_allclose(made[:, own], xyz[:, joints], atol=3e-6)
+    np.testing.assert_allclose(np.linalg.det(found.parent_from_joint), 1, atol=1e-9)
+    longer = xyz.copy()
+    longer[3, BODY.joints.index("ankle")] += [0.0, 0.1, 0.2]
+    made = forward(posing.of_joints(time_s, longer, BODY))[0]
+    bones = np.linalg.norm(made - made[:, np.maximum(found.hierarchy.parents, 0)], axis=2)
+    assert np.ptp(bones, axis=0).max() < 1e-9
+
+
+def test_what_hangs_on_one_joint_turns_it_together():
+    time_s, xyz = moving()
+    found = posing.of_joints(time_s, xyz, BODY)
+    chest = found.hierarchy.joints.index("chest")
+    for name in ("chest_to_hand", "chest_to_head"):  # at a constant angle: one turn meets both
+        node = found.hierarchy.joints.index(name)
+        assert found.hierarchy.parents[node] == chest
+        np.testing.assert_allclose(found.parent_from_joint[:, node], np.tile(np.eye(3), (25, 1, 1)), atol=1e-5)
+
+
+def test_a_missing_end_goes_on_with_its_parent_and_a_missing_root_leaves_the_frame_out():
+    time_s, xyz = moving()
+    full = posing.of_joints(time_s, xyz, BODY)
+    xyz[4, BODY.joints.index("ankle")] = np.nan
+    xyz[7, BODY.joints.index("left_hip")] = np.nan
+    found = posing.of_joints(time_s, xyz, BODY)
+    assert found.time_s.tolist() == np.delete(time_s, 7).tolist()
+    knee = full.hierarchy.joints.index("knee")
+    np.testing.assert_allclose(found.parent_from_joint[4, knee], np.eye(3), atol=1e-9)
+    assert np.isfinite(forward(found)[0]).all()
+    nobody = posing.of_joints(time_s, np.full_like(xyz, np.nan), BODY)
+    assert len(nobody.time_s) == 0 and not nobody.hierarchy.offsets.any()

@@ -1,0 +1,161 @@
+"""GLB (glTF 2.0, binary): a tree of joints in motion, with sticks to be seen, for 3D programs.
+
+As the glTF 2.0 specification of the Khronos Group has nodes, meshes, animations and binary files.
+"""
+
+import json
+import struct
+from typing import Any
+
+import numpy as np
+import scipy
+from numpy.typing import ArrayLike, NDArray
+
+from courtside.records.devices.hierarchy import NO_PARENT, PosedHierarchy
+from courtside.study.errors import InputError, StrPath
+from courtside.study.execution.files import atomic
+
+MAGIC, VERSION = b"glTF", 2
+FLOAT, SHORT = 5126, 5123  # component types: float32, uint16
+VERTICES, INDICES = 34962, 34963  # targets of buffer views
+THICK = 0.12  # width of a stick, of its length
+THIN_M, WIDE_M = 0.01, 0.05  # least and largest width
+CONSTANT_M = 1e-6  # a joint that moves less in its parent needs no keys
+WAIST = 0.2  # where a stick is widest, of its length
+# A stick of length 1 along y, with six corners and eight faces.
+CORNERS = [(0, 0, 0), (0.5, WAIST, 0), (0, WAIST, 0.5), (-0.5, WAIST, 0), (0, WAIST, -0.5)]
+CORNERS += [(0, 1, 0)]
+FACES = [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 1), (5, 2, 1), (5, 3, 2), (5, 4, 3), (5, 1, 4)]
+TYPES = {1: "SCALAR", 3: "VEC3", 4: "VEC4"}
+
+
+def write(path: StrPath, posed: PosedHierarchy, name: str) -> None:
+    """Write a posed hierarchy, y up, as one animation called `name`.
+
+    Each joint is a node: its offset, rotations as keys at the frames' times, translations as keys
+    where they change (the root's). Times start at zero; `extras` of the animation has the first
+    (`start_s`). Between keys viewers interpolate, across missing frames too. Raises `InputError`
+    if a value is missing, or times do not increase; without frames there is the pose at rest alone.
+    """
+    _check(path, posed)
+    made: dict[str, Any] = {
+        "asset": {"version": "2.0", "generator": "courtside"},
+        "scene": 0,
+        "scenes": [{"nodes": np.flatnonzero(posed.hierarchy.parents == NO_PARENT).tolist()}],
+        "nodes": [],
+        "materials": [{"pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.8}}],
+        "accessors": [],
+        "bufferViews": [],
+    }
+    binary = bytearray()
+    _nodes(made, posed)
+    _sticks(made, binary, posed)
+    if len(posed.time_s):
+        _animation(made, binary, posed, name)
+    made["buffers"] = [{"byteLength": len(binary)}]
+    text = json.dumps(made, separators=(",", ":"), allow_nan=False).encode()
+    text += b" " * (-len(text) % 4)
+    chunks = [(b"JSON", text), (b"BIN\0", bytes(binary))]
+    size = 12 + sum(8 + len(content) for _, content in chunks)
+    with atomic(path) as temporary, temporary.open("wb") as stream:
+        stream.write(struct.pack("<4sII", MAGIC, VERSION, size))
+        for kind, content in chunks:
+            stream.write(struct.pack("<I4s", len(content), kind) + content)
+
+
+def _check(path: StrPath, posed: PosedHierarchy) -> None:
+    whole = np.isfinite(posed.translation).all() and np.isfinite(posed.parent_from_joint).all()
+    if not (whole and (np.diff(posed.time_s) > 0).all()):
+        raise InputError(
+            f"{path}: expected frames at increasing times with a place and a rotation of every "
+            f"joint, found {len(posed.time_s)} frames{'' if whole else ' with gaps'}; leave out "
+            "frames without"
+        )
+
+
+def _nodes(made: dict[str, Any], posed: PosedHierarchy) -> None:
+    """Add a node for each joint, in their order, as it is in the first frame."""
+    for joint, name in enumerate(posed.hierarchy.joints):
+        made["nodes"].append({"name": name, "translation": posed.hierarchy.offsets[joint].tolist()})
+    if len(posed.time_s):
+        turns = _quaternions(posed.parent_from_joint[:1])[0]
+        for node, place, turn in zip(made["nodes"], posed.translation[0], turns, strict=True):
+            node |= {"translation": place.tolist(), "rotation": turn.tolist()}
+    for joint, parent in enumerate(posed.hierarchy.parents.tolist()):
+        if parent != NO_PARENT:
+            made["nodes"][parent].setdefault("children", []).append(joint)
+
+
+def _sticks(made: dict[str, Any], binary: bytearray, posed: PosedHierarchy) -> None:
+    """Add a stick for each bone and each tip: nodes of one mesh, in the axes where it begins."""
+    shape, nodes = posed.hierarchy, made["nodes"]
+    bones = [
+        (int(parent), shape.offsets[joint])
+        for joint, parent in enumerate(shape.parents)
+        if parent != NO_PARENT
+    ]
+    bones += [(shape.joints.index(name), tip) for name, tip in shape.ends.items()]
+    bones = [(joint, bone) for joint, bone in bones if np.linalg.norm(bone) > CONSTANT_M]
+    if not bones:
+        return
+    # Every face has corners of its own, so that its normal is flat.
+    corners = np.array(CORNERS, dtype=float)[np.array(FACES)]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = np.repeat(normals / np.linalg.norm(normals, axis=1, keepdims=True), 3, axis=0)
+    places = _accessor(made, binary, corners.reshape(-1, 3), VERTICES)
+    attributes = {"POSITION": places, "NORMAL": _accessor(made, binary, normals, VERTICES)}
+    indices = _accessor(made, binary, np.arange(len(normals), dtype="<u2"), INDICES)
+    part = {"attributes": attributes, "indices": indices, "material": 0}
+    made["meshes"] = [{"name": "stick", "primitives": [part]}]
+    for joint, bone in bones:
+        length = float(np.linalg.norm(bone))
+        wide = float(np.clip(THICK * length, THIN_M, WIDE_M))
+        turn = scipy.spatial.transform.Rotation.align_vectors([bone / length], [[0.0, 1.0, 0.0]])
+        nodes[joint].setdefault("children", []).append(len(nodes))
+        stick = {"rotation": turn[0].as_quat().tolist(), "scale": [wide, length, wide]}
+        nodes.append({"name": f"{shape.joints[joint]} stick", "mesh": 0, **stick})
+
+
+def _animation(made: dict[str, Any], binary: bytearray, posed: PosedHierarchy, name: str) -> None:
+    """Add the keys of every joint."""
+    start_s = float(posed.time_s[0])
+    times = _accessor(made, binary, posed.time_s - start_s)
+    samplers: list[dict] = []
+    channels: list[dict] = []
+    turns = _quaternions(posed.parent_from_joint)
+    moving = np.abs(posed.translation - posed.translation[:1]).max(axis=(0, 2)) > CONSTANT_M
+    for joint in range(len(posed.hierarchy.joints)):
+        keys = {"rotation": turns[:, joint]}
+        keys |= {"translation": posed.translation[:, joint]} if moving[joint] else {}
+        for path, values in keys.items():
+            target = {"node": joint, "path": path}
+            channels.append({"sampler": len(samplers), "target": target})
+            samplers.append({"input": times, "output": _accessor(made, binary, values)})
+    about = {"name": name, "extras": {"start_s": start_s}}
+    made["animations"] = [{**about, "samplers": samplers, "channels": channels}]
+
+
+def _accessor(
+    made: dict[str, Any], binary: bytearray, values: ArrayLike, target: int | None = None
+) -> int:
+    """Add numbers (N,) or (N, K) to the buffer; return the index of their accessor."""
+    whole = np.asarray(values).dtype.kind == "u"
+    kept = np.asarray(values, "<u2" if whole else "<f4")
+    rows = kept.reshape(len(kept), -1)
+    view: dict[str, Any] = {"buffer": 0, "byteOffset": len(binary), "byteLength": kept.nbytes}
+    made["bufferViews"].append(view | ({"target": target} if target else {}))
+    binary += kept.tobytes() + b"\0" * (-kept.nbytes % 4)
+    bounds = {"min": rows.min(axis=0).tolist(), "max": rows.max(axis=0).tolist()}
+    kind = {"componentType": SHORT if whole else FLOAT, "type": TYPES[rows.shape[1]]}
+    at = {"bufferView": len(made["bufferViews"]) - 1, "count": len(rows)}
+    made["accessors"].append({**at, **kind, **bounds})
+    return len(made["accessors"]) - 1
+
+
+def _quaternions(rotations: NDArray) -> NDArray:
+    """Return (T, J, 3, 3) rotations as (T, J, 4), x y z w, without changes of sign over time."""
+    turns = scipy.spatial.transform.Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_quat()
+    turns = turns.reshape(*rotations.shape[:2], 4)
+    opposed = (turns[1:] * turns[:-1]).sum(axis=-1) < 0
+    turns[1:][np.cumsum(opposed, axis=0) % 2 == 1] *= -1
+    return turns

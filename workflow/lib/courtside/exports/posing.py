@@ -1,0 +1,137 @@
+"""Hierarchies in motion as animation programs want them: of joints, y up, even in time."""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy
+from courtside.records.keypoints.skeleton import Skeleton
+
+ROOTS = ("waist", "root", "pelvis", "mid_hip", "left_hip")  # the first that a skeleton has
+EVEN_S = 5e-5  # ASSUME: harmless; half of what `bvh.write` takes
+TINY_M = 1e-9  # a bone shorter than this has no direction
+FEEBLE = 1e-6  # weight of a parent's turn: decides only what directions of bones leave open
+Y_UP_FROM_Z = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
+
+
+def turned(posed: PosedHierarchy, rotation: NDArray = Y_UP_FROM_Z) -> PosedHierarchy:
+    """Return the same motion in other axes of the world; z up becomes y up by default."""
+    root = posed.hierarchy.parents == NO_PARENT
+    translation, turns = posed.translation.copy(), posed.parent_from_joint.copy()
+    translation[:, root] = translation[:, root] @ rotation.T
+    turns[:, root] = rotation @ turns[:, root]
+    return replace(posed, translation=translation, parent_from_joint=turns)
+
+
+def even(posed: PosedHierarchy) -> PosedHierarchy:
+    """Return the motion at even times, from the first frame to the last, for BVH.
+
+    The step is the median one. Frames that are missing or off these times are interpolated:
+    rotations along the shortest way, places linearly.
+    """
+    if len(posed.time_s) < 3:
+        return posed
+    known, step_s = posed.time_s, float(np.median(np.diff(posed.time_s)))
+    count = round((known[-1] - known[0]) / step_s) + 1
+    time_s = np.linspace(known[0], known[-1], count)
+    if count == len(known) and np.abs(time_s - known).max() <= EVEN_S:
+        return posed
+    turns = np.stack(
+        [
+            scipy.spatial.transform.Slerp(
+                known, scipy.spatial.transform.Rotation.from_matrix(joint)
+            )(time_s).as_matrix()
+            for joint in np.moveaxis(posed.parent_from_joint, 1, 0)
+        ],
+        axis=1,
+    )
+    places = scipy.interpolate.interp1d(known, posed.translation, axis=0)(time_s)
+    return replace(posed, time_s=time_s, translation=places, parent_from_joint=turns)
+
+
+class Node(NamedTuple):
+    """A node of the tree: at a joint, perhaps only to turn the bone from there to another."""
+
+    name: str
+    parent: int
+    joint: int
+    target: int  # its joint, or where the bone that it turns ends
+
+
+def of_joints(time_s: NDArray, xyz: NDArray, skeleton: Skeleton) -> PosedHierarchy:
+    """Return joints (T, J, 3) as a tree of bones with constant lengths, for sources without axes.
+
+    The tree follows the skeleton's bones from the hips; joints without a bone to them are left out.
+    A bone has its median length and points to the measured joint; where several hang on a joint, it
+    turns as they do together (Kabsch 1976), and each has a node of its own there (`hip_to_knee`).
+    Turns about a bone are not measured: they are its parent's. Where an end is missing, its bone
+    goes on with its parent. Frames without the root are left out. At rest it stands as in the frame
+    with most joints.
+    """
+    nodes = _tree(skeleton)
+    parents = np.array([node.parent for node in nodes])
+    at, target = (np.array([node[2 + part] for node in nodes]) for part in (0, 1))
+    known = np.isfinite(xyz[:, at[0]]).all(axis=1)
+    time_s, xyz = time_s[known], xyz[known]
+    above = np.maximum(parents, 0)
+    bones = xyz[:, target] - xyz[:, at[above]]
+    length = np.ma.masked_invalid(np.linalg.norm(bones, axis=2))
+    median = np.where(at == target, np.ma.median(length, axis=0).filled(0.0), 0.0)
+    pointing = bones / np.maximum(np.linalg.norm(bones, axis=2, keepdims=True), TINY_M)
+    best = _at_rest(np.nan_to_num(pointing), np.isfinite(xyz).all(axis=2).sum(axis=1))
+    pointing = np.nan_to_num(pointing)
+    names = tuple(node.name for node in nodes)
+    shape = Hierarchy(names, parents, median[:, None] * best)
+    turns = np.tile(np.eye(3), (len(xyz), len(nodes), 1, 1))
+    for node in range(len(nodes)):
+        ends = np.flatnonzero(parents == node)
+        together = np.einsum("tki,kj->tij", pointing[:, ends], best[ends])
+        turns[:, node] = _nearest(together + FEEBLE * turns[:, above[node]])
+    local = np.swapaxes(turns[:, above], 2, 3) @ turns
+    local[:, 0] = turns[:, 0]
+    places = np.repeat(shape.offsets[None], len(xyz), axis=0)
+    places[:, 0] = xyz[:, at[0]]
+    return PosedHierarchy(shape, time_s, places, local)
+
+
+def _at_rest(pointing: NDArray, n_joints: NDArray) -> NDArray:
+    """Return the directions (N, 3) of bones in the frame with most joints, else the first known."""
+    if not len(pointing):
+        return np.zeros(pointing.shape[1:])
+    best = pointing[n_joints.argmax()]
+    first = np.argmax(pointing.any(axis=2), axis=0)
+    return np.where(best.any(axis=1)[:, None], best, pointing[first, np.arange(len(best))])
+
+
+def _tree(skeleton: Skeleton) -> list[Node]:
+    """Return the tree over the skeleton's bones, the root first."""
+    root = next(name for name in ROOTS if name in skeleton.joints)
+    order, parents = [skeleton.index(root)], [NO_PARENT]
+    for place, joint in enumerate(order):  # grows while it is walked
+        for bone in skeleton.bone_indices():
+            if joint in bone:
+                other = bone[0] if bone[1] == joint else bone[1]
+                if other not in order:
+                    order.append(other)
+                    parents.append(place)
+    nodes: list[Node] = []
+    placed: list[int] = []
+    for joint, parent in zip(order, parents, strict=True):
+        above, name = placed[parent] if placed else NO_PARENT, skeleton.joints[joint]
+        if parents.count(parent) > 1:
+            there = order[parent]
+            nodes.append(Node(f"{skeleton.joints[there]}_to_{name}", above, there, joint))
+            above = len(nodes) - 1
+        placed.append(len(nodes))
+        nodes.append(Node(name, above, joint, joint))
+    return nodes
+
+
+def _nearest(matrices: NDArray) -> NDArray:
+    """Return the rotations (T, 3, 3) nearest to matrices."""
+    left, _, right = np.linalg.svd(matrices)
+    left[:, :, 2] *= np.sign(np.linalg.det(left @ right))[:, None]
+    return left @ right
