@@ -96,7 +96,9 @@ def test_what_hangs_on_one_joint_turns_it_together():
     for name in ("chest_to_hand", "chest_to_head"):  # at a constant angle: one turn meets both
         node = found.hierarchy.joints.index(name)
         assert found.hierarchy.parents[node] == chest
-        np.testing.assert_allclose(found.parent_from_joint[:, node], np.tile(np.eye(3), (25, 1, 1)), atol=1e-5)
+        np.testing.assert_allclose(
+            found.parent_from_joint[:, node], np.tile(np.eye(3), (25, 1, 1)), atol=1e-5
+        )
 
 
 def test_a_missing_end_goes_on_with_its_parent_and_a_missing_root_leaves_the_frame_out():

@@ -1,4 +1,4 @@
-"""Files for other programs: TRC, C3D, BVH, CSV, Pose2Sim and OpenSim, cameras, videos.
+"""Files for other programs: TRC, C3D, BVH, GLB, CSV, Pose2Sim and OpenSim, cameras, videos.
 
 trc, c3d, bvh, tidy: `write`: one person or body in that form (`tidy`: CSV); `trc.read`.
 device: `points`, `named`: what these need of an inertial suit.

@@ -26,6 +26,7 @@ WAIST = 0.2  # where a stick is widest, of its length
 CORNERS = [(0, 0, 0), (0.5, WAIST, 0), (0, WAIST, 0.5), (-0.5, WAIST, 0), (0, WAIST, -0.5)]
 CORNERS += [(0, 1, 0)]
 FACES = [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 1), (5, 2, 1), (5, 3, 2), (5, 4, 3), (5, 1, 4)]
+LOOK = {"baseColorFactor": [0.85, 0.4, 0.1, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.8}
 TYPES = {1: "SCALAR", 3: "VEC3", 4: "VEC4"}
 
 
@@ -43,7 +44,7 @@ def write(path: StrPath, posed: PosedHierarchy, name: str) -> None:
         "scene": 0,
         "scenes": [{"nodes": np.flatnonzero(posed.hierarchy.parents == NO_PARENT).tolist()}],
         "nodes": [],
-        "materials": [{"pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.8}}],
+        "materials": [{"pbrMetallicRoughness": dict(LOOK)}],
         "accessors": [],
         "bufferViews": [],
     }
