@@ -8,9 +8,8 @@ from courtside.calibration.court import joint_adjustment
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records import tie_points
 from courtside.calibration.records.support import Support
-from courtside.exports import study_table
 from courtside.pages.viewer import layers
-from courtside.records import footwork, tables
+from courtside.records import footwork, study_table, tables
 from courtside.records.cameras import frame_table, frame_times, shake_table
 from courtside.records.devices import device_motion
 from courtside.records.keypoints import body_motion, keypoints, people, sightings

@@ -2,9 +2,9 @@
 
 import pandas as pd
 
-from courtside.exports import study_table
 from courtside.figures.comparison import archive
 from courtside.figures.style import style
+from courtside.records import study_table
 from courtside.statistics import longitudinal
 from courtside.study.execution import log
 from courtside.study.execution.script import run

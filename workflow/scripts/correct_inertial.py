@@ -8,8 +8,9 @@ from dataclasses import replace
 from math import hypot
 
 from courtside.events import detect
-from courtside.exports import bvh, gltf
+from courtside.exports import bvh
 from courtside.exports import device as device_export
+from courtside.exports.trees import gltf
 from courtside.inertial import correction
 from courtside.records.devices import clocks as sync
 from courtside.records.devices import device_motion, events

@@ -1,6 +1,7 @@
 """Export the skeleton of an inertial suit: its motion -> TRC, C3D, CSV, BVH and GLB."""
 
-from courtside.exports import bvh, c3d, device, gltf, tidy, trc
+from courtside.exports import bvh, c3d, device, tidy, trc
+from courtside.exports.trees import gltf
 from courtside.records.devices import device_motion
 from courtside.records.keypoints import skeleton
 from courtside.study.execution.script import run

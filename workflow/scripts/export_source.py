@@ -1,6 +1,7 @@
 """Export the joints of a depth camera or a single video as a moving tree: motion -> BVH and GLB."""
 
-from courtside.exports import bvh, gltf, posing
+from courtside.exports import bvh
+from courtside.exports.trees import gltf, posing
 from courtside.records.devices import device_motion
 from courtside.records.keypoints import skeleton
 from courtside.study.execution.script import run

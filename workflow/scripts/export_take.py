@@ -1,6 +1,7 @@
 """Export one person of one take: 3D keypoints -> TRC, C3D, CSV, BVH and GLB."""
 
-from courtside.exports import bvh, c3d, gltf, posing, tidy, trc
+from courtside.exports import bvh, c3d, tidy, trc
+from courtside.exports.trees import gltf, posing
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution.script import run
 

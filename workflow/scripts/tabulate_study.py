@@ -2,8 +2,7 @@
 
 import pandas as pd
 
-from courtside.exports import study_table
-from courtside.records import tables
+from courtside.records import study_table, tables
 from courtside.study.execution import log
 from courtside.study.execution.script import run
 

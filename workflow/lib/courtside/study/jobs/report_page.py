@@ -39,6 +39,8 @@ TABLES = {
     ),
 }
 
+VERDICTS = "verdicts on takes and cameras, with pictures"
+
 
 class Wildcards(SimpleNamespace):
     """Wildcards of a figure, as captions and functions of parameters ask them."""
@@ -157,10 +159,7 @@ def _session(study: Study, session: Session) -> dict[str, Any]:
         "withheld": consent.left_out(session),
         "limits": {key: limits[key] for key in ("max_shift_px", "max_zoom_percent")},
         "files": {"quality": quality, **checked, **(model if mapped else {})},
-        "links": [
-            (_link(path), "verdicts on takes and cameras, with pictures")
-            for path in pages.quality_pages(session)
-        ],
+        "links": [(_link(path), VERDICTS) for path in pages.quality_pages(session)],
         "takes": [_take(study, session, take) for take in session.takes.values()],
     }
 

@@ -78,11 +78,11 @@ def of_joints(time_s: NDArray, xyz: NDArray, skeleton: Skeleton) -> PosedHierarc
     time_s, xyz = time_s[known], xyz[known]
     above = np.maximum(parents, 0)
     bones = xyz[:, target] - xyz[:, at[above]]
-    length = np.ma.masked_invalid(np.linalg.norm(bones, axis=2))
-    median = np.where(at == target, np.ma.median(length, axis=0).filled(0.0), 0.0)
-    pointing = bones / np.maximum(np.linalg.norm(bones, axis=2, keepdims=True), TINY_M)
-    best = _at_rest(np.nan_to_num(pointing), np.isfinite(xyz).all(axis=2).sum(axis=1))
-    pointing = np.nan_to_num(pointing)
+    length = np.linalg.norm(bones, axis=2)
+    median = np.ma.median(np.ma.masked_invalid(length), axis=0).filled(0.0)
+    median = np.where(at == target, median, 0.0)
+    pointing = np.nan_to_num(bones / np.maximum(length, TINY_M)[:, :, None])
+    best = _at_rest(pointing, np.isfinite(xyz).all(axis=2).sum(axis=1))
     names = tuple(node.name for node in nodes)
     shape = Hierarchy(names, parents, median[:, None] * best)
     turns = np.tile(np.eye(3), (len(xyz), len(nodes), 1, 1))

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from courtside.exports import posing
+from courtside.exports.trees import posing
 from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy, forward
 from courtside.records.keypoints.skeleton import Skeleton
 

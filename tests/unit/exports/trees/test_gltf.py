@@ -5,7 +5,7 @@ import pygltflib
 import pytest
 from scipy.spatial.transform import Rotation
 
-from courtside.exports import gltf
+from courtside.exports.trees import gltf
 from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy, forward
 from courtside.study.errors import InputError
 

@@ -5,8 +5,7 @@ import hashlib
 import pandas as pd
 import pytest
 
-from courtside.exports import study_table
-from courtside.records import tables
+from courtside.records import study_table, tables
 from courtside.study.errors import InputError
 from fixtures.study import report_made
 
