@@ -178,6 +178,8 @@ rule export_motion:
         motion_npz=of_job(takes.exported_motion),
     output:
         mot_path=paths.OPENSIM_MOTION,
+        bvh_path=paths.part(paths.MOTION_EXPORT, suffix="bvh"),
+        glb_path=paths.part(paths.MOTION_EXPORT, suffix="glb"),
     log:
         f"results/{{session}}/logs/export_motion/{paths.OF_FUSED}.{{person}}.log",
     params:

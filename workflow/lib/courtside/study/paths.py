@@ -90,6 +90,7 @@ SKELETAL_MOTION = TAKE + "/motion/" + FUSED + ".npz"
 JOINT_ANGLES = TAKE + "/motion/" + FUSED + ".angles.csv"
 POSE3D_IMPORTED = TAKE + "/pose3d/imported/trc/{model}.npz"
 EXPORT = TAKE + "/{stage}/" + FUSED + ".{person}.{suffix}"
+MOTION_EXPORT = TAKE + "/motion/" + FUSED + ".{person}.{suffix}"
 OPENSIM_MOTION = EXPORT.replace("{stage}", MODELLED).replace("{suffix}", "mot")
 POSE2SIM = TAKE + "/pose2sim/" + FUSED
 KINEMATICS = TAKE + "/kinematics/" + FUSED

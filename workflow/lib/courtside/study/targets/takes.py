@@ -55,6 +55,8 @@ def every_export(study: Study) -> list[str]:
             found += files(paths.EXPORT, session, take, **known, **kinds)
             if paths.MODELLED in there:
                 found += files(paths.OPENSIM_MOTION, session, take, **known)
+                kinds = {"suffix": ("bvh", "glb")}
+                found += files(paths.MOTION_EXPORT, session, take, **known, **kinds)
     return found
 
 
