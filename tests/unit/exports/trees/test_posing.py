@@ -1,8 +1,10 @@
 """Motion turned upright and made even: nothing else changes."""
 
+import bvhio
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from courtside.exports import bvh
 from courtside.exports.trees import posing
 from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy, forward
 from courtside.records.keypoints.skeleton import Skeleton
@@ -113,3 +115,17 @@ def test_a_missing_end_goes_on_with_its_parent_and_a_missing_root_leaves_the_fra
     assert np.isfinite(forward(found)[0]).all()
     nobody = posing.of_joints(time_s, np.full_like(xyz, np.nan), BODY)
     assert len(nobody.time_s) == 0 and not nobody.hierarchy.offsets.any()
+
+
+def test_bvhio_finds_the_joints_in_the_file(tmp_path):
+    time_s, xyz = moving()
+    posed = posing.turned(posing.of_joints(time_s, xyz, BODY))
+    bvh.write(tmp_path / "a.bvh", posing.even(posed))
+    root = bvhio.readAsHierarchy(str(tmp_path / "a.bvh"))
+    for frame in (0, 9, 24):
+        root.loadPose(frame)
+        found = {joint.Name: 0.01 * np.array(joint.PositionWorld) for joint, _, _ in root.layout()}
+        for name in posed.hierarchy.joints:
+            if name in BODY.joints:
+                x, y, z = xyz[frame, BODY.joints.index(name)]
+                np.testing.assert_allclose(found[name], [x, z, -y], atol=1e-5)
