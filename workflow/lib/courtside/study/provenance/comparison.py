@@ -39,8 +39,8 @@ TOLERANCES = (
 TABLED = {".pdf", ".png", ".c3d"}
 # Files that the processor's last digit changes as a whole, and whose numbers are also in files that
 # are compared: films and the pictures that they begin with, recordings (keypoints), COLMAP's
-# databases and models (ties, summaries), pages (tables).
-UNREAD = ("*.mp4", "virtual/*/backdrops.npz", "*.bag", "*.db", "*.bin", "*.html")
+# databases and models (ties, summaries), pages (tables), animations (BVH).
+UNREAD = ("*.mp4", "virtual/*/backdrops.npz", "*.bag", "*.db", "*.bin", "*.html", "*.glb")
 # These hold computing times, which differ from run to run; the report shows those figures.
 TIMED = ("*/figures/growth.*", "report.html")
 EQUAL, CLOSE, DIFFERENT, TIMES = "bit-equal", "within tolerance", "different", "holds run times"
