@@ -85,6 +85,7 @@ rule all:
         targets.takes.every_kinematics(STUDY),
         targets.takes.every_footwork(STUDY),
         targets.takes.every_verdict(STUDY),
+        targets.takes.evaluations(STUDY, "strokes"),
         targets.takes.every_comparison_of_views(STUDY),
         targets.together.every_players_figure(STUDY),
         targets.devices.every_device_export(STUDY),

