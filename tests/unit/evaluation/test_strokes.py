@@ -19,7 +19,7 @@ def perfect():
 
 
 def test_hits_are_read_in_order_and_their_windows_are_not(perfect):
-    _, truth, rows = perfect
+    _, truth, _ = perfect
     names = [name for name in truth.events["p1"] if name.endswith("_start")]
     assert len(strokes.hits(truth, "p1")) == len(names)
     assert strokes.hits(truth, "p2") == []

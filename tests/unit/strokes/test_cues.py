@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from courtside.strokes import cues, signals
 from courtside.evaluation import strokes as evaluation
+from courtside.strokes import cues, signals
 from fixtures.people import strokes_made
 
 

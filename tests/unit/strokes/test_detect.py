@@ -47,7 +47,9 @@ def test_a_stated_hand_is_taken_and_a_row_says_where_it_was():
     assert rows.height_m[~rows.overhead.astype(bool)].lt(1.4).all()
     trunk = signals.of_person(points, 0).trunk.place
     frame = np.argmin(abs(points.time_s - rows.time_s[0]))
-    np.testing.assert_allclose(rows.loc[0, ["x_m", "y_m"]].astype(float), trunk[frame, :2], atol=0.05)
+    np.testing.assert_allclose(
+        rows.loc[0, ["x_m", "y_m"]].astype(float), trunk[frame, :2], atol=0.05
+    )
     assert (rows.quality == 1).all()
 
 

@@ -33,7 +33,9 @@ def test_intervals_run_from_the_hit_to_the_landing_and_to_the_first_step_after_i
 
 
 def test_without_a_split_step_the_first_step_counts_from_the_hit():
-    (row,) = reaction.join(hits(("a", 1.0, 0.03)), events(("b", "step", 1.3, 1.5))).to_dict("records")
+    (row,) = reaction.join(hits(("a", 1.0, 0.03)), events(("b", "step", 1.3, 1.5))).to_dict(
+        "records"
+    )
     assert row["to_step_s"] == pytest.approx(0.3)
     assert np.isnan([row["to_split_s"], row["split_to_step_s"]]).all()
 

@@ -17,7 +17,7 @@ CUES = ("wrist_far", "wrist_fast", "wrist_slow", "trunk_pc1", "trunk_pc2")
 
 
 def times(found: Signals, hand: str, time_s: float) -> dict[str, float]:
-    """Return the time that each of `CUES` gives for the stroke near a time; NaN if it gives none."""
+    """Return the time that each of `CUES` gives for the stroke near a time; NaN if none."""
     arm = found.arms[hand]
     frame = int(np.argmin(np.abs(found.time_s - time_s)))
     half = max(3, round(WINDOW_S * found.rate_hz))

@@ -20,18 +20,19 @@ from courtside.strokes import signals
 from courtside.strokes.signals import HANDS, Arm, Signals
 from courtside.study.errors import StrPath
 
-# ASSUME: limits from the development takes (players-dev); no source is recorded.
-FAR = 0.66  # reach of a stroke, as a share of arm and trunk
+# ASSUME: limits from the development takes (players-dev); no source is recorded. Reaches and
+# heights are shares of arm and trunk.
+FAR = {"overhead": 0.85, "low": 0.63}  # reach of a stroke; ready at the base it is 0.5 to 0.6
 OVERHEAD = 0.2  # height of the wrist over the shoulders above which a stroke is overhead
 APART_S = 1.0  # between two strokes of one player
 TRAVEL_S, TRAVEL_M_S = 1.0, 0.8  # before a low stroke the trunk has moved this fast,
 STOPPED = 0.4  # and then moves slower than this share of it
+REACHED_S = (0.3, 0.1)  # before and after the trunk stops: where the median reach is far
 SWING_S, SWING_M_S = 0.3, 2.0  # around an overhead stroke the wrist moves this fast
-STOP_S = 0.5  # around the farthest wrist: where the trunk stops
 PEAK_S = 0.1  # around an extremum: what a parabola is fitted to
 # Of the extremum after the hit, and its standard deviation, seconds; from virtual strokes of the
-# development bodies (benchmarks/stroke_cues.py).
-LEAD_S = {"overhead": (-0.002, 0.013), "low": (0.103, 0.019)}
+# development bodies (benchmarks/strokes.py).
+LEAD_S = {"overhead": (-0.002, 0.016), "low": (0.102, 0.021)}
 COLUMNS = [
     "person", "time_s", "sigma_s", "hand", "hand_from", "overhead", "height_m", "x_m", "y_m",
     "speed_m_s", "quality",
@@ -50,54 +51,69 @@ class Stroke:
 
 
 def find(found: Signals, hand: str) -> list[Stroke]:
-    """Return the strokes that a hand plays, in order of time."""
-    arm, rate_hz = found.arms[hand], found.rate_hz
-    reach = np.nan_to_num(arm.reach)
-    peaks, _ = scipy.signal.find_peaks(reach, height=FAR, distance=max(1, round(APART_S * rate_hz)))
-    strokes: list[Stroke] = []
-    for at in peaks:
-        overhead = bool(arm.above[at] > OVERHEAD)
-        timed = _overhead(found, arm, at) if overhead else _low(found, arm, at)
-        if timed is None:
-            continue
-        time_s, sigma_s = timed
-        lead_s, spread_s = LEAD_S["overhead" if overhead else "low"]
-        time_s -= lead_s
-        frame = int(np.clip(round((time_s - found.time_s[0]) * rate_hz), 0, len(reach) - 1))
-        stroke = Stroke(time_s, float(np.hypot(sigma_s, spread_s)), frame, hand, overhead)
-        if not strokes or stroke.time_s - strokes[-1].time_s > APART_S:
-            strokes.append(stroke)
+    """Return the strokes that a hand plays, in order of time.
+
+    A low stroke close to an overhead one is its preparation or recovery.
+    """
+    arm = found.arms[hand]
+    strokes = _timed(found, hand, True, [_farthest(found, arm, at) for at in _swings(found, arm)])
+    for low in _timed(found, hand, False, [_stop(found, at) for at in _lunges(found, arm)]):
+        if all(abs(low.time_s - other.time_s) > APART_S for other in strokes):
+            strokes.append(low)
+    return sorted(strokes, key=lambda stroke: stroke.time_s)
+
+
+def _timed(
+    found: Signals, hand: str, overhead: bool, extrema: list[tuple[float, float] | None]
+) -> list[Stroke]:
+    lead_s, spread_s = LEAD_S["overhead" if overhead else "low"]
+    strokes = []
+    for time_s, sigma_s in filter(None, extrema):
+        hit_s = time_s - lead_s
+        frame = int(np.argmin(np.abs(found.time_s - hit_s)))
+        strokes.append(Stroke(hit_s, float(np.hypot(sigma_s, spread_s)), frame, hand, overhead))
     return strokes
 
 
-def _overhead(found: Signals, arm: Arm, at: int) -> tuple[float, float] | None:
-    """Return when the wrist is farthest from the waist and its sigma; None without a swing."""
-    if _fastest(arm.from_waist.speed, at, found.rate_hz, SWING_S, SWING_S) < SWING_M_S:
-        return None
-    return _extremum(found, -arm.reach * found.size_m, at, arm.from_waist.velocity_sigma[at], 1)
+def _swings(found: Signals, arm: Arm) -> list[int]:
+    """Return the frames at which a wrist over the head is farthest, in a swing."""
+    apart = max(1, round(APART_S * found.rate_hz))
+    high = np.where(arm.above > OVERHEAD, arm.reach, 0.0)
+    peaks, _ = scipy.signal.find_peaks(high, height=FAR["overhead"], distance=apart)
+    fastest = [_most(arm.from_waist.speed, at, found.rate_hz, SWING_S, SWING_S) for at in peaks]
+    return [int(at) for at, speed in zip(peaks, fastest, strict=True) if speed >= SWING_M_S]
 
 
-def _low(found: Signals, arm: Arm, at: int) -> tuple[float, float] | None:
-    """Return when the trunk stops while the wrist is far, and its sigma; None without a way."""
-    speed, rate_hz = found.trunk.speed, found.rate_hz
-    near = _around(at, round(STOP_S * rate_hz), round(STOP_S * rate_hz), len(speed))
-    near = near[(arm.reach[near] > FAR) & np.isfinite(speed[near])]
-    inner = near[(near > 0) & (near < len(speed) - 1)]
-    stops = [k for k in inner if speed[k] <= speed[k - 1] and speed[k] < speed[k + 1]]
-    if not stops:
-        return None
-    stop = min(stops, key=lambda k: speed[k])
-    fastest = _fastest(speed, stop, rate_hz, TRAVEL_S, 0.0)
-    if fastest < TRAVEL_M_S or speed[stop] > STOPPED * fastest:
-        return None
-    return _extremum(found, speed**2, stop, found.trunk.velocity_sigma[stop], 2)
+def _lunges(found: Signals, arm: Arm) -> list[int]:
+    """Return the frames at which the trunk stops after a way while the wrist is far."""
+    speed, rate_hz, chosen = found.trunk.speed, found.rate_hz, []
+    stops, _ = scipy.signal.find_peaks(-np.nan_to_num(speed, nan=np.inf))
+    before, after = (round(part_s * rate_hz) for part_s in REACHED_S)
+    for at in stops:
+        fastest = _most(speed, at, rate_hz, TRAVEL_S, 0.0)
+        near = arm.reach[_around(at, before, after, len(speed))]
+        known = near[np.isfinite(near)]
+        reached = np.median(known) if len(known) else 0.0
+        stopped = fastest >= TRAVEL_M_S and speed[at] <= STOPPED * fastest
+        if stopped and reached >= FAR["low"] and not arm.above[at] > OVERHEAD:
+            chosen.append(int(at))
+    return chosen
+
+
+def _farthest(found: Signals, arm: Arm, at: int) -> tuple[float, float] | None:
+    sigma_m_s = arm.from_waist.velocity_sigma[at]
+    return _extremum(found, -arm.reach * found.size_m, at, sigma_m_s, order=1)
+
+
+def _stop(found: Signals, at: int) -> tuple[float, float] | None:
+    return _extremum(found, found.trunk.speed**2, at, found.trunk.velocity_sigma[at], order=2)
 
 
 def _around(at: int, before: int, after: int, n_frames: int) -> NDArray:
     return np.arange(max(at - before, 0), min(at + after + 1, n_frames))
 
 
-def _fastest(speed: NDArray, at: int, rate_hz: float, before_s: float, after_s: float) -> float:
+def _most(speed: NDArray, at: int, rate_hz: float, before_s: float, after_s: float) -> float:
     near = speed[_around(at, round(before_s * rate_hz), round(after_s * rate_hz), len(speed))]
     return float(np.nanmax(near)) if np.isfinite(near).any() else 0.0
 
@@ -130,7 +146,9 @@ def playing_hand(found: Signals) -> str | None:
     The racket hand reaches the way that the player came. It is tested on all virtual players.
     """
     speed, rate_hz = found.trunk.speed, found.rate_hz
-    stops, _ = scipy.signal.find_peaks(-np.nan_to_num(speed, nan=9.0), distance=max(1, round(0.5 * rate_hz)))
+    stops, _ = scipy.signal.find_peaks(
+        -np.nan_to_num(speed, nan=9.0), distance=max(1, round(0.5 * rate_hz))
+    )
     ahead = dict.fromkeys(HANDS, 0.0)
     for stop in stops:
         before = _around(stop, round(0.5 * rate_hz), 0, len(speed))
@@ -185,6 +203,6 @@ def _row(found: Signals, stroke: Stroke) -> dict[str, object]:
         "height_m": arm.wrist.place[stroke.frame, 2],
         "x_m": x,
         "y_m": y,
-        "speed_m_s": _fastest(arm.wrist.speed, stroke.frame, rate_hz, SWING_S, SWING_S),
+        "speed_m_s": _most(arm.wrist.speed, stroke.frame, rate_hz, SWING_S, SWING_S),
         "quality": arm.measured[_around(stroke.frame, half, half, len(arm.measured))].mean(),
     }

@@ -52,4 +52,6 @@ def fit(path: NDArray, rate_hz: float, half_s: float) -> Fit:
     spread = np.einsum("tij,kj,tk->tik", inverse, rows, weights)[:, 1]
     sigma = np.sqrt(variance / path.shape[1] * (spread**2).sum(axis=1))
     found[known.sum(axis=1) < FEWEST] = np.nan
-    return Fit(found[:, 0], found[:, 1], found[:, 2], np.where(np.isnan(found[:, 0, 0]), np.nan, sigma))
+    return Fit(
+        found[:, 0], found[:, 1], found[:, 2], np.where(np.isnan(found[:, 0, 0]), np.nan, sigma)
+    )

@@ -1,6 +1,7 @@
 """What strokes are found in: both wrists against the waist, and the trunk, over time."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,8 +53,7 @@ def of_person(points: Keypoints3D, person: int) -> Signals:
         return xyz[:, names.index(name)]
 
     def length(*chain: str) -> float:
-        parts = zip(chain, chain[1:], strict=False)
-        return sum(_usual(joint(a) - joint(b)) for a, b in parts)
+        return sum(_usual(joint(a) - joint(b)) for a, b in pairwise(chain))
 
     waist = (joint("left_hip") + joint("right_hip")) / 2
     shoulders = (joint("left_shoulder") + joint("right_shoulder")) / 2

@@ -29,7 +29,9 @@ def draw(strokes: pd.DataFrame, points: Keypoints3D) -> Figure:
         own = strokes[strokes.person == person]
         _draw_person(axis, own, signals.of_person(points, at))
         hands = ", ".join(f"{hand} hand ({source})" for hand, source in _hands(own))
-        axis.set_title(f"{person}: {len(own)} strokes{', ' if hands else ''}{hands}", loc="left", pad=11)
+        axis.set_title(
+            f"{person}: {len(own)} strokes{', ' if hands else ''}{hands}", loc="left", pad=11
+        )
     rows[-1].set_xlabel("time (s)")
     handles, labels = rows[0].get_legend_handles_labels()
     named = dict(zip(labels, handles, strict=True))

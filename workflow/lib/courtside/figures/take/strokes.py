@@ -75,4 +75,6 @@ def _draw_lines(axis: Axes, part: pd.DataFrame, name: str, colour: str, person: 
     full = wide.count(axis=1) >= FEWEST
     if full.any():
         middle, reach = wide.mean(axis=1)[full], WITHIN_90 * wide.std(axis=1)[full]
-        axis.fill_between(wide.index[full], middle - reach, middle + reach, color=colour, alpha=0.15, lw=0)
+        axis.fill_between(
+            wide.index[full], middle - reach, middle + reach, color=colour, alpha=0.15, lw=0
+        )
