@@ -108,6 +108,7 @@ rule draw_footwork:
 rule draw_rally:
     input:
         strokes_csv=paths.STROKES,
+        events_csv=paths.FOOT_EVENTS,
         pose3d_npz=of_job(takes.measured),
     output:
         **figure("rally"),

@@ -248,8 +248,10 @@ rule find_contacts:
 rule find_strokes:
     input:
         pose3d_npz=of_job(takes.measured),
+        events_csv=paths.FOOT_EVENTS,
     output:
         strokes_csv=paths.STROKES,
+        reactions_csv=paths.REACTIONS,
     log:
         f"results/{{session}}/logs/find_strokes/{paths.OF_FUSED}.log",
     params:
