@@ -20,28 +20,36 @@ import pandas as pd
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.court import court
-from courtside.evaluation import strokes
-from courtside.records.keypoints import keypoints
+from courtside.evaluation import contacts, strokes
+from courtside.footwork import feet
+from courtside.kinematics import cutoffs
+from courtside.records.keypoints import keypoints, skeleton
 from courtside.records.truth import take_truth
-from courtside.strokes import cues, detect
+from courtside.strokes import cues, detect, reaction
 from courtside.strokes.signals import HANDS
 from virtualgym.body.skinned_body import JOINTS
 from virtualgym.session import take as virtual
 
 SESSIONS = ("players-a", "players-b", "repeats")
 LENDER = ("players-b", "footwork")  # whose errors of joints the new players get
+STEPPING = (LENDER, ("players-b", "shot"), ("players-a", "shot"))
 BODIES = ("m3", "f3", "f4", "m1")
 PARTS = ("shoulder", "elbow", "wrist", "hip")
 USED = [f"{side}_{part}" for side in HANDS for part in PARTS]
 RATE_HZ, SECONDS = 30.0, 14.0
 
 
+def made(results, session, take, what, suffix):
+    """Return a file that BlazePose heavy and all cameras made of a take."""
+    folder = Path(results, session, "takes", take, what)
+    (path,) = folder.glob(f"*/all-robust/blazepose-heavy.{suffix}")
+    return path
+
+
 def skeletons(results, session, take):
-    """Return the corrected skeletons of a take by BlazePose heavy, and the truth."""
-    found = sorted(Path(results, session, "takes", take, "pose3d_corrected").glob("*/all-robust/*"))
-    heavy = next(path for path in found if path.stem == "blazepose-heavy")
+    """Return the corrected skeletons of a take, and the truth."""
     truth = take_truth.read(Path(results, "virtual", session, "takes", take, "truth.npz"))
-    return keypoints.read_3d(heavy), truth
+    return keypoints.read_3d(made(results, session, take, "pose3d_corrected", "npz")), truth
 
 
 def filmed(results):
@@ -53,6 +61,27 @@ def filmed(results):
             rows = strokes.table(detect.table(points, {}), points, truth)
             parts.append(rows.assign(session=session, take=folder.name))
     return pd.concat(parts, ignore_index=True)
+
+
+def next_steps(results):
+    """Return errors of the intervals from a hit to the player's own next step, and sigmas, ms.
+
+    No virtual take shows two players in a rally: the join of strokes and feet is tried on one.
+    """
+    rows, shape = [], skeleton.read(ROOT / "config" / "skeletons" / "blazepose33.yaml")
+    for session, take in STEPPING:
+        points, truth = skeletons(results, session, take)
+        (person,) = map(str, points.person_id)
+        chosen, _ = cutoffs.read(made(results, session, take, "kinematics", "cutoffs.csv"))
+        events = feet.find(points, shape.by_group(chosen))[2]
+        joined = reaction.join(detect.table(points, {}).assign(person="opponent"), events)
+        sides = [contacts.true_contact(truth, person, side)[1]["end"] for side in HANDS]
+        left_s = np.sort(np.concatenate(sides))
+        for row in joined.dropna(subset="to_step_s").itertuples():
+            hit_s = min(strokes.hits(truth, person), key=lambda true_s: abs(true_s - row.hit_s))
+            true_s = left_s[left_s > hit_s][0] - hit_s
+            rows.append((1000 * (row.to_step_s - true_s), 1000 * row.to_step_sigma_s))
+    return np.array(rows)
 
 
 def joint_errors(results):
@@ -119,6 +148,12 @@ def main():
     for _, part in films.groupby("session"):
         said(part)
     said(films)
+    error, sigma = next_steps(given.results).T
+    within = (np.abs(error) <= 1.645 * sigma).sum()
+    print(
+        f"hit to the own next step: n = {len(error)}, median {np.median(np.abs(error)):.0f} ms, "
+        f"largest {np.abs(error).max():.0f} ms, {within} in their 90 % intervals"
+    )
     errors = joint_errors(given.results)
     seeds = range(given.first, given.first + given.seeds)
     new = pd.concat([played(given.results, errors, seed) for seed in seeds], ignore_index=True)
