@@ -20,7 +20,7 @@ import pandas as pd
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.court import court
-from courtside.evaluation import contacts, strokes
+from courtside.evaluation.movement import contacts, strokes
 from courtside.footwork import feet
 from courtside.kinematics import cutoffs
 from courtside.records.keypoints import keypoints, skeleton

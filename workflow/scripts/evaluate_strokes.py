@@ -1,6 +1,6 @@
 """Evaluate the strokes of a take against the true hits: strokes, skeletons, truth -> errors."""
 
-from courtside.evaluation import strokes
+from courtside.evaluation.movement import strokes
 from courtside.records import tables
 from courtside.records.keypoints import keypoints
 from courtside.records.truth import take_truth

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from courtside.evaluation import strokes as evaluation
+from courtside.evaluation.movement import strokes as evaluation
 from courtside.strokes import cues, signals
 from fixtures.people import strokes_made
 

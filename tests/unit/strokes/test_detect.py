@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from courtside.evaluation import strokes as evaluation
+from courtside.evaluation.movement import strokes as evaluation
 from courtside.strokes import detect, signals
 from courtside.study.errors import InputError
 from fixtures.people import strokes_made

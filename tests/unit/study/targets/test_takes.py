@@ -65,7 +65,13 @@ def test_figures_without_consent_to_pictures_show_nobody(study):
         for name in names
         for suffix in FORMATS
     ]
-    assert takes.every_figure(study) == figures
+    on_court = [
+        f"results/players-tiny/takes/{take}/figures/{name}.known18.all-robust.blazepose-full.{suffix}"
+        for take in ("shot", "rally")
+        for name in ("rally", "strokes")
+        for suffix in FORMATS
+    ]
+    assert takes.every_figure(study) == figures + on_court
     assert takes.every_figure(agreeing(study, "analysis")) == figures[3:]
 
 
@@ -122,6 +128,18 @@ def test_footwork_of_all_takes_and_its_errors_of_virtual_ones(study):
         f"{errors}/{take}/contacts/known18/{way}.csv" for take in virtual
     ]
     assert len(found) == 5
+
+
+def test_strokes_of_takes_on_a_court_with_errors_of_virtual_ones(study):
+    way, folder = "known18/all-robust/blazepose-full", "results/players-tiny"
+    assert takes.every_stroke(study) == [
+        path
+        for take in ("shot", "rally")
+        for path in (
+            f"{folder}/takes/{take}/strokes/{way}.csv",
+            f"{folder}/evaluation/takes/{take}/strokes/{way}.csv",
+        )
+    ]
 
 
 def test_sets_of_cameras_are_compared_in_real_takes(study):

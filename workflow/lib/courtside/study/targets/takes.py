@@ -122,6 +122,17 @@ def every_footwork(study: Study) -> list[str]:
     ]
 
 
+def every_stroke(study: Study) -> list[str]:
+    """Return the strokes of all takes on a court by the first network; errors of virtual ones."""
+    return [
+        path
+        for session, take in study.takes()
+        if session.court
+        for pattern in (paths.STROKES, *([paths.STROKE_ERRORS] * bool(session.virtual)))
+        for path in files(pattern, session, take, model=session.parameters["models"][:1])
+    ]
+
+
 def every_comparison_of_views(study: Study) -> list[str]:
     """Return how far sets of cameras are from all of them, in real takes."""
     return [
@@ -142,8 +153,8 @@ OF_A_TAKE = {  # kinds of errors: one table for each calibration and network
 def evaluations(study: Study, kind: str) -> list[str]:
     """Return the tables of one kind of error of all takes of virtual sessions.
 
-    Kinds: errors, angles, reliability (of stated errors), kinematics, strokes, clocks (of cameras
-    without a common one), gains (between fusions).
+    Kinds: errors, angles, reliability (of stated errors), kinematics, clocks (of cameras without a
+    common one), gains (between fusions).
     """
     found = []
     for session, take in ((session, take) for session, take in study.takes() if session.virtual):
@@ -153,9 +164,6 @@ def evaluations(study: Study, kind: str) -> list[str]:
             found += files(paths.CLOCK_ERRORS, session, take)
         elif kind == "kinematics":
             found += files(paths.MEASURE_ERRORS, session, take, fusion=session.fusions())
-        elif kind == "strokes" and session.court and take.cameras:
-            first = {"fusion": session.fusions()[:1], "model": session.parameters["models"][:1]}
-            found += files(paths.STROKE_ERRORS, session, take, **first)
         elif kind == "gains" and session.fusions("compared_fusions"):
             for way, model in product(session.take_calibrations(), session.parameters["models"]):
                 known = {"calibration": way, "model": model}

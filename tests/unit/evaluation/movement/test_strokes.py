@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from courtside.evaluation import strokes
+from courtside.evaluation.movement import strokes
 from courtside.strokes import detect
 from fixtures.people import strokes_made
 
