@@ -72,7 +72,7 @@ def test_figures_without_consent_to_pictures_show_nobody(study):
         for suffix in FORMATS
     ]
     assert takes.every_figure(study) == figures + on_court
-    assert takes.every_figure(agreeing(study, "analysis")) == figures[3:]
+    assert takes.every_figure(agreeing(study, "analysis")) == figures[3:] + on_court
 
 
 def unfilmed(study):
