@@ -21,7 +21,7 @@ KINDS = (
     ("calibrated cameras", "/calibration/", ("cameras.toml",)),
     ("measures of takes", "/kinematics/", (".summary.csv",)),
     ("footwork of takes", "/footwork/", (".summary.csv",)),
-    ("reactions of players", "/strokes/", (".reactions.csv",)),
+    ("strokes of players", "/strokes/", (".reactions.csv",)),
     ("tables of errors", "/evaluation/", (".csv",)),
 )
 
