@@ -82,3 +82,11 @@ def test_another_table_is_refused_in_one_line(tmp_path):
     path.write_text("person,time_s\np1,2\n")
     with pytest.raises(InputError, match=r"a table of strokes, found no column sigma_s"):
         detect.read(path)
+
+
+def test_at_a_slow_rate_the_times_are_known_worse():
+    points, _ = strokes_made.take(seed=1)
+    slow = strokes_made.record(points.time_s[::3], points.xyz[0, ::3])
+    fast, slow = (detect.table(each, {"p1": "right"}) for each in (points, slow))
+    assert len(slow) == len(fast)
+    assert slow.sigma_s.min() > 2 * fast.sigma_s.max()

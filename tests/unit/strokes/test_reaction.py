@@ -4,7 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from courtside.footwork import feet
 from courtside.strokes import reaction
+from fixtures.people import walking_feet
 
 COLUMNS = ["person", "event", "start_s", "start_sigma_s", "stop_s", "stop_sigma_s"]
 
@@ -46,6 +48,16 @@ def test_what_comes_after_the_next_stroke_or_too_late_is_no_reaction():
     assert rows.opponent.tolist() == ["a", "a"]
     assert rows.to_step_s.isna().all()
     assert rows.to_split_s.isna().all()
+
+
+def test_the_interval_from_a_simulated_hop_to_the_first_step_is_in_its_90_percent_interval():
+    points, _ = walking_feet.record(walking_feet.hop(), 3.0, seed=8)
+    found = feet.find(points, walking_feet.CUTOFFS)[2]
+    row = reaction.join(hits(("opponent", 0.7, 0.02)), found).iloc[0]
+    error_s = row.split_to_step_s - (1.6 - 1.0)
+    assert abs(error_s) < 0.04
+    assert abs(error_s) < 1.645 * row.split_to_step_sigma_s
+    assert row.to_step_s == pytest.approx(0.9, abs=0.03)
 
 
 def test_alone_nobody_reacts():

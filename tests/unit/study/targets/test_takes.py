@@ -130,7 +130,7 @@ def test_footwork_of_all_takes_and_its_errors_of_virtual_ones(study):
     assert len(found) == 5
 
 
-def test_strokes_of_takes_on_a_court_with_errors_of_virtual_ones(study):
+def test_strokes_of_takes_of_badminton_with_errors_of_virtual_ones(study):
     way, folder = "known18/all-robust/blazepose-full", "results/players-tiny"
     assert takes.every_stroke(study) == [
         path
@@ -140,6 +140,10 @@ def test_strokes_of_takes_on_a_court_with_errors_of_virtual_ones(study):
             f"{folder}/evaluation/takes/{take}/strokes/{way}.csv",
         )
     ]
+    session = replace(study.sessions["players-tiny"], court="tennis")
+    elsewhere = replace(study, sessions={**study.sessions, "players-tiny": session})
+    assert takes.every_stroke(elsewhere) == []
+    assert not [path for path in takes.every_figure(elsewhere) if "players-tiny" in path]
 
 
 def test_sets_of_cameras_are_compared_in_real_takes(study):

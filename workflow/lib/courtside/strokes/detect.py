@@ -33,6 +33,7 @@ PEAK_S = 0.1  # around an extremum: what a parabola is fitted to
 # Of the extremum after the hit, and its standard deviation, seconds; from virtual strokes of the
 # development bodies (benchmarks/strokes.py).
 LEAD_S = {"overhead": (-0.002, 0.016), "low": (0.102, 0.021)}
+SLOW_HZ = 15.0  # ASSUME: below this rate errors grow with the square of the frame interval
 COLUMNS = [
     "person", "time_s", "sigma_s", "hand", "hand_from", "overhead", "height_m", "x_m", "y_m",
     "speed_m_s", "quality",
@@ -67,11 +68,14 @@ def _timed(
     found: Signals, hand: str, overhead: bool, extrema: list[tuple[float, float] | None]
 ) -> list[Stroke]:
     lead_s, spread_s = LEAD_S["overhead" if overhead else "low"]
+    slower = max(1.0, SLOW_HZ / found.rate_hz) ** 2
     strokes = []
     for time_s, sigma_s in filter(None, extrema):
         hit_s = time_s - lead_s
         frame = int(np.argmin(np.abs(found.time_s - hit_s)))
-        strokes.append(Stroke(hit_s, float(np.hypot(sigma_s, spread_s)), frame, hand, overhead))
+        strokes.append(
+            Stroke(hit_s, slower * float(np.hypot(sigma_s, spread_s)), frame, hand, overhead)
+        )
     return strokes
 
 
