@@ -84,6 +84,7 @@ rule all:
         targets.takes.every_shake(STUDY),
         targets.takes.every_kinematics(STUDY),
         targets.takes.every_footwork(STUDY),
+        targets.takes.every_stroke(STUDY),
         targets.takes.every_verdict(STUDY),
         targets.takes.every_comparison_of_views(STUDY),
         targets.together.every_players_figure(STUDY),

@@ -36,6 +36,7 @@ LEVELS = {  # a room imports rooms of lower levels only
     "footwork": 5,
     "sfm": 5,
     "exports": 5,
+    "strokes": 5,
     "drafting": 5,
     "validation": 5,
     "pages": 5,

@@ -16,6 +16,7 @@ from courtside.records.keypoints import body_motion, keypoints, people, sighting
 from courtside.records.truth import session_truth as truth
 from courtside.records.truth import take_truth
 from courtside.sfm import grid
+from courtside.strokes import detect
 from fixtures.cameras import networks_made, scene
 from fixtures.people import found, walker
 from fixtures.people.bodies_made import body
@@ -160,6 +161,12 @@ def foot_events(folder):
     footwork.write_events(folder / "events.csv", table)
 
 
+def strokes(folder):
+    """Write strokes."""
+    rows = [("p1", 1.25, 0.02, "right", "found", True, 2.125, 1.5, -2.75, 5.5, 1.0)]
+    tables.write(folder / "strokes.csv", pd.DataFrame(rows, columns=detect.COLUMNS))
+
+
 def named(folder):
     """Write names of people as their page saves them."""
     head = ",".join([*sightings.COLUMNS, *sightings.BOUNDS])
@@ -201,4 +208,5 @@ FORMATS += [
     Format("steps-csv", 300, stances, footwork.read_steps),
     Format("foot-events-csv", 300, foot_events, footwork.read_events),
     Format("study-csv", 500, measured, study_table.read),
+    Format("strokes-csv", 300, strokes, detect.read),
 ]

@@ -53,7 +53,7 @@ PLACES = {
         f"*/evaluation/takes/*/{table}/*.csv": [f"{TAKES} | {table}", LABELS]
         for table in (
             *("errors", "gains", "clocks", "kinematics", "angles", "detection", "round_trip"),
-            "contacts",
+            *("contacts", "strokes"),
         )
     },
     "*/evaluation/racket.csv": [f"{TAKES} | evaluation/racket.csv", OF_CALIBRATION],
@@ -67,6 +67,8 @@ PLACES = {
     "*/takes/*/kinematics/*.cutoffs.csv": [": `.cutoffs.csv`:"],
     "*/takes/*/motion/*.angles.csv": ["Columns of the joint angles"],
     "*/takes/*/footwork/*.csv": [FOOTWORK],
+    "*/takes/*/strokes/*.reactions.csv": ["Columns of the reactions"],
+    "*/takes/*/strokes/*.csv": ["Columns of the strokes"],
     "*/takes/*/pose3d*/*.csv": [TIDY],
     "*/takes/*/quality.csv": ["Columns of the verdicts"],
     "figures/calibration.csv": [f"{TOGETHER} | calibration.csv", OF_CALIBRATION],
@@ -101,6 +103,8 @@ PLACES = {
     "*/figures/badminton_tab01.*": [f"{TAKES} | round_trip", LABELS],
     "*/figures/kinematics.*": [KINEMATICS],
     "*/figures/footwork.*": [FOOTWORK],
+    "*/figures/rally.*": [f"{FIGURES} | rally"],
+    "*/figures/strokes.*": [f"{FIGURES} | strokes"],
     "*/figures/shake.*": [f"{FIGURES} | shake", SHAKE],
     "*/figures/three_cameras.*": [f"{FIGURES} | three_cameras", f"{TAKES} | errors", LABELS],
     "*/figures/source_errors.*": [

@@ -5,8 +5,8 @@ Only this file and evaluation_calibration.smk read truth.
 Inputs: 2D and 3D keypoints, clocks, truth of takes.
 Outputs: results/{session}/evaluation/takes/, results/{session}/takes/{take}/table1/.
 Steps: evaluate_take, evaluate_reliability, evaluate_clocks, evaluate_kinematics, evaluate_angles,
-evaluate_contacts, evaluate_sources, evaluate_body_frames, evaluate_detection,
-evaluate_round_trip (table 1),
+evaluate_contacts, evaluate_strokes, evaluate_sources, evaluate_body_frames,
+evaluate_detection, evaluate_round_trip (table 1),
 evaluate_fusions (paired differences with intervals); of development sessions, asked for by name:
 evaluate_joint_offsets, evaluate_joint_errors, evaluate_skin_depths.
 """
@@ -94,6 +94,22 @@ rule evaluate_contacts:
         labels=of_job(lambda job: {**job.wildcards, "stage": job.stages()[-1]}),
     script:
         "../scripts/evaluate_contacts.py"
+
+
+rule evaluate_strokes:
+    input:
+        strokes_csv=paths.STROKES,
+        pose3d_npz=of_job(takes.measured),
+        truth_npz=paths.TRUE_TAKE,
+    output:
+        errors_csv=paths.STROKE_ERRORS,
+    log:
+        f"results/{{session}}/logs/evaluate_strokes/{paths.OF_FUSED}.log",
+    params:
+        code=code("evaluate_strokes.py"),
+        labels=lambda w: dict(w.items()),
+    script:
+        "../scripts/evaluate_strokes.py"
 
 
 rule evaluate_angles:

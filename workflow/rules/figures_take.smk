@@ -2,7 +2,7 @@
 
 Inputs: 2D and 3D keypoints, cameras, videos. Outputs: results/{session}/takes/{take}/figures/.
 Steps: draw_overlay, draw_skeletons, draw_reprojection, draw_visibility, draw_kinematics,
-draw_footwork, draw_shake.
+draw_footwork, draw_rally, draw_strokes, draw_shake.
 """
 
 
@@ -103,6 +103,35 @@ rule draw_footwork:
         code=code("draw_footwork.py"),
     script:
         "../scripts/draw_footwork.py"
+
+
+rule draw_rally:
+    input:
+        strokes_csv=paths.STROKES,
+        events_csv=paths.FOOT_EVENTS,
+        pose3d_npz=of_job(takes.measured),
+    output:
+        **figure("rally"),
+    log:
+        f"results/{{session}}/logs/draw_rally/{paths.OF_FUSED}.log",
+    params:
+        code=code("draw_rally.py"),
+    script:
+        "../scripts/draw_rally.py"
+
+
+rule draw_strokes:
+    input:
+        strokes_csv=paths.STROKES,
+        pose3d_npz=of_job(takes.measured),
+    output:
+        **figure("strokes"),
+    log:
+        f"results/{{session}}/logs/draw_strokes/{paths.OF_FUSED}.log",
+    params:
+        code=code("draw_strokes.py"),
+    script:
+        "../scripts/draw_strokes.py"
 
 
 rule draw_shake:

@@ -2,11 +2,11 @@
 
 Inputs: 2D keypoints, shake, cameras. Outputs: results/{session}/takes/{take}/ pose2d_steadied, sync,
 people, pose3d, pose3d_filtered, pose3d_corrected, pose3d_ik, motion, kinematics,
-footwork, quality.csv.
+footwork, strokes, quality.csv.
 Steps: steady_keypoints (of a take whose cameras shake), synchronise_cameras, associate_people
 (everybody), name_people (the subjects among them), triangulate (raw, always kept), filter_motion,
 correct_joints, fit_skeleton, export_take, export_motion, measure_kinematics, find_contacts,
-judge_take.
+find_strokes, judge_take.
 """
 
 
@@ -248,6 +248,22 @@ rule find_contacts:
         code=code("find_contacts.py"),
     script:
         "../scripts/find_contacts.py"
+
+
+rule find_strokes:
+    input:
+        pose3d_npz=of_job(takes.measured),
+        events_csv=paths.FOOT_EVENTS,
+    output:
+        strokes_csv=paths.STROKES,
+        reactions_csv=paths.REACTIONS,
+    log:
+        f"results/{{session}}/logs/find_strokes/{paths.OF_FUSED}.log",
+    params:
+        code=code("find_strokes.py"),
+        hand_of=of_job(takes.hands),
+    script:
+        "../scripts/find_strokes.py"
 
 
 # A take that failed is judged in each run: none ends as if nothing was wrong.

@@ -10,7 +10,7 @@ from courtside.pages.report.warnings import DOUBT, GOOD, LOOK, Warned
 from fixtures.study.report_made import ROGUE
 
 FACTS = {"persons": {}, "left_out": {}, "seconds": None, "devices": [], "true_paths": []}
-FACTS |= {"footwork": {}}
+FACTS |= {"footwork": {}, "strokes": {}}
 
 
 @pytest.mark.parametrize(
@@ -77,6 +77,14 @@ def test_a_take_says_what_the_feet_did():
     assert "0.432 &plusmn; 0.008 s" in html
     assert "swings" not in html
     assert html.count("landings") == 1
+
+
+def test_strokes_are_counted_with_their_hand_where_there_are_any():
+    hits = [{"person": "p1", "hand": "left", "overhead": over} for over in (True, False, True)]
+    facts = FACTS | {"persons": {"p1": {}, "p2": {}}, "strokes": {"p1": hits}}
+    html = coach.take({"id": "t", "name": "t", "links": []}, facts, [])
+    assert "strokes <b>3</b> (left hand; 2 overhead)" in html
+    assert html.count("strokes") == 1
 
 
 def test_a_simulated_take_compares_the_distance_with_the_truth():

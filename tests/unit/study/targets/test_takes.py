@@ -66,8 +66,14 @@ def test_figures_without_consent_to_pictures_show_nobody(study):
         for name in names
         for suffix in FORMATS
     ]
-    assert takes.every_figure(study) == figures
-    assert takes.every_figure(agreeing(study, "analysis")) == figures[3:]
+    on_court = [
+        f"results/players-tiny/takes/{take}/figures/{name}.known18.all-robust.blazepose-full.{suffix}"
+        for take in ("shot", "rally")
+        for name in ("rally", "strokes")
+        for suffix in FORMATS
+    ]
+    assert takes.every_figure(study) == figures + on_court
+    assert takes.every_figure(agreeing(study, "analysis")) == figures[3:] + on_court
 
 
 def unfilmed(study):
@@ -123,6 +129,22 @@ def test_footwork_of_all_takes_and_its_errors_of_virtual_ones(study):
         f"{errors}/{take}/contacts/known18/{way}.csv" for take in virtual
     ]
     assert len(found) == 5
+
+
+def test_strokes_of_takes_of_badminton_with_errors_of_virtual_ones(study):
+    way, folder = "known18/all-robust/blazepose-full", "results/players-tiny"
+    assert takes.every_stroke(study) == [
+        path
+        for take in ("shot", "rally")
+        for path in (
+            f"{folder}/takes/{take}/strokes/{way}.csv",
+            f"{folder}/evaluation/takes/{take}/strokes/{way}.csv",
+        )
+    ]
+    session = replace(study.sessions["players-tiny"], court="tennis")
+    elsewhere = replace(study, sessions={**study.sessions, "players-tiny": session})
+    assert takes.every_stroke(elsewhere) == []
+    assert not [path for path in takes.every_figure(elsewhere) if "players-tiny" in path]
 
 
 def test_sets_of_cameras_are_compared_in_real_takes(study):

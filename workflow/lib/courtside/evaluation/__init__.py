@@ -6,7 +6,7 @@ reliability: `counts`, `pooled`: how often ellipsoids hold, and how well outlier
 error_fit: `joints_of`: what the model of joint errors is fitted on
 detection: `evaluate`, `against`, `torso_px`: errors of a network's 2D joints in the pictures
 kinematics: `table`, `angles`: errors of paths and speeds, of joint angles
-movement: contacts of feet
+movement: contacts of feet, strokes
 sources: `errors`, `table`, `split`: errors of devices and cameras, and their parts
 round_trip: `table`, `distance_after`: the paper's table 1
 marker_system: `fit`, `table`: joints against an optical marker system

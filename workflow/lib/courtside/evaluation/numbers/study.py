@@ -44,7 +44,7 @@ STATED = (
     *("file-evidence", "file-mended", "networks", "offset-cameras", "persons-found", "batches"),
     *("file-faults", "refined-people", "mapping-checks", "click-model", "click-alarms", "worlds"),
     *("halls", "halls-strengths"),
-    *("body-model", "body-model-hall", "contacts"),
+    *("body-model", "body-model-hall", "contacts", "strokes", "stroke-cues"),
     *("speed", "costs", "stages", "faults", "trust"),
 )
 

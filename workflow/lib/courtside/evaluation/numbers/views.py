@@ -391,6 +391,29 @@ VIEWS = {
             "with": "{frames.command}",
         },
     ),
+    "strokes": View(
+        "strokes",
+        {
+            "takes": "{row}",
+            "hits": "{hits}",
+            "found (>= 95 %)": "{found}",
+            "false (<= 5 %)": "{false}",
+            "error of the time in frames, median (<= 1) / 95 %": "{median} / {p95}",
+            "in 90 % intervals (80 to 97 %)": "{held}",
+            "by": "{hits.origin}",
+            "with": "{hits.command}",
+        },
+    ),
+    "stroke-cues": View(
+        "stroke-cues",
+        {
+            "extremum nearest to the stroke, less the true hit, in frames": "{row}",
+            "overhead: median, sd (within one frame)": "{overhead}",
+            "low: median, sd (within one frame)": "{low}",
+            "by": "{low.origin}",
+            "with": "{low.command}",
+        },
+    ),
     "refined-people": View(
         "refined-people",
         {

@@ -66,10 +66,18 @@ def _person(person: str, facts: dict) -> dict:
     if facts["left_out"].get(person):
         lost, total, _ = facts["left_out"][person]
         phrases.append((f"from {total - lost} of {total} frames", "", ""))
+    phrases += _strokes(facts["strokes"].get(person, []))
     phrases += _steps(facts["footwork"].get(person, {}))
     own = [row for row in facts["true_paths"] if (row["person"], row["point"]) == (person, "neck")]
     off = [value for row in own if not math.isnan(value := row["distance_error_percent"])]
     return {"name": person, "phrases": phrases, "off": off[:1], "angles": _angles(measures)}
+
+
+def _strokes(rows: list[dict]) -> list[tuple]:
+    """Return a phrase on the strokes; nothing of a take without one."""
+    over = sum(bool(row["overhead"]) for row in rows)
+    also = f" ({rows[0]['hand']} hand; {over} overhead)" if rows else ""
+    return [("strokes", f"{len(rows)}", also)] if rows else []
 
 
 def _steps(measures: dict) -> list[tuple]:

@@ -24,15 +24,16 @@ def of_take(files: dict) -> dict:
     """Read the facts of a take.
 
     `persons`: {person: {measure: (value, half of the 90 % interval, unit, whether the error of the
-    calibration is known)}}; `footwork` likewise; `left_out`: {person: (frames without a neck,
-    frames, {reason: frames})}; `seconds`; `joints` and `cameras` as `of_skeleton` returns them;
-    `clocks`: {camera: Clock}; `shake`: lines; `movement`, `devices`, `truth`, `true_paths` and
-    `quality`: rows. Empty without a file. `InputError` if a file is missing or has another content.
+    calibration is known)}}; `footwork` likewise; `strokes`: {person: rows}; `left_out`: {person:
+    (frames without a neck, frames, {reason: frames})}; `seconds`; `joints` and `cameras` as
+    `of_skeleton` returns them; `clocks`: {camera: Clock}; `shake`: lines; `movement`, `devices`,
+    `truth`, `true_paths` and `quality`: rows. Empty without a file. `InputError` if a file is
+    missing or has another content.
 
-    `files` are paths by `summary` and `frames` (kinematics), `footwork`, `pose3d`, `sync`,
-    `movement` (a list), `shake` (text), `checks` (clocks of devices), `errors` and `kinematics`
-    (against the truth), and by `quality` the `file` of verdicts and the `way` in which the take was
-    measured; each may be left out.
+    `files` are paths by `summary` and `frames` (kinematics), `footwork`, `strokes`, `pose3d`,
+    `sync`, `movement` (a list), `shake` (text), `checks` (clocks of devices), `errors` and
+    `kinematics` (against the truth), and by `quality` the `file` of verdicts and the `way` in which
+    the take was measured; each may be left out.
     """
     facts: dict = {"persons": {}, "left_out": {}, "seconds": None, "joints": {}, "cameras": {}}
     if files.get("summary"):
@@ -42,6 +43,10 @@ def of_take(files: dict) -> dict:
         facts["seconds"] = float(np.ptp(frames["time_s"])) if len(frames) else None
     steps = _table(files["footwork"], FOOTWORK) if files.get("footwork") else None
     facts["footwork"] = {} if steps is None else _measures(steps.assign(sigma_camera=np.nan))
+    hits = _rows(files, "strokes", ("person", "hand", "overhead"))
+    facts["strokes"] = {str(row["person"]): [] for row in hits}
+    for row in hits:
+        facts["strokes"][str(row["person"])].append(row)
     if files.get("pose3d"):
         facts |= of_skeleton(keypoints.read_3d(files["pose3d"]))
     facts["clocks"] = clocks.read(files["sync"])[1] if files.get("sync") else {}

@@ -18,6 +18,8 @@ TITLES = {
     "visibility": "Confidence, and cameras per joint",
     "kinematics": "Paths, speeds, angles",
     "footwork": "Footwork: where and when the feet stood",
+    "rally": "Rally: strokes and steps over time",
+    "strokes": "Strokes laid over one another",
     "shake": "Camera shake",
     "three_cameras": "Two, three and four cameras against the truth",
     "error_map": "Expected error over the court",

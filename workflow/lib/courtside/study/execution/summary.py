@@ -21,6 +21,7 @@ KINDS = (
     ("calibrated cameras", "/calibration/", ("cameras.toml",)),
     ("measures of takes", "/kinematics/", (".summary.csv",)),
     ("footwork of takes", "/footwork/", (".summary.csv",)),
+    ("strokes of players", "/strokes/", (".reactions.csv",)),
     ("tables of errors", "/evaluation/", (".csv",)),
 )
 

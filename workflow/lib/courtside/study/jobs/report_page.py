@@ -185,6 +185,7 @@ def _take(study: Study, session: Session, take: Take) -> dict[str, Any]:
         named = _measured(session, take, known)
         links = [(named["summary"], "summary (CSV)"), (named["frames"], "frames (CSV)")]
         links.append((paths.STEPS.format(**known), "steps (CSV)"))
+        links += [(named["strokes"], "strokes (CSV)")] if takes.badminton(session) else []
     if take.devices:
         named["checks"] = paths.DEVICE_CHECKS.format(**known)
     links += [(path, "3D viewer") for path in pages.viewers(session, take)]
@@ -208,6 +209,7 @@ def _measured(session: Session, take: Take, known: dict[str, str]) -> dict[str, 
         "sync": paths.CAMERA_CLOCKS,
     }
     patterns |= {"shake": paths.SHAKE_TEXT} if take.steady else {}
+    patterns |= {"strokes": paths.STROKES} if takes.badminton(session) else {}
     named: dict[str, Any] = {name: pattern.format(**known) for name, pattern in patterns.items()}
     named["movement"] = takes.checks(session, take)
     way = {key: known[key] for key in verdicts.WAY}

@@ -84,6 +84,11 @@ def sexes(job: Job) -> dict[str, str | None]:
     return {name: known[name].sex if known[name].sex in ("m", "f") else None for name in people}
 
 
+def hands(job: Job) -> dict[str, str | None]:
+    """Return {person: playing hand} of a take; None unless stated."""
+    return {name: job.session.subjects[name].hand for name in job.take.subjects}
+
+
 def known_of_network(job: Job, pattern: str) -> Path | list:
     """Return a file of `config/` on a network, where there is one of it."""
     path = job.study.folder / pattern.format(model=job["model"])

@@ -9,6 +9,8 @@ from courtside.study.configuration.sessions import Session, Study, Take
 from courtside.study.methods import IMPORTED
 
 # Figures that show persons in pictures.
+# Figures of takes of badminton: elsewhere, throws and headers look like strokes.
+OF_STROKES = ("rally", "strokes")
 PICTURED = ("overlay", "badminton_fig09", "badminton_fig10", "badminton_fig11")
 
 
@@ -83,8 +85,10 @@ def every_figure(study: Study) -> list[str]:
 def shown(session: Session, take: Take, figures: Iterable[str]) -> list[str]:
     """Return the figures of a take that show nobody who has not agreed to pictures.
 
-    A take without videos has none with pictures.
+    A take without videos has none with pictures, one that is not on a badminton court none of
+    strokes.
     """
+    figures = [name for name in figures if badminton(session) or name not in OF_STROKES]
     refused = consent.refusing(session, take, "pictures") or not take.videos
     return [name for name in figures if not refused or name not in PICTURED]
 
@@ -119,6 +123,22 @@ def every_footwork(study: Study) -> list[str]:
         for session, take in study.takes()
         for pattern in (paths.FOOTWORK_MEASURES, *([paths.CONTACT_ERRORS] * bool(session.virtual)))
         for path in files(pattern, session, take)
+    ]
+
+
+def badminton(session: Session) -> bool:
+    """Return whether a session is on a badminton court, so that strokes are looked for."""
+    return (session.court or "").startswith("badminton")
+
+
+def every_stroke(study: Study) -> list[str]:
+    """Return the strokes of all takes of badminton by the first network; errors of virtual ones."""
+    return [
+        path
+        for session, take in study.takes()
+        if badminton(session)
+        for pattern in (paths.STROKES, *([paths.STROKE_ERRORS] * bool(session.virtual)))
+        for path in files(pattern, session, take, model=session.parameters["models"][:1])
     ]
 
 

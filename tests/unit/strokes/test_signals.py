@@ -1,0 +1,36 @@
+"""Signals: lengths of the body, and what a still arm and a moving trunk give."""
+
+import numpy as np
+import pytest
+
+from courtside.strokes import signals
+from fixtures.people import strokes_made
+
+
+def carried(speed_m_s):
+    """Return a person whose joints all keep their places about a hip that moves along x."""
+    time_s = np.arange(45) / 30
+    places = {"shoulder": 1.4, "elbow": 1.1, "wrist": 0.85, "hip": 0.9, "knee": 0.5, "ankle": 0.1}
+    xyz = np.array([[0, 0, places[name.split("_")[1]]] for name in strokes_made.JOINTS])
+    return strokes_made.record(time_s, xyz + np.outer(speed_m_s * time_s, [1, 0, 0])[:, None])
+
+
+def test_lengths_are_shares_of_arm_and_trunk():
+    found = signals.of_person(carried(2.0), 0)
+    assert found.size_m == pytest.approx(0.55 + 0.5)
+    arm = found.arms["right"]
+    np.testing.assert_allclose(arm.reach * found.size_m, 0.05, atol=1e-6)
+    np.testing.assert_allclose(arm.above * found.size_m, -0.55, atol=1e-6)
+    np.testing.assert_allclose(arm.wrist.speed, 2.0, atol=1e-5)
+    np.testing.assert_allclose(arm.from_waist.speed, 0.0, atol=1e-5)
+    np.testing.assert_allclose(found.trunk.speed, 2.0, atol=1e-5)
+    assert found.rate_hz == pytest.approx(30)
+
+
+def test_a_wrist_that_was_not_seen_is_not_measured():
+    points = carried(1.0)
+    at = strokes_made.JOINTS.index("left_wrist")
+    points.reason[0, 3:6, at] = 1
+    measured = signals.of_person(points, 0).arms["left"].measured
+    assert not measured[3:6].any()
+    assert measured.sum() == 42

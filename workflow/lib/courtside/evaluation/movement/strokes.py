@@ -1,0 +1,79 @@
+"""Errors of a simulated take's strokes against the true hits, and of each hypothesis by itself."""
+
+import numpy as np
+import pandas as pd
+
+from courtside.calibration.point_covariance import WITHIN_90
+from courtside.records.keypoints.keypoints import Keypoints3D
+from courtside.records.truth.take_truth import TakeTruth
+from courtside.strokes import cues, signals
+
+SAME_S = 0.25  # a stroke this near to a hit is that hit
+CUT_S = 0.25  # hits and strokes nearer to an end of the take do not count
+COLUMNS = [
+    "person", "result", "true_s", "time_s", "error_ms", "sigma_ms", "within_90_percent", "hand",
+    "overhead", *(f"{cue}_ms" for cue in cues.CUES),
+]  # fmt: skip
+
+
+def table(strokes: pd.DataFrame, points: Keypoints3D, truth: TakeTruth) -> pd.DataFrame:
+    """Compare strokes with the true hits, person by person, in columns `COLUMNS`.
+
+    `result` is `found`, `missed`, `false`, or `cut` where the take begins or ends too near.
+    `points` are the skeletons that the strokes were found in: the hypotheses see the same.
+    """
+    rows, ends = [], points.time_s[[0, -1]] + (CUT_S, -CUT_S)
+    for at, person in enumerate(map(str, points.person_id)):
+        found, own = signals.of_person(points, at), strokes[strokes.person == person]
+        left = own.index.tolist()
+        for true_s in hits(truth, person):
+            near = [k for k in left if abs(own.time_s[k] - true_s) <= SAME_S]
+            row = {"person": person, "true_s": true_s, "result": "missed"}
+            if near:
+                best = min(near, key=lambda k: abs(own.time_s[k] - true_s))
+                left.remove(best)
+                row |= {"result": "found", **_errors(own.loc[best], true_s, found)}
+            rows.append(row if ends[0] < true_s < ends[1] else {**row, "result": "cut"})
+        for k in left:
+            result = "false" if ends[0] < own.time_s[k] < ends[1] else "cut"
+            rows.append({"person": person, "result": result, **_words(own.loc[k])})
+    return pd.DataFrame(rows, columns=COLUMNS)
+
+
+def hits(truth: TakeTruth, person: str) -> list[float]:
+    """Return the true times of a person's hits, s, in order."""
+    events = truth.events.get(person, {})
+    names = [name for name in events if name == "hit" or name.removeprefix("hit_").isdigit()]
+    return sorted(events[name] for name in names)
+
+
+def _words(stroke: pd.Series) -> dict[str, object]:
+    return {key: stroke[key] for key in ("time_s", "hand", "overhead")}
+
+
+def _errors(stroke: pd.Series, true_s: float, found: signals.Signals) -> dict[str, object]:
+    error_s = stroke.time_s - true_s
+    said = cues.times(found, stroke.hand, stroke.time_s)
+    return {
+        **_words(stroke),
+        "error_ms": 1000 * error_s,
+        "sigma_ms": 1000 * stroke.sigma_s,
+        "within_90_percent": bool(abs(error_s) <= WITHIN_90 * stroke.sigma_s),
+        **{f"{cue}_ms": 1000 * (time_s - true_s) for cue, time_s in said.items()},
+    }
+
+
+def summary(rows: pd.DataFrame, rate_hz: float) -> dict[str, float]:
+    """Return counts and errors of rows of `table`: errors in frames of `rate_hz`, shares in %."""
+    count = rows.result.value_counts()
+    found = rows[rows.result == "found"]
+    n_hits = len(found) + count.get("missed", 0)
+    frames = found.error_ms.abs() * rate_hz / 1000
+    return {
+        "hits": n_hits,
+        "found_percent": 100 * len(found) / n_hits if n_hits else np.nan,
+        "false": int(count.get("false", 0)),
+        "median_frames": frames.median(),
+        "p95_frames": frames.quantile(0.95),
+        "within_90_percent": 100 * found.within_90_percent.astype(float).mean(),
+    }

@@ -1,0 +1,80 @@
+"""Strokes laid over one another in phase: wrist and trunk around the time of the stroke."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from courtside.calibration.point_covariance import WITHIN_90
+from courtside.figures.style import style
+from courtside.records.keypoints.keypoints import Keypoints3D
+from courtside.strokes import signals
+
+BEFORE_S, AFTER_S, STEP_S = 0.8, 0.6, 0.02
+FEWEST = 3  # strokes of a band
+HEIGHT_MM = 130
+KINDS = {True: "overhead strokes", False: "low strokes"}
+LINES = {
+    "reach_m": "wrist from waist (m)",
+    "wrist_m_s": "wrist (m/s)",
+    "trunk_m_s": "trunk (m/s)",
+}
+
+
+def table(strokes: pd.DataFrame, points: Keypoints3D) -> pd.DataFrame:
+    """Return each stroke's lines: `person`, `stroke` from 1, `overhead`, `phase_s`, `LINES`."""
+    phase = np.arange(-BEFORE_S, AFTER_S + STEP_S / 2, STEP_S)
+    parts = []
+    for at, person in enumerate(map(str, points.person_id)):
+        own = strokes[strokes.person == person]
+        if not len(own):
+            continue
+        found = signals.of_person(points, at)
+        for number, stroke in enumerate(own.itertuples(), 1):
+            arm = found.arms[stroke.hand]
+            lines = (arm.reach * found.size_m, arm.wrist.speed, found.trunk.speed)
+            values = {
+                name: np.interp(stroke.time_s + phase, found.time_s, line, np.nan, np.nan)
+                for name, line in zip(LINES, lines, strict=True)
+            }
+            known = {"person": person, "stroke": number, "overhead": bool(stroke.overhead)}
+            parts.append(pd.DataFrame({**known, "phase_s": phase, **values}))
+    columns = ["person", "stroke", "overhead", "phase_s", *LINES]
+    return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame(columns=columns)
+
+
+def draw(rows: pd.DataFrame) -> Figure:
+    """Draw overhead and low strokes side by side: each, their mean and a band of 90 %."""
+    drawing = style.figure(HEIGHT_MM)
+    axes = drawing.subplots(len(LINES), len(KINDS), sharex=True, sharey="row")
+    people = list(dict.fromkeys(rows.person))
+    colour = {person: style.CYCLE[k % len(style.CYCLE)] for k, person in enumerate(people)}
+    for column, (overhead, words) in enumerate(KINDS.items()):
+        own = rows[rows.overhead == overhead]
+        n_strokes = len(own.groupby(["person", "stroke"]))
+        axes[0, column].set_title(f"{words}, n = {n_strokes}", loc="left")
+        axes[-1, column].set_xlabel("time from the stroke (s)")
+        for axis, name in zip(axes[:, column], LINES, strict=True):
+            axis.axvline(0, color=style.MIDDLE, linewidth=0.8, linestyle=":")
+            for person, part in own.groupby("person", sort=False):
+                _draw_lines(axis, part, name, colour[person], str(person))
+    for axis, words in zip(axes[:, 0], LINES.values(), strict=True):
+        axis.set_ylabel(words)
+        axis.set_ylim(bottom=0)
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    if not handles:
+        handles, labels = axes[0, 1].get_legend_handles_labels()
+    drawing.legend(handles, labels, loc="outside upper right", ncols=max(len(labels), 1))
+    return drawing
+
+
+def _draw_lines(axis: Axes, part: pd.DataFrame, name: str, colour: str, person: str) -> None:
+    wide = part.pivot(index="phase_s", columns="stroke", values=name)
+    axis.plot(wide.index, wide, color=colour, linewidth=0.5, alpha=0.6)
+    axis.plot(wide.index, wide.mean(axis=1), color=colour, linewidth=1.6, label=f"{person}: mean")
+    full = wide.count(axis=1) >= FEWEST
+    if full.any():
+        middle, reach = wide.mean(axis=1)[full], WITHIN_90 * wide.std(axis=1)[full]
+        axis.fill_between(
+            wide.index[full], middle - reach, middle + reach, color=colour, alpha=0.15, lw=0
+        )

@@ -1,0 +1,8 @@
+"""Strokes found in skeletons, with time, hand and place; reactions to the opponent.
+
+local_fit: `fit`: a path's place, velocity and acceleration that survive lost joints
+signals: `of_person`: reach, height and speed of both wrists, and the trunk
+detect: `find`, `playing_hand`, `table`, `read`: strokes with their times and sigmas
+cues: `times`: what each published hypothesis says of the time of a stroke
+reaction: `join`: from the opponent's stroke to the split step and to the first step
+"""

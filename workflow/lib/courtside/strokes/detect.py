@@ -1,0 +1,212 @@
+"""Find strokes: a wrist far from the waist, by a player who moved there or swings over the head.
+
+The time of an overhead stroke is that at which the wrist is farthest from the waist; that of a low
+stroke, played in a lunge, is taken from the instant at which the trunk stops. Both are hypotheses
+(`courtside.strokes.cues` tests them); how far they miss the hit was estimated on virtual players,
+whose strokes were written by hand.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+import scipy
+from numpy.typing import NDArray
+
+from courtside.records import tables
+from courtside.records.keypoints.keypoints import Keypoints3D
+from courtside.strokes import signals
+from courtside.strokes.signals import HANDS, Arm, Signals
+from courtside.study.errors import StrPath
+
+# ASSUME: limits from the development takes (players-dev); no source is recorded. Reaches and
+# heights are shares of arm and trunk.
+FAR = {"overhead": 0.85, "low": 0.63}  # reach of a stroke; ready at the base it is 0.5 to 0.6
+OVERHEAD = 0.2  # height of the wrist over the shoulders above which a stroke is overhead
+APART_S = 1.0  # between two strokes of one player
+TRAVEL_S, TRAVEL_M_S = 1.0, 0.8  # before a low stroke the trunk has moved this fast,
+STOPPED = 0.4  # and then moves slower than this share of it
+REACHED_S = (0.3, 0.1)  # before and after the trunk stops: where the median reach is far
+SWING_S, SWING_M_S = 0.3, 2.0  # around an overhead stroke the wrist moves this fast
+PEAK_S = 0.1  # around an extremum: what a parabola is fitted to
+# Of the extremum after the hit, and its standard deviation, seconds; from virtual strokes of the
+# development bodies (benchmarks/strokes.py).
+LEAD_S = {"overhead": (-0.002, 0.016), "low": (0.102, 0.021)}
+SLOW_HZ = 15.0  # ASSUME: below this rate errors grow with the square of the frame interval
+COLUMNS = [
+    "person", "time_s", "sigma_s", "hand", "hand_from", "overhead", "height_m", "x_m", "y_m",
+    "speed_m_s", "quality",
+]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """One stroke: its time, the frame nearest to it, the hand that plays it."""
+
+    time_s: float
+    sigma_s: float
+    frame: int
+    hand: str
+    overhead: bool
+
+
+def find(found: Signals, hand: str) -> list[Stroke]:
+    """Return the strokes that a hand plays, in order of time.
+
+    A low stroke close to an overhead one is its preparation or recovery.
+    """
+    arm = found.arms[hand]
+    strokes = _timed(found, hand, True, [_farthest(found, arm, at) for at in _swings(found, arm)])
+    for low in _timed(found, hand, False, [_stop(found, at) for at in _lunges(found, arm)]):
+        if all(abs(low.time_s - other.time_s) > APART_S for other in strokes):
+            strokes.append(low)
+    return sorted(strokes, key=lambda stroke: stroke.time_s)
+
+
+def _timed(
+    found: Signals, hand: str, overhead: bool, extrema: list[tuple[float, float] | None]
+) -> list[Stroke]:
+    lead_s, spread_s = LEAD_S["overhead" if overhead else "low"]
+    slower = max(1.0, SLOW_HZ / found.rate_hz) ** 2
+    strokes = []
+    for time_s, sigma_s in filter(None, extrema):
+        hit_s = time_s - lead_s
+        frame = int(np.argmin(np.abs(found.time_s - hit_s)))
+        strokes.append(
+            Stroke(hit_s, slower * float(np.hypot(sigma_s, spread_s)), frame, hand, overhead)
+        )
+    return strokes
+
+
+def _swings(found: Signals, arm: Arm) -> list[int]:
+    """Return the frames at which a wrist over the head is farthest, in a swing."""
+    apart = max(1, round(APART_S * found.rate_hz))
+    high = np.where(arm.above > OVERHEAD, arm.reach, 0.0)
+    peaks, _ = scipy.signal.find_peaks(high, height=FAR["overhead"], distance=apart)
+    fastest = [_most(arm.from_waist.speed, at, found.rate_hz, SWING_S, SWING_S) for at in peaks]
+    return [int(at) for at, speed in zip(peaks, fastest, strict=True) if speed >= SWING_M_S]
+
+
+def _lunges(found: Signals, arm: Arm) -> list[int]:
+    """Return the frames at which the trunk stops after a way while the wrist is far."""
+    speed, rate_hz, chosen = found.trunk.speed, found.rate_hz, []
+    stops, _ = scipy.signal.find_peaks(-np.nan_to_num(speed, nan=np.inf))
+    before, after = (round(part_s * rate_hz) for part_s in REACHED_S)
+    for at in stops:
+        fastest = _most(speed, at, rate_hz, TRAVEL_S, 0.0)
+        near = arm.reach[_around(at, before, after, len(speed))]
+        known = near[np.isfinite(near)]
+        reached = np.median(known) if len(known) else 0.0
+        stopped = fastest >= TRAVEL_M_S and speed[at] <= STOPPED * fastest
+        if stopped and reached >= FAR["low"] and not arm.above[at] > OVERHEAD:
+            chosen.append(int(at))
+    return chosen
+
+
+def _farthest(found: Signals, arm: Arm, at: int) -> tuple[float, float] | None:
+    sigma_m_s = arm.from_waist.velocity_sigma[at]
+    return _extremum(found, -arm.reach * found.size_m, at, sigma_m_s, order=1)
+
+
+def _stop(found: Signals, at: int) -> tuple[float, float] | None:
+    return _extremum(found, found.trunk.speed**2, at, found.trunk.velocity_sigma[at], order=2)
+
+
+def _around(at: int, before: int, after: int, n_frames: int) -> NDArray:
+    return np.arange(max(at - before, 0), min(at + after + 1, n_frames))
+
+
+def _most(speed: NDArray, at: int, rate_hz: float, before_s: float, after_s: float) -> float:
+    near = speed[_around(at, round(before_s * rate_hz), round(after_s * rate_hz), len(speed))]
+    return float(np.nanmax(near)) if np.isfinite(near).any() else 0.0
+
+
+def _extremum(
+    found: Signals, values: NDArray, at: int, sigma_m_s: float, order: int
+) -> tuple[float, float] | None:
+    """Return the time of the least value near a frame, and its sigma, s.
+
+    `values` are a distance (order 1) or the square of a speed (order 2): either's second derivative
+    tells by how much an error of the velocity, `sigma_m_s`, shifts the time.
+    """
+    half = max(2, round(PEAK_S * found.rate_hz))
+    near = _around(at, half, half, len(values))
+    near = near[np.isfinite(values[near])]
+    if len(near) < 4:
+        return None
+    lag = found.time_s[near] - found.time_s[at]
+    bend, slope, _ = np.polyfit(lag, values[near], 2)
+    if bend <= 0:
+        return None
+    slowing = 2 * bend if order == 1 else np.sqrt(bend)  # m/s2
+    shift = float(np.clip(-slope / (2 * bend), -PEAK_S, PEAK_S))
+    return float(found.time_s[at]) + shift, float(min(sigma_m_s / slowing, PEAK_S))
+
+
+def playing_hand(found: Signals) -> str | None:
+    """Return the hand that is ahead where the trunk stops; None where the player goes nowhere.
+
+    The racket hand reaches the way that the player came. It is tested on all virtual players.
+    """
+    speed, rate_hz = found.trunk.speed, found.rate_hz
+    stops, _ = scipy.signal.find_peaks(
+        -np.nan_to_num(speed, nan=9.0), distance=max(1, round(0.5 * rate_hz))
+    )
+    ahead = dict.fromkeys(HANDS, 0.0)
+    for stop in stops:
+        before = _around(stop, round(0.5 * rate_hz), 0, len(speed))
+        fastest = before[np.nanargmax(speed[before])] if np.isfinite(speed[before]).any() else stop
+        if not speed[fastest] >= TRAVEL_M_S:
+            continue
+        way = found.trunk.velocity[fastest, :2] / speed[fastest]
+        for hand in HANDS:
+            reached = found.arms[hand].from_waist.place[stop, :2] @ way
+            ahead[hand] += float(np.nan_to_num(reached))
+    return max(HANDS, key=lambda hand: ahead[hand]) if any(ahead.values()) else None
+
+
+def table(points: Keypoints3D, hand_of: Mapping[str, str | None]) -> pd.DataFrame:
+    """Return the strokes of all persons of a take, in the columns `COLUMNS`.
+
+    `hand_of` is the stated playing hand by person, "left", "right" or None: then it is found.
+    Positions are in the world: of the trunk on the floor (x, y), of the wrist over it (height).
+    """
+    rows = []
+    for at, person in enumerate(map(str, points.person_id)):
+        found = signals.of_person(points, at)
+        stated = hand_of.get(person)
+        hand = stated or playing_hand(found)
+        for stroke in find(found, hand) if hand else []:
+            source = "stated" if stated else "found"
+            rows.append({"person": person, "hand_from": source, **_row(found, stroke)})
+    made = pd.DataFrame(rows, columns=COLUMNS)
+    return made.sort_values(["time_s", "person"], ignore_index=True)
+
+
+def read(path: StrPath) -> pd.DataFrame:
+    """Read strokes that `table` made; raise `InputError` if the file is no such table."""
+    numbers = [name for name in COLUMNS if name.endswith(("_s", "_m")) or name == "quality"]
+    return tables.read(
+        path,
+        "a table of strokes",
+        lambda rows: tables.column_fault(rows, COLUMNS, numbers),
+        dtype={"person": str},
+    )
+
+
+def _row(found: Signals, stroke: Stroke) -> dict[str, object]:
+    arm, rate_hz = found.arms[stroke.hand], found.rate_hz
+    half = round(SWING_S * rate_hz)
+    x, y = found.trunk.place[stroke.frame, :2]
+    return {
+        "time_s": stroke.time_s,
+        "sigma_s": stroke.sigma_s,
+        "hand": stroke.hand,
+        "overhead": stroke.overhead,
+        "height_m": arm.wrist.place[stroke.frame, 2],
+        "x_m": x,
+        "y_m": y,
+        "speed_m_s": _most(arm.wrist.speed, stroke.frame, rate_hz, SWING_S, SWING_S),
+        "quality": arm.measured[_around(stroke.frame, half, half, len(arm.measured))].mean(),
+    }

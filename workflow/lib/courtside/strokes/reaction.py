@@ -1,0 +1,59 @@
+"""Reaction: from a stroke to the opponent's split step and first step.
+
+The feet are those of `courtside.records.footwork`: events with `start_s` (the last foot leaves the
+floor, of a split step; the foot leaves, of a step) and `stop_s` (the first foot lands).
+"""
+
+import numpy as np
+import pandas as pd
+
+# ASSUME: limits of a reaction to a stroke; no source is recorded.
+EARLY_S = 0.3  # a split step may begin before the stroke: players foresee it
+LATEST_S = 1.2  # what begins later answers something else
+STEPS = ("step", "lunge")
+COLUMNS = [
+    "person", "opponent", "hit_s", "split_start_s", "split_stop_s", "first_step_s", "to_split_s",
+    "to_split_sigma_s", "to_step_s", "to_step_sigma_s", "split_to_step_s", "split_to_step_sigma_s",
+]  # fmt: skip
+
+
+def join(strokes: pd.DataFrame, events: pd.DataFrame) -> pd.DataFrame:
+    """Return a row for each stroke and each other person who has events, in columns `COLUMNS`.
+
+    `strokes` are of `courtside.strokes.detect.table`, `events` have the columns `person`, `event`,
+    `start_s`, `start_sigma_s`, `stop_s`, `stop_sigma_s`. Intervals end when the split step lands
+    and when the first foot leaves the floor after that, or after the stroke without a split step.
+    Empty: there was none before the opponent's next stroke or within `LATEST_S`. Sigmas take the
+    errors of both ends as independent.
+    """
+    rows = []
+    for hit in strokes.itertuples():
+        after = strokes.time_s[strokes.time_s > hit.time_s]
+        stop_s = min([hit.time_s + LATEST_S, *after])
+        for person in sorted(set(events.person.astype(str)) - {str(hit.person)}):
+            own = events[events.person.astype(str) == person]
+            reacted = _reaction(hit.time_s, hit.sigma_s, own, stop_s)
+            rows.append({"person": person, "opponent": hit.person, "hit_s": hit.time_s, **reacted})
+    return pd.DataFrame(rows, columns=COLUMNS)
+
+
+def _reaction(hit_s: float, sigma_s: float, own: pd.DataFrame, stop_s: float) -> dict[str, float]:
+    begins = own.start_s.between(hit_s - EARLY_S, stop_s)
+    splits = own[(own.event == "split_step") & begins & (own.stop_s > hit_s)].sort_values("stop_s")
+    steps, found = own[own.event.isin(STEPS) & (own.start_s <= stop_s)], {}
+    from_s, from_sigma_s = hit_s, 0.0
+    if len(splits):
+        split = splits.iloc[0]
+        from_s, from_sigma_s = split.stop_s, split.stop_sigma_s
+        found = {"split_start_s": split.start_s, "split_stop_s": split.stop_s}
+        found["to_split_s"] = split.stop_s - hit_s
+        found["to_split_sigma_s"] = float(np.hypot(sigma_s, split.stop_sigma_s))
+    steps = steps[steps.start_s >= from_s].sort_values("start_s")
+    if len(steps):
+        step = steps.iloc[0]
+        found |= {"first_step_s": step.start_s, "to_step_s": step.start_s - hit_s}
+        found["to_step_sigma_s"] = float(np.hypot(sigma_s, step.start_sigma_s))
+        if len(splits):
+            found["split_to_step_s"] = step.start_s - from_s
+            found["split_to_step_sigma_s"] = float(np.hypot(from_sigma_s, step.start_sigma_s))
+    return found
