@@ -30,6 +30,8 @@ PLACES = {
     "plans/*/map.csv": [f"{FIGURES} | error_map"],
     "*/calibration/file/check.csv": ["Columns of the check of a calibration file"],
     "*/calibration/*/refinement.csv": ["Columns of the refinement by people"],
+    "*/calibration/*/knocks.csv": ["Columns of the knocks"],
+    "*/pose2d_steadied/*.csv": [SHAKE],
     "*/calibration/*/proposals.csv": [": `calibration/<calibration>/proposals.csv`: `camera`"],
     "*/sfm/*.csv": [": `sfm/features.csv`:"],
     "*/frames/*.csv": [FRAMES],

@@ -197,6 +197,7 @@ rule refine_cameras:
         covariance_npz=paths.CAMERA_COVARIANCE,
         quality_json=paths.CALIBRATION_QUALITY,
         table_csv=paths.REFINEMENT,
+        knocks_csv=paths.KNOCKS,
     log:
         "results/{session}/logs/refine_cameras/{calibration}.log",
     wildcard_constraints:

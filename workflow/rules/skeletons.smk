@@ -3,10 +3,10 @@
 Inputs: 2D keypoints, shake, cameras. Outputs: results/{session}/takes/{take}/ pose2d_steadied, sync,
 people, pose3d, pose3d_filtered, pose3d_corrected, pose3d_ik, motion, kinematics,
 footwork, strokes, quality.csv.
-Steps: steady_keypoints (of a take whose cameras shake), synchronise_cameras, associate_people
-(everybody), name_people (the subjects among them), triangulate (raw, always kept), filter_motion,
-correct_joints, fit_skeleton, export_take, export_motion, measure_kinematics, find_contacts,
-find_strokes, judge_take.
+Steps: steady_keypoints (of cameras that shake or were knocked), synchronise_cameras,
+associate_people (everybody), name_people (the subjects among them), triangulate (raw, always kept),
+filter_motion, correct_joints, fit_skeleton, export_take, export_motion, measure_kinematics,
+find_contacts, find_strokes, judge_take.
 """
 
 
@@ -14,13 +14,16 @@ rule steady_keypoints:
     input:
         pose2d_npz=paths.POSE2D,
         cameras_toml=paths.CAMERAS,
-        shake_csv=paths.SHAKE,
+        shake_csv=of_job(takes.measured_shake),
+        knocks_csv=of_job(takes.knocks),
     output:
         steadied_npz=paths.POSE2D_STEADIED,
+        taken_out_csv=paths.SHAKE_TAKEN_OUT,
     log:
         "results/{session}/logs/steady_keypoints/{take}.{calibration}.{model}.{camera}.log",
     params:
         code=code("steady_keypoints.py"),
+        take="{take}",
     script:
         "../scripts/steady_keypoints.py"
 

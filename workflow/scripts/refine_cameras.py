@@ -4,14 +4,16 @@ import numpy as np
 
 from courtside.calibration import file_formats
 from courtside.calibration.court import court as court_files
-from courtside.calibration.people import adjustment, prior, refinement
+from courtside.calibration.people import adjustment, knocks, prior, refinement
 from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.held_out import Points
+from courtside.calibration.people.views import joined
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.geometry import camera as camera_models
 from courtside.reconstruction import common_views
 from courtside.records import tables
-from courtside.records.cameras import clicks
+from courtside.records.cameras import clicks, knock_table
+from courtside.records.devices import clocks
 from courtside.study.errors import InputError
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json
@@ -24,6 +26,7 @@ def main(
     covariance_npz,
     quality_json,
     table_csv,
+    knocks_csv,
     *,
     calibration,
     names,
@@ -40,21 +43,31 @@ def main(
     if paths.covariance:
         known = camera_covariance.read(paths.covariance).of([camera.name for camera in base])
     report = {"calibration": calibration, "takes": [take["sync"] for take in takes]}
+    rows = []
     try:
-        seen = common_views.of_takes(paths.cameras, [camera.name for camera in base], takes)
-        told = seen, limits(views), points(paths, base, weights)
+        parts = [seen_of(paths, base, known, take, limits(views), rows) for take in takes]
+        told = joined(parts), limits(views), points(paths, base, weights)
         theirs = in_file(paths.calibration, names, override, unit)
         found = refinement.refine(base, known, *told, calibrated=theirs)
     except InputError as error:
         found = refinement.unchanged(base, known, str(error))
-    for line in (found.line, *found.wrong):
+    said = [found.line, *found.wrong, *knocks.lines(rows)]
+    for line in said:
         log.logger.warning("%s", line)
-    report |= {"taken": found.taken, "verdicts": found.verdicts, "wrong": found.wrong}
-    report["warnings"] = [found.line, *found.wrong]
+    told = {"taken": found.taken, "verdicts": found.verdicts, "wrong": found.wrong}
+    knock_table.write(knocks_csv, rows)
     camera_models.write_toml(cameras_toml, found.cameras, source=f"{calibration}, {found.taken}")
     camera_covariance.write(covariance_npz, found.covariance)
     tables.write(table_csv, found.table, float_format="%.4f")
-    write_json(quality_json, report)
+    write_json(quality_json, {**report, **told, "warnings": said})
+
+
+def seen_of(paths, base, known, take, limits, rows):
+    """Return what cameras see in a take, knocks that are taken undone; add all found to `rows`."""
+    seen = common_views.of_take(paths.cameras, [camera.name for camera in base], take)
+    found, clock = knocks.find(base, known, seen, limits), clocks.read(take["sync"])[1]
+    rows += [{"take": take["take"]} | knocks.row(one, base, clock) for one in found]
+    return knocks.undone(base, seen, found)
 
 
 def limits(views):

@@ -351,3 +351,29 @@ def test_a_knocked_camera_is_named_in_plain_lines():
     assert "stood 5.0 px off its static picture when the take began" in moved
     assert "mm" not in "".join(camera_shake.say(CAMERA_KNOCKS, off, np.full(3, np.nan)))
     assert len(camera_shake.say(CAMERA_KNOCKS, table(), PLAYER)) == 1
+
+
+def test_knocks_are_added_to_shake():
+    vectors, turn = turns(30), np.array([0.004, -0.003, 0.002])
+    more = [Rotation.from_rotvec(turn * (at >= 15)) for at in range(30)]
+    both = [Rotation.from_rotvec(v) * one for v, one in zip(vectors, more, strict=True)]
+    table = without(shake(vectors), [20])
+    found = camera_shake.camera_turns(
+        CAMERA, camera_shake.knocked(CAMERA, table, [(15 / RATE_HZ, turn)])
+    )
+    known = np.arange(30) != 20
+    expected = np.stack([one.as_rotvec() for one in both])
+    assert np.abs(found - expected)[known].max() * K[0, 0] < 0.01
+    assert np.isnan(found[20]).all()
+    assert camera_shake.knocked(CAMERA, table, []) is table
+
+
+def test_a_camera_without_shake_moves_by_its_knock_alone():
+    still = camera_shake.still(np.arange(30) / RATE_HZ)
+    assert not camera_shake.camera_turns(CAMERA, still).any()
+    turn = np.array([0.004, -0.003, 0.002])
+    made, expected, _ = view(np.outer(np.arange(30) >= 15, turn))
+    back = camera_shake.steady(
+        made, CAMERA, camera_shake.knocked(CAMERA, still, [(15 / RATE_HZ, turn)])
+    )
+    np.testing.assert_allclose(back.xy, expected, atol=0.01)

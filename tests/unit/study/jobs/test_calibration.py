@@ -134,6 +134,7 @@ def test_a_calibration_file_is_checked_by_what_cameras_see(job):
     cameras = ("cam01", "cam02", "cam03", "cam04")
     (take,) = calibration.checked(job(session="walk-4cams-tiny"))
     assert take == {
+        "take": "balancing",
         "pose2d": [f"{folder}/pose2d/blazepose-full/{camera}.npz" for camera in cameras],
         "sync": f"{folder}/sync/file/cameras.blazepose-full.json",
         "people": f"{folder}/people/file/blazepose-full.found.npz",

@@ -34,12 +34,23 @@ def test_clocks_that_a_take_states_are_told_by_name(job, study):
 
 
 def test_shake_is_taken_out_of_steady_takes_but_for_comparison(job):
-    folder = "results/players-tiny/takes/rally/shake"
+    way = {"calibration": "known18", "model": "net", "fusion": "all-robust"}
+    folder = "results/players-tiny/takes/rally/pose2d_steadied/known18/net"
     shake = [f"{folder}/{name}.csv" for name in ("oblique", "back", "mirror")]
-    assert takes.shake(job(**RALLY, fusion="all-robust")) == shake
-    assert takes.shake(job(**RALLY, fusion="all-unsteady")) == []
-    assert takes.shake(job(**SHOT, fusion="all-robust")) == []
-    assert takes.shake(job(**RALLY, fusion="all-robust", camera="back")) == [shake[1]]
+    assert takes.shake(job(**RALLY, **way)) == shake
+    assert takes.shake(job(**RALLY, **way | {"fusion": "all-unsteady"})) == []
+    assert takes.shake(job(**SHOT, **way)) == []
+    back = job(**RALLY, **way, camera="back")
+    assert takes.shake(back) == [shake[1]] and takes.knocks(back) == []
+    assert takes.measured_shake(back) == "results/players-tiny/takes/rally/shake/back.csv"
+
+
+def test_knocks_that_people_show_are_taken_out_of_every_take(job):
+    shot = job(**SHOT, calibration="known-people", model="net", camera="back")
+    folder = "results/players-tiny/takes/shot/pose2d_steadied/known-people/net"
+    assert takes.knocks(shot) == "results/players-tiny/calibration/known-people/knocks.csv"
+    assert takes.keypoints_2d(shot)[1] == f"{folder}/back.npz"
+    assert takes.shake(shot) == [f"{folder}/back.csv"] and takes.measured_shake(shot) == []
 
 
 def test_steady_takes_are_measured_from_steadied_keypoints_but_for_comparison(job):

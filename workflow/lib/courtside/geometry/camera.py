@@ -108,6 +108,17 @@ def turned(camera: Camera, vector: ArrayLike) -> Camera:
     return replace(camera, cam_from_world=rotation @ camera.cam_from_world)
 
 
+def turned_back(camera: Camera, xy: ArrayLike, vector: ArrayLike) -> NDArray:
+    """Return where a turned camera would have seen px (..., 2) before it was `turned`.
+
+    `vector` (..., 3) may be one or one for each leading axis of `xy`; NaN outside the lens.
+    """
+    seen = undistort(camera, xy)
+    directions = np.concatenate([seen, np.ones((*seen.shape[:-1], 1))], axis=-1)
+    back = rotations.rotation_from_rodrigues(-np.asarray(vector, dtype=float))
+    return project(replace(camera, cam_from_world=np.eye(3, 4)), directions @ back.mT)
+
+
 def in_picture(camera: Camera, xy: NDArray) -> NDArray:
     """Say which px (..., 2) lie in the picture, (...) bool; NaN does not."""
     with np.errstate(invalid="ignore"):

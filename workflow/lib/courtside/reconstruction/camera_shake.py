@@ -70,12 +70,36 @@ def steady(view: Keypoints2D, camera: Camera, table: DataFrame) -> Keypoints2D:
             unknown.sum(),
             len(unknown),
         )
-    still_from_shaken = rotations.rotation_from_rodrigues(np.where(unknown[:, None], 0.0, -turned))
-    xy = _project(camera, _directions(camera, view.xy) @ still_from_shaken.mT)
+    turned = np.where(unknown[:, None], 0.0, turned)
+    xy = camera_models.turned_back(camera, view.xy, turned)
+    still_from_shaken = rotations.rotation_from_rodrigues(-turned)
     kept = unknown[:, None, None] | np.isnan(xy)
     return replace(
         view, xy=np.where(kept, view.xy, xy), xyz_in_body=view.xyz_in_body @ still_from_shaken.mT
     )
+
+
+def still(time_s: NDArray) -> DataFrame:
+    """Return the table of a camera that stood still, of frames at times (T,) of its own clock."""
+    whole = DataFrame({"frame_idx": np.arange(len(time_s)), "time_s": np.asarray(time_s, float)})
+    return whole.assign(**dict.fromkeys(shake_table.MEASURED, 0.0), n_matches=0)
+
+
+def knocked(camera: Camera, table: DataFrame, knocks: Sequence[tuple[float, NDArray]]) -> DataFrame:
+    """Return a table with knocks in it: times, s, and turns (3,), radians, on top of its shake."""
+    if not knocks:
+        return table
+    vectors, time_s = camera_turns(camera, table), table.time_s.to_numpy(float)
+    turned = np.broadcast_to(np.eye(3), (len(time_s), 3, 3))
+    for at_s, turn in sorted(knocks, key=lambda knock: knock[0]):
+        after = rotations.rotation_from_rodrigues(np.outer(time_s >= at_s, turn))
+        turned = after @ turned
+    known = np.isfinite(vectors).all(axis=1)
+    whole = rotations.rotation_from_rodrigues(vectors[known]) @ turned[known]
+    moved = _moved(camera, rotations.rodrigues_from_rotation(whole))
+    table = table.copy()
+    table.loc[known, ["shift_x_px", "shift_y_px", "rotation_deg"]] = moved * [1, 1, 180 / np.pi]
+    return table
 
 
 def frame_turns(camera: Camera, table: DataFrame, time_s: NDArray) -> NDArray:
@@ -124,24 +148,28 @@ def _of_frames(camera: Camera, table: DataFrame, time_s: NDArray) -> NDArray:
 
 def _solve(camera: Camera, measured: NDArray) -> NDArray:
     """Return rotation vectors (T, 3) that move and turn the picture's centre as measured."""
-    centre = (np.array(camera.size) - 1) / 2
-    arms = PROBE_PX * np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]])
-    directions = _directions(camera, centre + arms)
     f = np.diag(camera.K)[:2]
     x, y, turn = measured.T
     # Start: small rotations about the axes right, down and forward, near the optical axis.
     vectors = np.column_stack([-y / f[1], x / f[0], turn])
     for _ in range(N_STEPS):
-        moved = _project(camera, directions @ rotations.rotation_from_rodrigues(vectors).mT)
-        shift = moved[:, 0] - centre
-        across, down = moved[:, 1] - moved[:, 2], moved[:, 3] - moved[:, 4]
-        curl = np.arctan2(across[:, 1] - down[:, 0], across[:, 0] + down[:, 1])
-        off = measured - np.column_stack([shift, curl])
+        off = measured - _moved(camera, vectors)
         step = np.column_stack([-off[:, 1] / f[1], off[:, 0] / f[0], off[:, 2]])
         vectors = vectors + step
         if np.abs(step).max() < DONE_RAD:
             break
     return vectors
+
+
+def _moved(camera: Camera, vectors: NDArray) -> NDArray:
+    """Return how rotation vectors (T, 3) move (px) and turn (rad) the picture's centre, (T, 3)."""
+    centre = (np.array(camera.size) - 1) / 2
+    arms = PROBE_PX * np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]])
+    probes = np.broadcast_to(centre + arms, (len(vectors), *arms.shape))
+    moved = camera_models.turned_back(camera, probes, -vectors)
+    across, down = moved[:, 1] - moved[:, 2], moved[:, 3] - moved[:, 4]
+    curl = np.arctan2(across[:, 1] - down[:, 0], across[:, 0] + down[:, 1])
+    return np.column_stack([moved[:, 0] - centre, curl])
 
 
 def _bridged(time_s: NDArray, vectors: NDArray) -> NDArray:
@@ -171,17 +199,6 @@ def _rows(camera: str, wanted_s: NDArray, table: DataFrame) -> NDArray:
             "measure the shake of the same recording, trimmed alike"
         )
     return rows
-
-
-def _directions(camera: Camera, xy: NDArray) -> NDArray:
-    """Return viewing directions (..., 3) of pixels in the camera's axes, z = 1."""
-    seen = camera_models.undistort(camera, xy)
-    return np.concatenate([seen, np.ones((*seen.shape[:-1], 1))], axis=-1)
-
-
-def _project(camera: Camera, xyz_in_cam: NDArray) -> NDArray:
-    """Project points that are given in the camera's axes."""
-    return camera_models.project(replace(camera, cam_from_world=np.eye(3, 4)), xyz_in_cam)
 
 
 # ASSUME: thresholds that separate simulated knocks from tremor (docs/measured.md).

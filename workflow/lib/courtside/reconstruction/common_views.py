@@ -20,11 +20,12 @@ def of_takes(
     `takes` have the files `pose2d` (a list), `people` and `sync`, as for `footage.read`. A camera
     that does not film a take sees nobody there.
     """
-    parts = [_of_take(cameras_toml, names, take) for take in takes]
+    parts = [of_take(cameras_toml, names, take) for take in takes]
     return joined(parts) if parts else None
 
 
-def _of_take(cameras_toml: StrPath, names: Sequence[str], take: Mapping[str, Any]) -> Seen:
+def of_take(cameras_toml: StrPath, names: Sequence[str], take: Mapping[str, Any]) -> Seen:
+    """Return what they saw in one take, of the files above."""
     seen = footage.read(cameras_toml, take["pose2d"], take["people"], take["sync"])
     each, clocks = [one.view for one in seen], [one.clock for one in seen]
     time_s = resampling.common_times(each, clocks)
@@ -41,4 +42,5 @@ def _of_take(cameras_toml: StrPath, names: Sequence[str], take: Mapping[str, Any
         fill = person_height.LEAST_PX if key == "height_px" else np.nan
         whole[key] = np.full((len(names), *flat.shape[1:]), fill)
         whole[key][rows] = flat
-    return Seen(**whole, track=np.repeat(np.arange(n_people), n_times))
+    track, when = np.repeat(np.arange(n_people), n_times), np.tile(time_s, n_people)
+    return Seen(**whole, track=track, time_s=when)

@@ -68,6 +68,7 @@ CAMERA_COVARIANCE = CALIBRATION + "/covariance.npz"
 CALIBRATION_QUALITY = CALIBRATION + "/quality.json"
 CAMERA_EXPORT = CALIBRATION + "/other_programs"
 REFINEMENT = CALIBRATION + "/refinement.csv"
+KNOCKS = CALIBRATION + "/knocks.csv"
 CALIBRATION_CHECK = SESSION + "/calibration/file/check.{suffix}"  # json or csv
 COURT_PROPOSALS = CALIBRATION + "/proposals.csv"
 FOUND_COURT = SESSION + "/calibration/court_lines/{part}"  # found.json or proposals.csv
@@ -78,6 +79,7 @@ CLICKING_PAGE = SESSION + "/pages/clicking.html"
 # Keypoints, clocks and skeletons of a take.
 POSE2D = TAKE + "/pose2d/{model}/{camera}.npz"
 POSE2D_STEADIED = TAKE + "/pose2d_steadied/{calibration}/{model}/{camera}.npz"  # without shake
+SHAKE_TAKEN_OUT = POSE2D_STEADIED.replace(".npz", ".csv")  # shake measured, and knocks
 CAMERA_CLOCKS = TAKE + "/sync/{calibration}/cameras.{model}.json"
 FOUND_PEOPLE = TAKE + "/people/{calibration}/{model}.found.npz"
 PEOPLE = TAKE + "/people/{calibration}/{model}.npz"

@@ -40,6 +40,10 @@ class Score:
     accepted: list[NDArray] = field(default_factory=list)  # (C, N) 0, 1; NaN where unseen
     squares: dict[str, list[NDArray]] = field(default_factory=dict)  # px^2 per axis, by kind
 
+    def typical(self) -> float:
+        """Return the median over blocks of how far joints disagree, in heights of the person."""
+        return float(np.median(list(self.share.values())))
+
     def rms_px(self, kind: str) -> float:
         """Return the root mean square of points of a kind, px per axis; NaN of too few."""
         found = np.concatenate(self.squares.get(kind, [np.zeros(0)]))

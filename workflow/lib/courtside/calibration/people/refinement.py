@@ -156,7 +156,7 @@ def _measures(cameras: Sequence[Camera], scores: dict[str, Score]) -> pd.DataFra
     for what in ("court_px", "static_px"):
         of = {way: one.rms_px(what[:-3]) for way, one in scores.items()}
         rows += [{"what": what, "camera": "all", **of}] * bool(np.isfinite(of["base"]))
-    of = {way: 1000 * float(np.median(list(s.share.values()))) for way, s in scores.items()}
+    of = {way: 1000 * s.typical() for way, s in scores.items()}
     rows.append({"what": "joints_permille", "camera": "all", **of})
     each = {way: one.accepted_percent() for way, one in scores.items()}
     for at, camera in enumerate(cameras):

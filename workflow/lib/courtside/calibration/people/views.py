@@ -27,16 +27,17 @@ class Seen:
     score: NDArray  # (C, T, J): 0..1, NaN where unseen
     height_px: NDArray  # (C, T): that the person, standing, has in each picture
     track: NDArray  # (T,) int: which person of which take; rows of a track are in order of time
+    time_s: NDArray  # (T,): on the reference clock of the take
 
     def of(self, rows: NDArray) -> "Seen":
         """Return some rows, by number or as (T,) bool."""
         per_view = (self.xy[:, rows], self.score[:, rows], self.height_px[:, rows])
-        return Seen(*per_view, self.track[rows])
+        return Seen(*per_view, self.track[rows], self.time_s[rows])
 
-    def thinned(self) -> "Seen":
-        """Return at most `MOST_ROWS` rows, evenly spaced."""
+    def thinned(self, most: int = MOST_ROWS) -> "Seen":
+        """Return at most so many rows, evenly spaced."""
         n_rows = len(self.track)
-        steps = np.linspace(0, n_rows - 1, min(n_rows, MOST_ROWS))
+        steps = np.linspace(0, n_rows - 1, min(n_rows, most))
         return self.of(np.round(steps).astype(int))
 
     def blocks(self, count: int) -> NDArray:
@@ -66,6 +67,7 @@ def joined(parts: Sequence[Seen]) -> Seen:
         score=np.concatenate([part.score for part in found], axis=1),
         height_px=np.concatenate([part.height_px for part in found], axis=1),
         track=np.concatenate([part.track for part in found]),
+        time_s=np.concatenate([part.time_s for part in found]),
     )
 
 

@@ -77,7 +77,7 @@ def _unfilmed(where: str, take: Content, content: Content) -> Iterator[str]:
     if take.get("steady"):
         yield (
             f"{where}.steady: expected videos, in which shake is measured, found keypoints only; "
-            "remove it"
+            "remove it: a calibration ending in -people finds knocks without videos"
         )
     wanted, there = content.get("override", {}).get("models", []), [*take["pose2d"]]
     if not wanted or set(wanted) - set(there):

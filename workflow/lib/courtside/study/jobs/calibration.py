@@ -92,13 +92,13 @@ def _base(job: Job) -> Job:
 
 
 def _seen(job: Job, way: str, names: list[str]) -> list[dict[str, Any]]:
-    """Return `pose2d` of each camera by the session's first network, `sync` and `people`."""
+    """Return `take`, `pose2d` of each camera by the first network, `sync` and `people`."""
     model, found = job.session.parameters["models"][0], []
     for name in names:
         known = {**job.wildcards, "take": name, "model": model, "calibration": way}
         one = Job(job.study, known)
         files = {"sync": one.fill(paths.CAMERA_CLOCKS), "people": one.fill(paths.FOUND_PEOPLE)}
-        found.append({"pose2d": takes.keypoints_2d(one), **files})
+        found.append({"take": name, "pose2d": takes.keypoints_2d(one), **files})
     return found
 
 

@@ -8,7 +8,7 @@ from typing import Any
 from courtside.study import paths
 from courtside.study.execution import verdicts
 from courtside.study.jobs.job import Job
-from courtside.study.methods import Fusion
+from courtside.study.methods import PEOPLE, Fusion
 
 
 def each_camera(job: Job, pattern: str) -> list[str]:
@@ -32,16 +32,27 @@ def keypoints_2d(job: Job) -> list[str]:
 
 
 def shake(job: Job) -> list[str]:
-    """Return the shake of the job's camera or each camera of a take, where it is taken out."""
+    """Return what is taken out of the keypoints of the job's camera or of all cameras of a take."""
     if not _steadied(job):
         return []
-    return [job.fill(paths.SHAKE)] if "camera" in job.wildcards else each_camera(job, paths.SHAKE)
+    pattern = paths.SHAKE_TAKEN_OUT
+    return [job.fill(pattern)] if "camera" in job.wildcards else each_camera(job, pattern)
+
+
+def measured_shake(job: Job) -> str | list:
+    """Return the shake of the job's camera where it is measured in the take's pictures."""
+    return job.fill(paths.SHAKE) if job.take.steady else []
+
+
+def knocks(job: Job) -> str | list:
+    """Return the knocks that people show, of a calibration refined by them."""
+    return job.fill(paths.KNOCKS) if job["calibration"].endswith(PEOPLE) else []
 
 
 def _steadied(job: Job) -> bool:
     """Return whether shake is taken out; fusions that leave it in share clocks and people."""
-    way = job.wildcards.get("fusion")
-    return job.take.steady and (way is None or Fusion.parse(way).steadied)
+    way, steady = job.wildcards.get("fusion"), job.take.steady or bool(knocks(job))
+    return steady and (way is None or Fusion.parse(way).steadied)
 
 
 def sightings(job: Job) -> list[tuple[str, dict[str, Any]]]:

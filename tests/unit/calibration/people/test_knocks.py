@@ -1,0 +1,72 @@
+"""A camera knocked during a take: found, timed and measured by people; none where none was."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from courtside.calibration.people import knocks, prior
+from courtside.calibration.people.adjustment import Limits
+from courtside.geometry import camera as cameras
+from courtside.records.devices.clocks import Clock
+from fixtures.cameras import corner_cameras, walkers
+
+TRUE = corner_cameras.four_cameras()
+LIMITS = Limits(score=0.05, limit=0.05, fade=0.067)
+KNOWN = prior.stated(
+    TRUE, rotation_deg=0.3, position_m=0.03, focal_percent=0.5, principal_point_percent=0.3, k1=0.01
+)
+WALK = walkers.joints(80)
+SEEN = walkers.seen(TRUE, WALK)
+TURN = np.radians([0.25, -0.3, 0.1])
+AT_S = 4.5
+
+
+@pytest.fixture(scope="module")
+def knocked():
+    """Return what is seen where c2 is knocked: projected by the turned camera."""
+    after, turned = SEEN.time_s >= AT_S, cameras.turned(TRUE[2], TURN)
+    xy = SEEN.xy.copy()
+    xy[2, after] += (cameras.project(turned, WALK) - cameras.project(TRUE[2], WALK))[after]
+    return replace(SEEN, xy=xy)
+
+
+@pytest.fixture(scope="module")
+def found(knocked):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(knocks, "MOST", 1)  # a take without one is tested below
+        return knocks.find(walkers.disturbed(TRUE, KNOWN, 3), KNOWN, knocked, LIMITS)
+
+
+def test_a_knock_is_found_by_the_right_camera_and_time_before_disturbed_cameras(found):
+    assert found[0].taken and found[0].camera == 2
+    assert found[0].time_s == pytest.approx(AT_S, abs=0.2)
+    assert np.degrees(np.abs(found[0].turn - TURN)).max() < 0.04
+    assert (np.abs(found[0].turn - TURN) < 3 * found[0].sigma).all()
+    assert found[0].change < -0.3
+
+
+def test_keypoints_return_to_where_the_camera_stood(knocked, found):
+    back = knocks.undone(TRUE, knocked, [replace(found[0], turn=TURN, time_s=AT_S)])
+    assert np.abs(back.xy - SEEN.xy).max() < 0.2  # noise is turned, too
+    assert np.abs(knocked.xy - SEEN.xy).max() > 5
+    other = replace(found[0], verdicts={"joints": "not better"})
+    assert knocks.undone(TRUE, knocked, [other]).xy is not None
+    np.testing.assert_array_equal(knocks.undone(TRUE, knocked, [other]).xy, knocked.xy)
+
+
+def test_nobody_knocks_where_no_camera_was_knocked():
+    assert not any(one.taken for one in knocks.find(TRUE, KNOWN, SEEN, LIMITS))
+
+
+def test_people_who_stand_still_show_no_knock():
+    still = walkers.seen(TRUE, walkers.joints(64, still=True))
+    assert knocks.find(TRUE, KNOWN, still, LIMITS) == []
+
+
+def test_a_knock_is_told_in_the_clock_of_its_camera(found):
+    row = {"take": "t", **knocks.row(found[0], TRUE, {"c2": Clock(offset_s=1.0)})}
+    assert row["time_s"] == pytest.approx(float(Clock(offset_s=1.0).from_reference(AT_S)), abs=0.2)
+    assert row["camera"] == "c2" and row["taken"] == 1 and row["joints"] == "better"
+    (line,) = knocks.lines([row, {**row, "taken": 0}])
+    assert line.startswith("camera c2 was knocked at ") and "of take t by 0.4" in line

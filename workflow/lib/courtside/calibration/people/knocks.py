@@ -1,0 +1,335 @@
+"""Cameras knocked during a take: found, measured and judged by the people that they film.
+
+A knocked camera turned in place: it has one pose before and another after. In each row, the joints
+seen by two cameras give epipolar residuals, linear in the turn of either camera. Their normal
+equations, summed over time, tell for each camera and each time how much better a step fits than
+none: the cost is linear in rows. No video is needed.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.calibration.people import adjustment, held_out, prior
+from courtside.calibration.people.adjustment import LOSS, MEDIAN_TO_SIGMA, Limits
+from courtside.calibration.people.views import Seen, check
+from courtside.calibration.records import covariance as camera_covariance
+from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance
+from courtside.geometry import camera as camera_models
+from courtside.geometry import epipolar, rotations
+from courtside.geometry.camera import Camera, project
+from courtside.geometry.triangulation import triangulate_all
+from courtside.records.devices.clocks import Clock
+from courtside.study.errors import InputError
+
+# ASSUME: limits that tell knocks of 0.4 degrees from none on development takes.
+LEAST_S = 1.0  # of people seen on either side of a knock
+LEAST_GAIN = 15.0  # of a step, chi-squared of 3, to be tried: errors of cameras make 20 to 200
+LEAST_RAD = np.radians(0.1)  # smaller steps are how a network errs in different postures
+LEAST_CHANGE = 0.05  # of how far held-out joints disagree: what errors of cameras make is 1 to 2 %
+USUAL_RAD = np.radians(0.5)  # about each axis: keeps a turn small that is badly seen
+SAME_M, SAME_LENS = 0.002, 0.03  # a knocked camera keeps its place, and its lens: share of sigma
+BLOCK_S = 1.0  # residuals err alike within it
+MOST_TRIED = 4  # candidates, each of another camera
+ROWS_TO_JUDGE = 40  # of each half that fits: enough for a turn, and a quarter of the time
+MOST = 3  # knocks per take
+
+
+@dataclass(frozen=True, eq=False)
+class Knock:
+    """A camera was turned in place and stayed so."""
+
+    camera: int  # its index
+    time_s: float  # of the first instant after it, as `Seen.time_s`
+    turn: NDArray  # (3,): rotation vector, rad, camera axes before to those after
+    sigma: NDArray  # (3,): its standard deviation, rad
+    change: float  # of how far held-out joints disagree, as a share
+    verdicts: dict[str, str]  # of held-out joints, as of `held_out`
+
+    @property
+    def taken(self) -> bool:
+        """Whether held-out joints say that two poses are better than one."""
+        return held_out.better(self.verdicts)
+
+
+@dataclass(frozen=True, eq=False)
+class _Step:
+    """A candidate: the turn (3,) rad of a camera at a time, and its chi-squared of 3."""
+
+    camera: int
+    time_s: float
+    turn: NDArray
+    gain: float
+
+
+# Normal equations of each camera's turn in each row, (C, T, 3, 3) and (C, T, 3).
+Equations = tuple[NDArray, NDArray]
+
+
+def find(
+    cameras: Sequence[Camera], known: CameraCovariance, seen: Seen, limits: Limits
+) -> list[Knock]:
+    """Find the knocks of a take, the clearest first, each in keypoints without those before it.
+
+    Steps are looked for with the cameras as they are and as people refine them: errors of cameras
+    change with the place of people. Those that stand out are adjusted with all cameras, and taken
+    where held-out joints then agree better than with one pose. The last may be one that is not
+    taken: what was found is told. There are none where people cannot tell (`views.check`).
+    """
+    found: list[Knock] = []
+    try:
+        check(cameras, seen, limits.score)
+    except InputError:  # told where all takes are checked together
+        return found
+    while len(found) < MOST:
+        tried = _candidates(cameras, known, seen, limits)
+        if not tried:
+            break
+        one_pose = _halves(cameras, known, seen, limits, None)
+        judged = [_judged(cameras, known, seen, limits, step, one_pose) for step in tried]
+        at = min(
+            range(len(tried)), key=lambda one: (not held_out.better(judged[one][1]), judged[one][0])
+        )
+        best = _measured(cameras, known, seen, limits, tried[at], judged[at])
+        found.append(best)
+        if not best.taken:
+            break
+        seen = undone(cameras, seen, [best])
+    return found
+
+
+def row(knock: Knock, cameras: Sequence[Camera], clocks: Mapping[str, Clock]) -> dict[str, Any]:
+    """Return a knock as a row of `records.cameras.knock_table`, but for its take."""
+    camera = cameras[knock.camera].name
+    turn, sigma = np.degrees(knock.turn), np.degrees(knock.sigma)
+    return {
+        "camera": camera,
+        "time_s": float(clocks[camera].from_reference(knock.time_s)),
+        **{f"turn_{axis}_deg": float(size) for axis, size in zip("xyz", turn, strict=True)},
+        **{f"sigma_{axis}_deg": float(size) for axis, size in zip("xyz", sigma, strict=True)},
+        "joints_percent": 100 * knock.change,
+        "joints": knock.verdicts["joints"],
+        "taken": int(knock.taken),
+    }
+
+
+def lines(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return what rows of knocks that are taken say, a line each."""
+    found = []
+    for row in (row for row in rows if row["taken"]):
+        turn, sigma = (
+            np.linalg.norm([row[f"{what}_{axis}_deg"] for axis in "xyz"])
+            for what in ("turn", "sigma")
+        )
+        found.append(
+            f"camera {row['camera']} was knocked at {row['time_s']:.2f} s of take {row['take']} by "
+            f"{turn:.2f} +- {sigma:.2f} deg: two poses, before and after, with which held-out "
+            f"joints disagree by {-row['joints_percent']:.0f} % less"
+        )
+    return found
+
+
+def undone(cameras: Sequence[Camera], seen: Seen, knocks: Sequence[Knock]) -> Seen:
+    """Return keypoints where cameras would have seen them without the knocks taken."""
+    xy = seen.xy.copy()
+    for knock in (one for one in knocks if one.taken):
+        after = seen.time_s >= knock.time_s
+        camera = cameras[knock.camera]
+        xy[knock.camera, after] = camera_models.turned_back(
+            camera, xy[knock.camera, after], knock.turn
+        )
+    return replace(seen, xy=xy)
+
+
+def _candidates(cameras, known, seen: Seen, limits: Limits) -> list[_Step]:
+    """Return the clearest steps, each of another camera."""
+    refined = _adjusted(cameras, known, seen.thinned(2 * ROWS_TO_JUDGE), limits, None).cameras
+    steps = [*_steps(cameras, seen, limits.score), *_steps(refined, seen, limits.score)]
+    best: dict[int, _Step] = {}
+    for step in sorted(steps, key=lambda one: one.gain):
+        best[step.camera] = step
+    return list(best.values())[-MOST_TRIED:]
+
+
+def _steps(cameras: Sequence[Camera], seen: Seen, min_score: float) -> list[_Step]:
+    """Return the clearest step of each camera, where it stands out."""
+    equations = _equations(cameras, seen, min_score)
+    times, row = np.unique(seen.time_s, return_inverse=True)
+    order = np.argsort(row, kind="stable")
+    first = np.flatnonzero(np.diff(row[order], prepend=-1))
+    matrix, right = (np.add.reduceat(part[:, order], first, axis=1) for part in equations)
+    found = []
+    for camera, gain in enumerate(_gains(matrix, right, times)):
+        if gain.max() > 0:
+            step = _step(equations, seen, camera, float(times[gain.argmax()]))
+            if step and step.gain >= LEAST_GAIN and np.linalg.norm(step.turn) >= LEAST_RAD:
+                found.append(step)
+    return found
+
+
+def _measured(
+    cameras, known, seen: Seen, limits: Limits, step: _Step, said: tuple[float, dict[str, str]]
+) -> Knock:
+    """Return a step as the adjustment of all cameras measures it."""
+    found = _adjusted(cameras, known, seen, limits, step)
+    old, new = found.cameras[step.camera], found.cameras[-1]
+    turn = rotations.rodrigues_from_rotation(
+        new.cam_from_world[:, :3] @ old.cam_from_world[:, :3].T
+    )
+    count = len(found.cameras)
+    spread = camera_covariance.of_network([str(at) for at in range(count)], found.covariance)
+    both = spread.covariance.reshape(count, len(PARAMETERS), count, len(PARAMETERS))
+    ends = both[[step.camera, -1]][:, :3][:, :, [step.camera, -1]][..., :3]
+    variance = ends[0, :, 0] + ends[1, :, 1] - ends[0, :, 1] - ends[1, :, 0]
+    return Knock(step.camera, step.time_s, turn, np.sqrt(np.diag(variance)), *said)
+
+
+def _judged(
+    cameras, known, seen: Seen, limits: Limits, step: _Step, one_pose: list[list[Camera]]
+) -> tuple[float, dict[str, str]]:
+    """Return the change of held-out joints by a step, as a share, and the verdict.
+
+    Judged is the step's camera alone, against joints that the others place.
+    """
+    two_poses = _halves(cameras, known, seen, limits, step)
+    before, after = (_score(halves, seen, step) for halves in (one_pose, two_poses))
+    change = after.typical() / before.typical() - 1
+    said = held_out.verdicts(before, after)
+    return change, said if change < -LEAST_CHANGE else {"joints": "not better"}
+
+
+def _halves(cameras, known, seen: Seen, limits: Limits, step: _Step | None) -> list[list[Camera]]:
+    """Return cameras with one pose, or two with a step, fitted to either half of the blocks."""
+    block = seen.blocks(held_out.BLOCKS)
+    halves = [seen.of(block % 2 == odd).thinned(ROWS_TO_JUDGE) for odd in (0, 1)]
+    return [_adjusted(cameras, known, half, limits, step).cameras for half in halves]
+
+
+def _score(halves: list[list[Camera]], seen: Seen, step: _Step) -> held_out.Score:
+    """Score the step's camera in the blocks of the half that its cameras were not fitted to."""
+    score, block, at = held_out.Score(), seen.blocks(held_out.BLOCKS), step.camera
+    others = [one for one in range(len(seen.xy)) if one != at]
+    for odd, found in enumerate(halves):
+        rows = block % 2 != odd
+        views = seen.xy[:, rows]
+        flat = views[others].reshape(len(others), -1, 2)
+        xyz = triangulate_all([found[one] for one in others], flat).reshape(*views.shape[1:3], 3)
+        last = found[-1] if len(found) > len(seen.xy) else found[at]
+        after = (seen.time_s[rows] >= step.time_s)[:, None, None]
+        there = np.where(after, project(last, xyz), project(found[at], xyz))
+        off = np.linalg.norm(views[at] - there, axis=-1) / seen.height_px[at, rows, None]
+        for one in np.unique(block[rows]):
+            part = off[block[rows] == one]
+            if np.isfinite(part).any():
+                score.share[int(one)] = float(np.nanmedian(part))
+    return score
+
+
+def _adjusted(cameras, known, seen: Seen, limits: Limits, step: _Step | None):
+    """Return cameras adjusted with people; with a step, the pose after it is one more camera."""
+    if step is None:
+        return adjustment.refine(cameras, seen, prior.knowledge(cameras, known), limits)
+    camera = cameras[step.camera]
+    before, names = [*cameras, replace(camera, name="after")], [one.name for one in cameras]
+    size = len(PARAMETERS)
+    again = np.r_[: size * len(names), size * step.camera : size * (step.camera + 1)]
+    covariance = known.of(names).covariance[np.ix_(again, again)]
+    own = np.sqrt(np.diag(covariance)[-size:])
+    more = np.r_[[USUAL_RAD] * 3, [SAME_M] * 3, SAME_LENS * own[6:]]
+    covariance[-size:, -size:] += np.diag(more**2)
+    two = CameraCovariance([*names, "after"], covariance)
+    start = [*cameras, camera_models.turned(before[-1], step.turn)]
+    return adjustment.refine(start, _split(seen, step), prior.knowledge(before, two), limits)
+
+
+def _split(seen: Seen, step: _Step) -> Seen:
+    """Return what was seen after a step by its camera as seen by one more camera."""
+    after = seen.time_s >= step.time_s
+
+    def parted(values: NDArray) -> NDArray:
+        both = np.concatenate([values, values[step.camera : step.camera + 1]]).copy()
+        both[step.camera, after], both[-1, ~after] = np.nan, np.nan
+        return both
+
+    height_px = np.concatenate([seen.height_px, seen.height_px[step.camera : step.camera + 1]])
+    return replace(seen, xy=parted(seen.xy), score=parted(seen.score), height_px=height_px)
+
+
+def _equations(cameras: Sequence[Camera], seen: Seen, min_score: float) -> Equations:
+    """Return epipolar residuals' equations; a view's scatter is in heights of the person."""
+    rays = []
+    for camera, xy in zip(cameras, seen.xy, strict=True):
+        straight = camera_models.undistort(camera, xy)
+        ray = np.concatenate([straight, np.ones((*straight.shape[:-1], 1))], axis=-1)
+        rays.append(ray / np.linalg.norm(ray, axis=-1, keepdims=True))
+    shape = len(cameras), len(seen.track)
+    matrix, right = np.zeros((*shape, 3, 3)), np.zeros((*shape, 3))
+    used = np.nan_to_num(seen.score) >= min_score
+    for pair in combinations(range(len(cameras)), 2):
+        a, b = (cameras[at] for at in pair)
+        base = rotations.unit_vector(b.centre_in_world - a.centre_in_world)
+        of_a, of_b = (
+            rays[at] @ one.cam_from_world[:, :3] for at, one in zip(pair, (a, b), strict=True)
+        )
+        slopes = np.cross(of_b, base), np.cross(base, of_a)  # of the residual, by either ray
+        variance = sum(
+            (seen.height_px[at] / epipolar.focal_px(cameras[at]))[:, None] ** 2
+            * (slope**2).sum(axis=-1)
+            / np.maximum(seen.score[at], min_score)
+            for at, slope in zip(pair, slopes, strict=True)
+        )
+        off = np.cross(of_a, of_b) @ base / np.sqrt(variance)
+        known = np.isfinite(off) & used[pair[0]] & used[pair[1]]
+        if not known.any():
+            continue
+        scatter = MEDIAN_TO_SIGMA * np.median(np.abs(off[known])) + np.finfo(float).tiny
+        off = np.where(known, off, 0.0) / scatter
+        weight = known / (1 + (off / LOSS) ** 2)
+        for at, ray, slope in zip(pair, (of_a, of_b), slopes, strict=True):
+            by_turn = np.cross(ray, slope) @ cameras[at].cam_from_world[:, :3].T
+            by_turn = np.nan_to_num(by_turn / (scatter * np.sqrt(variance))[..., None])
+            matrix[at] += np.einsum("tj,tji,tjk->tik", weight, by_turn, by_turn)
+            right[at] += np.einsum("tj,tji,tj->ti", weight, by_turn, off)
+    return matrix, right
+
+
+def _gains(matrix: NDArray, right: NDArray, times: NDArray) -> NDArray:
+    """Return how much a step at each time lowers the cost of each camera, (C, T)."""
+    ahead = [np.cumsum(part, axis=1) - part for part in (matrix, right)]
+    whole = [part.sum(axis=1, keepdims=True) for part in (matrix, right)]
+    ridge = 1e-6 * np.trace(whole[0], axis1=2, axis2=3)[..., None, None] * np.eye(3) + 1e-12
+
+    def cost(one: NDArray, other: NDArray) -> NDArray:
+        return (np.linalg.solve(one + ridge, other[..., None])[..., 0] * other).sum(axis=-1)
+
+    behind = [all_ - part for all_, part in zip(whole, ahead, strict=True)]
+    gain = cost(*ahead) + cost(*behind) - cost(*whole)
+    inner = (times >= times[0] + LEAST_S) & (times <= times[-1] - LEAST_S)
+    return np.where(inner, gain, 0.0)
+
+
+def _step(equations: Equations, seen: Seen, camera: int, time_s: float) -> _Step | None:
+    """Return the step at a time; None where a side says too little.
+
+    Residuals err alike: its covariance is from their sums over blocks of time.
+    """
+    after, turns, spread = seen.time_s >= time_s, [], []
+    for side in (~after, after):
+        matrix, right = (part[camera, side] for part in equations)
+        total = matrix.sum(axis=0)
+        if np.linalg.matrix_rank(total) < 3:
+            return None
+        turns.append(np.linalg.solve(total, right.sum(axis=0)))
+        block = np.stack([seen.track[side], seen.time_s[side] // BLOCK_S])
+        _, number = np.unique(block, axis=1, return_inverse=True)
+        left = right - matrix @ turns[-1]
+        sums = np.stack([np.bincount(number.ravel(), axis) for axis in left.T], axis=1)
+        inverse = np.linalg.inv(total)
+        spread.append(inverse + inverse @ sums.T @ sums @ inverse)
+    step, information = turns[1] - turns[0], np.linalg.inv(spread[0] + spread[1])
+    shrunk = np.linalg.solve(information + np.eye(3) / USUAL_RAD**2, information @ step)
+    return _Step(camera, time_s, shrunk, float(step @ information @ step))
