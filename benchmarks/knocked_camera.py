@@ -105,6 +105,7 @@ def main():
                 row |= dict(zip(("after_axis", "after_deg"), apart(after, true), strict=True))
                 off = np.degrees(right.turn - turn)
                 row |= {"across_deg": np.hypot(*off[:2]), "roll_deg": abs(off[2])}
+                row["turn_deg"] = float(np.linalg.norm(off))
                 row |= {"late_s": right.time_s - middle}
             undone = knocks.undone(cameras, bumped, found)
             row |= {"mm": whole, "mm_knocked": error_mm(cameras, bumped, limits, truth)}
