@@ -91,7 +91,7 @@ def main():
         rng = np.random.default_rng(seed)
         middle = float(seen.time_s.mean())
         for at, camera in enumerate(cameras):
-            turn = np.radians(given.deg) * rotations.unit_vector(rng.normal(size=3))
+            turn = np.radians(given.deg) * rotations.unit(rng.normal(size=3))
             bumped = knocked(camera, seen, at, middle, turn)
             found = [one for one in knocks.find(cameras, known, bumped, limits) if one.taken]
             right = next((one for one in found if one.camera == at), None)

@@ -25,6 +25,7 @@ from scipy.spatial.transform import Rotation
 sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court import quality
+from courtside.calibration.file_check import residuals
 from courtside.calibration.people import adjustment, prior, views
 from courtside.calibration.people.adjustment import Limits
 from courtside.geometry import camera as camera_models
@@ -99,9 +100,8 @@ def clocks_ms(cameras, seen):
     """Return each camera's offset, ms, and the change of its median residual by it, percent."""
     found, step_s = [], float(np.median(np.diff(np.unique(seen.time_s))))
     for at, camera in enumerate(cameras):
-        others = [one for one in range(len(cameras)) if one != at]
-        flat = seen.xy[others].reshape(len(others), -1, 2)
-        xyz = triangulate_all([cameras[one] for one in others], flat)
+        flat = seen.xy.reshape(len(cameras), -1, 2)
+        xyz = residuals.placed_by_others(cameras, flat, at)
         off = seen.xy[at] - camera_models.project(camera, xyz).reshape(seen.xy[at].shape)
         speed = np.gradient(seen.xy[at], step_s, axis=0)
         size = np.linalg.norm(off, axis=-1)

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.calibration.file_check import residuals
 from courtside.calibration.people import adjustment, held_out, prior
 from courtside.calibration.people.adjustment import LOSS, MEDIAN_TO_SIGMA, Limits
 from courtside.calibration.people.views import Seen, check
@@ -22,7 +23,6 @@ from courtside.calibration.records.covariance import PARAMETERS, CameraCovarianc
 from courtside.geometry import camera as camera_models
 from courtside.geometry import epipolar, rotations
 from courtside.geometry.camera import Camera, project
-from courtside.geometry.triangulation import triangulate_all
 from courtside.records.devices.clocks import Clock
 from courtside.study.errors import InputError
 
@@ -212,12 +212,13 @@ def _halves(cameras, known, seen: Seen, limits: Limits, step: _Step | None) -> l
 def _score(halves: list[list[Camera]], seen: Seen, step: _Step) -> held_out.Score:
     """Score the step's camera in the blocks of the half that its cameras were not fitted to."""
     score, block, at = held_out.Score(), seen.blocks(held_out.BLOCKS), step.camera
-    others = [one for one in range(len(seen.xy)) if one != at]
     for odd, found in enumerate(halves):
         rows = block % 2 != odd
         views = seen.xy[:, rows]
-        flat = views[others].reshape(len(others), -1, 2)
-        xyz = triangulate_all([found[one] for one in others], flat).reshape(*views.shape[1:3], 3)
+        flat = views.reshape(len(views), -1, 2)
+        xyz = residuals.placed_by_others(found[: len(views)], flat, at).reshape(
+            *views.shape[1:3], 3
+        )
         last = found[-1] if len(found) > len(seen.xy) else found[at]
         after = (seen.time_s[rows] >= step.time_s)[:, None, None]
         there = np.where(after, project(last, xyz), project(found[at], xyz))
@@ -234,14 +235,17 @@ def _adjusted(cameras, known, seen: Seen, limits: Limits, step: _Step | None):
     if step is None:
         return adjustment.refine(cameras, seen, prior.knowledge(cameras, known), limits)
     camera = cameras[step.camera]
-    before, names = [*cameras, replace(camera, name="after")], [one.name for one in cameras]
+    before, names = (
+        [*cameras, replace(camera, name=f"{camera.name}, after")],
+        [one.name for one in cameras],
+    )
     size = len(PARAMETERS)
     again = np.r_[: size * len(names), size * step.camera : size * (step.camera + 1)]
     covariance = known.of(names).covariance[np.ix_(again, again)]
     own = np.sqrt(np.diag(covariance)[-size:])
     more = np.r_[[USUAL_RAD] * 3, [SAME_M] * 3, SAME_LENS * own[6:]]
     covariance[-size:, -size:] += np.diag(more**2)
-    two = CameraCovariance([*names, "after"], covariance)
+    two = CameraCovariance([one.name for one in before], covariance)
     start = [*cameras, camera_models.turned(before[-1], step.turn)]
     return adjustment.refine(start, _split(seen, step), prior.knowledge(before, two), limits)
 
@@ -271,7 +275,7 @@ def _equations(cameras: Sequence[Camera], seen: Seen, min_score: float) -> Equat
     used = np.nan_to_num(seen.score) >= min_score
     for pair in combinations(range(len(cameras)), 2):
         a, b = (cameras[at] for at in pair)
-        base = rotations.unit_vector(b.centre_in_world - a.centre_in_world)
+        base = rotations.unit(b.centre_in_world - a.centre_in_world)
         of_a, of_b = (
             rays[at] @ one.cam_from_world[:, :3] for at, one in zip(pair, (a, b), strict=True)
         )

@@ -427,6 +427,31 @@ VIEWS = {
             "with": "{taken.command}",
         },
     ),
+    "knocked-cameras": View(
+        "knocked-cameras",
+        {
+            "take": "{row}",
+            "found": "{found}",
+            "turn off, across the view": "{across}",
+            "about the optical axis": "{roll}",
+            "joints without the knock": "{whole}",
+            "with it": "{knocked}",
+            "with two poses": "{repaired}",
+            "by": "{repaired.origin}",
+            "with": "{repaired.command}",
+        },
+    ),
+    "more-of-people": View(
+        "more-of-people",
+        {
+            "cameras": "{row}",
+            "volume": "{volume}",
+            "limb lengths": "{limbs}",
+            "tilt of the floor": "{tilt}",
+            "volume, floor level": "{levelled}",
+            "with": "{volume.command}",
+        },
+    ),
     **{
         name: View(
             name,
