@@ -4,6 +4,7 @@ import numpy as np
 
 from courtside.calibration import file_formats
 from courtside.calibration.court import court as court_files
+from courtside.calibration.court import quality
 from courtside.calibration.people import adjustment, prior, refinement
 from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.held_out import Points
@@ -51,6 +52,8 @@ def main(
         log.logger.warning("%s", line)
     report |= {"taken": found.taken, "verdicts": found.verdicts, "wrong": found.wrong}
     report["warnings"] = [found.line, *found.wrong]
+    report["expected_before_cm"] = expected_cm(paths.court, base, known)
+    report["expected_volume_rms_cm"] = expected_cm(paths.court, found.cameras, found.covariance)
     camera_models.write_toml(cameras_toml, found.cameras, source=f"{calibration}, {found.taken}")
     camera_covariance.write(covariance_npz, found.covariance)
     tables.write(table_csv, found.table, float_format="%.4f")
@@ -60,6 +63,15 @@ def main(
 def limits(views):
     """Return which views count, as for the triangulation."""
     return Limits(views["min_score"], views["max_error_share"], views["fade_share"])
+
+
+def expected_cm(court_yaml, cameras, covariance):
+    """Return the error to expect over a court, cm, by covariances; None without a court."""
+    if not court_yaml:
+        return None
+    grid = quality.volume(court_files.read(court_yaml))
+    value, _ = quality.expected_cm(cameras, covariance, grid)
+    return round(value, 4) if np.isfinite(value) else None
 
 
 def in_file(path, names, override, unit):

@@ -133,9 +133,8 @@ def _session(study: Study, session: Session) -> dict[str, Any]:
     first = session.variants()[0]
     variant = first if photos else Variant("global", (mapped_by or first).n_images)
     known = {"session": session.name, **vars(variant)}
-    quality = {
-        one.name: paths.CALIBRATION_QUALITY.format(**known, calibration=one.name) for one in ways
-    }
+    shown = dict.fromkeys(name for one in ways for name in (one.base, one.name) if name)
+    quality = {name: paths.CALIBRATION_QUALITY.format(**known, calibration=name) for name in shown}
     model = {
         "model": paths.SFM_SUMMARY.format(**known),
         "static": [paths.STATIC_CHECK.format(**known, camera=camera) for camera in session.cameras],
