@@ -42,6 +42,7 @@ MEASURED = (  # of the results of a default run
 STATED = (
     *("real-checks", "markers", "hall-points", "device-checks", "stated-errors", "flags", "crowd"),
     *("file-evidence", "file-mended", "networks", "offset-cameras", "persons-found", "batches"),
+    *("ways", "lines-clicks"),
     *("file-faults", "refined-people", "mapping-checks", "click-model", "click-alarms", "worlds"),
     *("halls", "halls-strengths"),
     *("body-model", "body-model-hall", "contacts"),

@@ -391,6 +391,42 @@ VIEWS = {
             "with": "{frames.command}",
         },
     ),
+    "ways": View(
+        "ways",
+        {
+            "way": "{row}",
+            "alone: error over the volume, median / 95 %, cm": "{alone}",
+            "its shape, cm": "{alone_shape}",
+            "accepted views, %": "{alone_accepted}",
+            "refined by people, cm": "{refined}",
+            "shape, cm": "{refined_shape}",
+            "accepted, %": "{refined_accepted}",
+            "refined cameras taken": "{taken}",
+        },
+        "^`players-b`",
+    ),
+    "ways-real": View(
+        "ways",
+        {
+            "recording: way": "{row}",
+            "alone": "{alone}; {alone_shape}",
+            "accepted views, by camera, %": "{alone_accepted}",
+            "refined by people": "{refined}; {refined_shape}",
+            "accepted, %": "{refined_accepted}",
+            "taken": "{taken}",
+        },
+        "^`(walk|charuco|hall)",
+    ),
+    "lines-clicks": View(
+        "lines-clicks",
+        {
+            "hall": "{row}",
+            "court found in": "{found}",
+            "18 clicks in every camera, median / 95 %, cm": "{clicks}",
+            "court lines, cm": "{lines}",
+            "lines / clicks": "{ratio}",
+        },
+    ),
     "refined-people": View(
         "refined-people",
         {
