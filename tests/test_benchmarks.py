@@ -27,6 +27,7 @@ import real_footage
 import rows
 import run_log
 import structure_from_motion
+import ways_to_calibrate
 from comparisons import pose
 from courtside.devices import openpose
 from courtside.geometry import camera as camera_models
@@ -214,6 +215,12 @@ def test_the_session_of_the_hall_is_a_session(tmp_path):
     camera = camera_models.read_toml(tmp_path / "data" / "given.toml")[0]
     assert camera.centre_in_world.tolist() == [3, 0, -9]
     assert (tmp_path / "data" / "court_points.csv").read_text().count("cam0") == 1
+
+
+def test_cameras_whose_court_is_not_found_are_clicked():
+    clicks = {"back": np.zeros((2, 2)), "side": np.ones((2, 2))}
+    found = ways_to_calibrate.together({"back": np.full((2, 2), 5.0), "side": None}, clicks)
+    assert (found["back"] == 5).all() and found["side"] is clicks["side"]
 
 
 def test_joints_set_by_hand_are_read_as_keypoints_of_another_program(tmp_path):
