@@ -68,16 +68,19 @@ def _used(name: str | None, known: dict[str, dict]) -> dict | None:
     """Return what the template says of the calibration that takes are measured with, and why.
 
     `words`: what it is; `expected_cm` and, of one refined by people, `base`, `before_cm`, `line`
-    (which cameras were taken, by what was held out) and `wrong` (numbers named).
+    (which cameras were taken, by what was held out), `wrong` (numbers named) and `others` (what
+    else its `warnings` say).
     """
     if not name or name not in known:
         return None
     content, way = known[name], Calibration.parse(name)
-    found = {"name": name, "words": methods.CALIBRATED[way.kind], "base": way.base}
+    found: dict = {"name": name, "words": methods.CALIBRATED[way.kind], "base": way.base}
     found["expected_cm"] = content.get("expected_volume_rms_cm")
     if way.base:
-        line, *wrong = content["warnings"]
+        line, *others = content["warnings"]
+        wrong = [one for one in others if one in content.get("wrong", ())]
         found |= {"line": line, "wrong": wrong, "before_cm": content.get("expected_before_cm")}
+        found["others"] = [one for one in others if one not in wrong]
         found |= {"of_base": methods.CALIBRATED[Calibration.parse(way.base).kind]}
     return found
 
