@@ -202,7 +202,7 @@ def way_rows(results, data, model):
             printed = ", ".join(f"{one:.0f}" for one in share)
             yield "ways", row, f"{part}_accepted", printed, "%", raw
         said = read_json(folder / "calibration" / f"{base}-people" / "quality.json")
-        yield "ways", row, "taken", said["taken"], "", raw
+        yield "ways", row, "refined_taken", said["taken"], "", raw
 
 
 def rows(found):
@@ -271,7 +271,8 @@ def main():
         pd.concat(labelled).to_csv(given.csv, index=False, float_format="%.3f")
     if given.model == "blazepose-heavy":
         stated.write(
-            ROOT / stated.FOLDER / "hall_markers.csv", register_rows([*rows(found), *ways])
+            ROOT / stated.FOLDER / "hall_markers.csv",
+            [*register_rows(rows(found)), *stated.joined(register_rows(ways))],
         )
 
 
