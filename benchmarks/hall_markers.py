@@ -4,14 +4,17 @@
 
 DATA is a folder of the recording "mocap_8" (pictures CC BY 4.0), which is no part of the project:
 `cam02.mp4`, `cam05.mp4`, `cam08.mp4`, `cam13.mp4`, their cameras in `calibration_refined.toml`,
-points of the court in `court_points.csv`, what the marker system saw in `mocap.csv`, and joints set
-by hand in `annotations.csv`. The script writes a study of this one session into FOLDER (by default
-a temporary one), with the file's cameras and with cameras found from court points alone, runs it,
-and compares with the markers: time shift and one rigid motion are found from the joints, the scale
+points of the court in `court_points.csv`, what the marker system saw in `mocap.csv`, joints set by
+hand in `annotations.csv`, and in `calibration_given.json` the cameras as the source gives them, in
+which camera 8 is wrong. The script writes a study into FOLDER (by default a temporary one), with
+the file's cameras, with cameras found from court points alone, as a second session with the given
+ones, and with all of these refined by the people in the take, runs it, and compares with the
+markers: time shift and one rigid motion are found from the joints, the scale
 is not fitted. It writes docs/numbers/hall_markers.csv, a source of docs/make_tables.py.
 """
 
 import argparse
+import json
 import subprocess
 import sys
 import tempfile
@@ -20,6 +23,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import yaml
+from scipy.spatial.transform import Rotation
 
 from many_sessions import ROOT, copied
 
@@ -30,11 +34,16 @@ from courtside.evaluation.numbers import stated
 from courtside.geometry import camera as camera_models
 from courtside.geometry import triangulation
 from courtside.records.cameras import placed_points
-from courtside.records.keypoints import keypoints
+from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.configuration import yaml_files
+from courtside.study.execution.files import read_json
 
 CAMERAS = ("cam02", "cam05", "cam08", "cam13")
-FILES = ("mocap.csv", "annotations.csv", "court_points.csv", "calibration_refined.toml")
+FILES = (
+    *("mocap.csv", "annotations.csv", "court_points.csv", "calibration_refined.toml"),
+    "calibration_given.json",
+)
+SIZE = (3840, 2160)
 # Who is meant, as a user says it: the player stands there in the first picture. Somebody else is in
 # all pictures, too.
 SUBJECTS = {
@@ -45,6 +54,12 @@ SUBJECTS = {
 }
 HAND_PX = {"max_error_px": 15, "fade_px": 20}  # of joints set by hand, persons 160 to 540 px tall
 WAYS = {"file": "cameras of the source, refined", "known": "cameras from court points alone"}
+GIVEN = "hall-given"
+REFINED = {  # by session and calibration, in the table `ways`
+    ("hall-markers", "file"): "file of the source, refined to court points",
+    ("hall-markers", "known"): "court points alone",
+    (GIVEN, "file"): "file as given, camera 8 wrong",
+}
 STAGES = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
 FUSED = "takes/play/{stage}/{way}/all-robust/{model}.npz"
 # Of the marker system, wrong in the first 2 s: the study and the hand annotations agree with each
@@ -54,12 +69,20 @@ LABEL = "real, basketball player in a marker suit, sports hall, against the mark
 COMMAND = "`python benchmarks/hall_markers.py DATA`"
 
 
+def calibrations(session):
+    """Return the calibrations of a session: each alone and refined by people."""
+    bases = [way for name, way in REFINED if name == session]
+    return [*bases, *(f"{way}-people" for way in bases)]
+
+
 def write_study(folder, data, model):
-    """Write the session and its study; return the name of the study's configuration."""
+    """Write the sessions and their study; return the name of the study's configuration."""
     (folder / "data").mkdir(exist_ok=True)
     points = pd.read_csv(data / "court_points.csv").assign(z_m=0.0)
     points = points[points["camera"].isin(CAMERAS)]
     points[list(placed_points.COLUMNS)].to_csv(folder / "data" / "court_points.csv", index=False)
+    given = json.loads((data / "calibration_given.json").read_text())
+    camera_models.write_toml(folder / "data" / "given.toml", as_given(given), source="given")
     content = {
         "description": "A sports hall with a marker system, 4 fixed cameras, 12 pictures a second",
         "court": "none",
@@ -73,30 +96,47 @@ def write_study(folder, data, model):
                 "videos": {name: str(data / f"{name}.mp4") for name in CAMERAS},
             }
         },
-        "override": {
-            "models": [model],
-            "calibrations": list(WAYS),
-            "take_calibrations": list(WAYS),
-        },
     }
-    session = folder / "config" / "sessions" / "hall-markers.yaml"
-    session.write_text(yaml.safe_dump(content, sort_keys=False), encoding="utf-8")
+    other = {key: value for key, value in content.items() if key != "court_points"}
+    other["calibration"] = {"file": "data/given.toml"}
+    for name, told in {"hall-markers": content, GIVEN: other}.items():
+        ways = calibrations(name)
+        told["override"] = {"models": [model], "calibrations": ways, "take_calibrations": ways}
+        session = folder / "config" / "sessions" / f"{name}.yaml"
+        session.write_text(yaml.safe_dump(told, sort_keys=False), encoding="utf-8")
     study = folder / "config" / "hall-markers-study.yaml"
     study.write_text(
-        yaml.safe_dump({"sessions": ["hall-markers"], "plans": [], "variations": []}),
+        yaml.safe_dump({"sessions": ["hall-markers", GIVEN], "plans": [], "variations": []}),
         encoding="utf-8",
     )
     return str(study.relative_to(folder))
 
 
+def as_given(content):
+    """Return the cameras of `calibration_given.json`, whose lengths are mm."""
+    found = []
+    for name in CAMERAS:
+        rows = content[name]
+        turn = Rotation.from_rotvec(np.ravel(rows["rvecs"])).as_matrix()
+        pose = np.column_stack([turn, np.ravel(rows["tvecs"]) / 1000])
+        lens = np.array(rows["mtx"]), np.ravel(rows["dist"])
+        found.append(camera_models.Camera(name, SIZE, *lens, pose))
+    return found
+
+
 def run(folder, data, model):
-    """Make the skeletons of all stages with both calibrations; return the results' folder."""
+    """Make the skeletons of all stages with all calibrations; return the results' folder."""
     copied(folder)
-    study, results = write_study(folder, data, model), Path("results") / "hall-markers"
-    made = [results / FUSED.format(stage=s, way=w, model=model) for s in STAGES for w in WAYS]
+    study, results = write_study(folder, data, model), Path("results")
+    made = [
+        results / name / FUSED.format(stage=stage, way=way, model=model)
+        for name in ("hall-markers", GIVEN)
+        for way in calibrations(name)
+        for stage in STAGES
+    ]
     command = [sys.executable, "-m", "snakemake", "--configfile", study, "--", *map(str, made)]
     subprocess.run(command, cwd=folder, check=True)
-    return folder / results
+    return folder / results / "hall-markers"
 
 
 def truth(data):
@@ -126,10 +166,10 @@ def by_hand(data, cameras, rate_hz):
     return np.arange(shape[1]) / rate_hz, found.xyz.reshape(*shape[1:], 3)
 
 
-def measured(results, data, model):
+def measured(results, data, model, ways=WAYS):
     """Yield (way, stage, Fit, table of errors)."""
     names, (true_s, true) = list(marker_system.JOINTS), truth(data)
-    for way in WAYS:
+    for way in ways:
         for stage, word in STAGES.items():
             points = keypoints.read_3d(results / FUSED.format(stage=stage, way=way, model=model))
             own, rate_hz = [points.joints.tolist().index(name) for name in names], points.rate_hz
@@ -143,6 +183,26 @@ def measured(results, data, model):
         unknown = np.full((*xyz.shape, 3), np.nan)
         table = marker_system.table(names, found, unknown, rate_hz, DOUBTFUL)
         yield way, "hand", found, table
+
+
+def way_rows(results, data, model):
+    """Yield the rows of the table `ways`: each calibration alone and refined by people."""
+    for (session, base), words in REFINED.items():
+        folder, row = results.parent / session, f"`hall-markers`: {words}"
+        for part, way in (("alone", base), ("refined", f"{base}-people")):
+            found = {stage: one for _, stage, _, one in measured(folder, data, model, [way])}
+            raw, corrected = (found[stage].iloc[0] for stage in ("raw", "corrected"))
+            printed = f"markers {raw['median_mm']:.0f} / {raw['p90_mm']:.0f} mm"
+            yield "ways", row, part, printed, "mm", raw
+            printed = f"corrected {corrected['median_mm']:.0f} / {corrected['p90_mm']:.0f} mm"
+            yield "ways", row, f"{part}_shape", printed, "mm", corrected
+            points = keypoints.read_3d(folder / FUSED.format(stage="pose3d", way=way, model=model))
+            limbs = [list(points.joints).index(name) for name in skeleton.JOINTS]
+            share = 100 * points.accepted[0][:, limbs].mean(axis=(0, 1))
+            printed = ", ".join(f"{one:.0f}" for one in share)
+            yield "ways", row, f"{part}_accepted", printed, "%", raw
+        said = read_json(folder / "calibration" / f"{base}-people" / "quality.json")
+        yield "ways", row, "refined_taken", said["taken"], "", raw
 
 
 def rows(found):
@@ -170,7 +230,7 @@ def rows(found):
 
 def register_rows(found):
     """Yield the rows as docs/make_tables.py reads them."""
-    for name, row, part, value, unit, counted in rows(found):
+    for name, row, part, value, unit, counted in found:
         n, missing = int(counted["n"]), counted["missing_percent"] / 100
         failed = round(n * missing / (1 - missing))
         yield [name, row, part, value, unit, "hall-markers", n, failed, "benchmark", COMMAND]
@@ -201,6 +261,7 @@ def main():
         folder.mkdir(parents=True, exist_ok=True)
         results = given.results or run(folder, given.data.resolve(), given.model)
         found = list(measured(results, given.data, given.model))
+        ways = list(way_rows(results, given.data, given.model))
     for way, stage, fit, table in found:
         print(f"\n{WAYS[way]}, {stage}: the markers' clock is found {fit.shift_s:.3f} s "
               f"ahead; scale {fit.scale:.4f}, not fitted")  # fmt: skip
@@ -209,7 +270,10 @@ def main():
         labelled = [table.assign(way=way, stage=stage) for way, stage, _, table in found]
         pd.concat(labelled).to_csv(given.csv, index=False, float_format="%.3f")
     if given.model == "blazepose-heavy":
-        stated.write(ROOT / stated.FOLDER / "hall_markers.csv", register_rows(found))
+        stated.write(
+            ROOT / stated.FOLDER / "hall_markers.csv",
+            [*register_rows(rows(found)), *stated.joined(register_rows(ways))],
+        )
 
 
 if __name__ == "__main__":

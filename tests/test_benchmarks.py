@@ -1,6 +1,7 @@
 """What the benchmarks conclude from their times; that they give scripts what these take."""
 
 import inspect
+import json
 import runpy
 import shutil
 import sqlite3
@@ -26,8 +27,10 @@ import real_footage
 import rows
 import run_log
 import structure_from_motion
+import ways_to_calibrate
 from comparisons import pose
 from courtside.devices import openpose
+from courtside.geometry import camera as camera_models
 from courtside.pose.detector import Region
 from courtside.records.keypoints import skeleton
 from courtside.study.configuration import configuration, yaml_files
@@ -194,14 +197,30 @@ def test_the_session_of_the_hall_is_a_session(tmp_path):
     (data / "court_points.csv").write_text(
         "camera,x_px,y_px,x_m,y_m\ncam02,1,2,3,4\ncam01,5,6,3,4\n"
     )
+    one = {"mtx": [[4000, 0, 1920], [0, 4000, 1080], [0, 0, 1]], "dist": [[-0.3, 0, 0, 0, 0]]}
+    one |= {"rvecs": [[0], [0], [0]], "tvecs": [[-3000], [0], [9000]]}
+    given = json.dumps(dict.fromkeys(hall_markers.CAMERAS, one))
+    (data / "calibration_given.json").write_text(given)
     hall_markers.checked(data)
     config = tmp_path / "config"
     shutil.copytree(ROOT / "config", config)
     written = hall_markers.write_study(tmp_path, data, "blazepose-heavy")
     study = yaml_files.read(config / "config.yaml") | yaml_files.read(tmp_path / written)
-    found = configuration.load(study, written, config, tmp_path).sessions["hall-markers"]
-    assert found.calibrations() == found.take_calibrations() == list(hall_markers.WAYS)
+    sessions = configuration.load(study, written, config, tmp_path).sessions
+    found = sessions["hall-markers"]
+    assert (
+        found.calibrations() == found.take_calibrations() == hall_markers.calibrations(found.name)
+    )
+    assert sessions["hall-given"].calibrations() == ["file", "file-people"]
+    camera = camera_models.read_toml(tmp_path / "data" / "given.toml")[0]
+    assert camera.centre_in_world.tolist() == [3, 0, -9]
     assert (tmp_path / "data" / "court_points.csv").read_text().count("cam0") == 1
+
+
+def test_cameras_whose_court_is_not_found_are_clicked():
+    clicks = {"back": np.zeros((2, 2)), "side": np.ones((2, 2))}
+    found = ways_to_calibrate.together({"back": np.full((2, 2), 5.0), "side": None}, clicks)
+    assert (found["back"] == 5).all() and found["side"] is clicks["side"]
 
 
 def test_joints_set_by_hand_are_read_as_keypoints_of_another_program(tmp_path):

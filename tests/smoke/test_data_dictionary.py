@@ -74,6 +74,7 @@ PLACES = {
     "*/takes/*/pose3d*/*.csv": [TIDY],
     "*/takes/*/quality.csv": ["Columns of the verdicts"],
     "figures/calibration.csv": [f"{TOGETHER} | calibration.csv", OF_CALIBRATION],
+    "figures/ways.csv": [f"{TOGETHER} | ways.csv"],
     "figures/players.csv": [f"{TOGETHER} | players.csv", f"{TAKES} | errors", LABELS],
     "figures/angles.csv": [f"{TOGETHER} | {end}.csv" for end in ("angles", "players")]
     + [f"{TAKES} | errors", LABELS],

@@ -2,9 +2,10 @@
 
 Only this file and evaluation_takes.smk read truth.
 
-Inputs: ties, truth. Outputs: results/{session}/evaluation/, results/figures/calibration.csv.
+Inputs: ties, truth. Outputs: results/{session}/evaluation/, results/figures/calibration.csv and ways.csv.
 Steps: evaluate_calibration (one structure from motion), evaluate_known (calibration from known
-points alone), evaluate_racket (the length of a racket), tabulate_calibration.
+points alone), evaluate_racket (the length of a racket), evaluate_ways (all ways side by side, for
+the report), tabulate_calibration.
 """
 
 
@@ -60,6 +61,20 @@ rule evaluate_racket:
         step=of_job(evaluation.racket),
     script:
         "../scripts/evaluate_racket.py"
+
+
+rule evaluate_ways:
+    input:
+        files=lambda w: evaluation.ways_files(STUDY),
+    output:
+        table_csv=paths.WAYS_TABLE,
+    log:
+        "results/figures/logs/evaluate_ways/all.log",
+    params:
+        code=code("evaluate_ways.py"),
+        ways=lambda w: evaluation.ways(STUDY),
+    script:
+        "../scripts/evaluate_ways.py"
 
 
 rule tabulate_calibration:

@@ -56,6 +56,8 @@ rule draw_error_map:
         cameras_toml=paths.CAMERAS,
         covariance_npz=paths.CAMERA_COVARIANCE,
         court_yaml=of_job(Job.court_file),
+        base_toml=of_job(calibration.of_base, paths.CAMERAS),
+        base_npz=of_job(calibration.base_covariance),
     output:
         **session_figure(
             "error_map.{calibration}",
@@ -67,7 +69,7 @@ rule draw_error_map:
         "results/{session}/logs/draw_error_map/{calibration}.log",
     params:
         code=code("draw_error_map.py"),
-        step=step("draw_error_map"),
+        step=of_job(calibration.error_map),
     script:
         "../scripts/draw_error_map.py"
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from courtside.calibration import file_formats
 from courtside.calibration.court import court as court_files
+from courtside.calibration.court import quality
 from courtside.calibration.people import adjustment, knocks, prior, refinement
 from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.held_out import Points
@@ -21,25 +22,11 @@ from courtside.study.execution.script import run
 
 
 def main(
-    paths,
-    cameras_toml,
-    covariance_npz,
-    quality_json,
-    table_csv,
-    knocks_csv,
-    *,
-    calibration,
-    names,
-    override,
-    takes,
-    weights,
-    views,
-    step,
-    unit=None,
-):
+    paths, cameras_toml, covariance_npz, quality_json, table_csv, knocks_csv, *,
+    calibration, names, override, takes, weights, views, step, unit=None,
+):  # fmt: skip
     base = camera_models.read_toml(paths.cameras)
-    stated = {key: value for key, value in step.items() if key != "takes"}
-    known = prior.stated(base, **stated)
+    known = prior.stated(base, **{key: value for key, value in step.items() if key != "takes"})
     if paths.covariance:
         known = camera_covariance.read(paths.covariance).of([camera.name for camera in base])
     report = {"calibration": calibration, "takes": [take["sync"] for take in takes]}
@@ -54,12 +41,14 @@ def main(
     said = [found.line, *found.wrong, *knocks.lines(rows)]
     for line in said:
         log.logger.warning("%s", line)
-    told = {"taken": found.taken, "verdicts": found.verdicts, "wrong": found.wrong}
+    report |= {"taken": found.taken, "verdicts": found.verdicts, "wrong": found.wrong}
+    report["expected_before_cm"] = expected_cm(paths.court, base, known)
+    report["expected_volume_rms_cm"] = expected_cm(paths.court, found.cameras, found.covariance)
     knock_table.write(knocks_csv, rows)
     camera_models.write_toml(cameras_toml, found.cameras, source=f"{calibration}, {found.taken}")
     camera_covariance.write(covariance_npz, found.covariance)
     tables.write(table_csv, found.table, float_format="%.4f")
-    write_json(quality_json, {**report, **told, "warnings": said})
+    write_json(quality_json, {**report, "warnings": said})
 
 
 def seen_of(paths, base, known, take, limits, rows):
@@ -73,6 +62,15 @@ def seen_of(paths, base, known, take, limits, rows):
 def limits(views):
     """Return which views count, as for the triangulation."""
     return Limits(views["min_score"], views["max_error_share"], views["fade_share"])
+
+
+def expected_cm(court_yaml, cameras, covariance):
+    """Return the error to expect over a court, cm, by covariances; None without a court."""
+    if not court_yaml:
+        return None
+    grid = quality.volume(court_files.read(court_yaml))
+    value, _ = quality.expected_cm(cameras, covariance, grid)
+    return round(value, 4) if np.isfinite(value) else None
 
 
 def in_file(path, names, override, unit):

@@ -33,10 +33,11 @@ def main(
     found = points_alone.calibrate(court, marked, sizes, **step)
     for warning in found.warnings:
         log.logger.warning("%s", warning)
-    report = {"calibration": calibration, **points_alone.said(found), **volume(court, found)}
+    covariance = camera_covariance.of_network(cameras, found.solution.covariance)
+    report = {"calibration": calibration, **points_alone.said(found)}
+    report |= volume(court, found.solution.cameras, covariance)
     report["left_out"] = quality.leave_one_out_errors(court, found.solution.cameras, marked)[1]
     camera_models.write_toml(cameras_toml, found.solution.cameras, source=calibration)
-    covariance = camera_covariance.of_network(cameras, found.solution.covariance)
     camera_covariance.write(covariance_npz, covariance)
     write_json(quality_json, report)
 
@@ -59,11 +60,11 @@ def size(path):
     return reader.probe(path).size
 
 
-def volume(court, found):
+def volume(court, found, covariance):
     grid = quality.volume(court)
     if not len(court.lines_m):  # places of their own: their frame begins anywhere
         grid[:, :2] += court.xyz[:, :2].min(axis=0)
-    expected_cm, share = points_alone.expected_cm(found, grid)
+    expected_cm, share = quality.expected_cm(found, covariance, grid)
     return {"expected_volume_rms_cm": round(expected_cm, 4), "volume_seen": round(share, 4)}
 
 

@@ -16,6 +16,7 @@ BOARDS = {
         "kind": "tags", "squares": [4, 3], "square_m": 0.13, "marker_m": 0.1,
         "dictionary": "DICT_APRILTAG_36h11",
     },
+    "aprilgrid": {"kind": "aprilgrid", "squares": [4, 3], "square_m": 0.13, "marker_m": 0.1},
 }  # fmt: skip
 
 
@@ -35,6 +36,19 @@ def test_corners_are_found_under_their_numbers(name, upside_down):
     assert len(ids) == len(board.corners)
     # Corners of tags are where two edges end, those of chessboards where four squares meet.
     assert np.abs(xy - there[ids]).max() < (1.0 if board.kind == "tags" else 0.5)
+
+
+def test_an_april_grid_is_numbered_as_by_kalibr():
+    """As the comment of `GridCalibrationTargetAprilgrid::createGridPoints` draws it, 2 x 2 tags."""
+    board = Board.of({"kind": "aprilgrid", "squares": [2, 2], "square_m": 1.0, "marker_m": 0.75})
+    assert board.dictionary == "DICT_APRILTAG_36h11" and len(board.corners) == 16
+    row = [[0, 0, 0], [0.75, 0, 0], [1, 0, 0], [1.75, 0, 0]]
+    np.testing.assert_allclose(board.corners[:4], row)
+    np.testing.assert_allclose(board.corners[4:8], np.add(row, [0, 0.75, 0]))
+    np.testing.assert_allclose(board.corners[8:12], np.add(row, [0, 1, 0]))
+    apart = np.diff(board.corners[board.neighbours], axis=1)
+    np.testing.assert_allclose(np.linalg.norm(apart, axis=-1), 0.75)
+    assert len(board.neighbours) == 4 * 4
 
 
 def test_neighbours_are_one_square_apart():

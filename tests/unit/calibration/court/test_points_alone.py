@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from courtside.calibration.bundle.problem import IMAGE, LENS
-from courtside.calibration.court import court, points_alone
+from courtside.calibration.court import court, points_alone, quality
+from courtside.calibration.records import covariance as camera_covariance
 from courtside.geometry.camera import Camera, in_picture
 from courtside.study.errors import InputError
 from fixtures.cameras.scene import look_at, opencv_projection
@@ -74,12 +75,14 @@ def test_errors_are_about_as_large_as_stated():
 
 
 def test_the_expected_error_is_of_places_that_two_cameras_see():
-    found = calibrate(clicked(true_cameras()))
+    found = calibrate(clicked(true_cameras())).solution
+    spread = camera_covariance.of_network([c.name for c in found.cameras], found.covariance)
     here, nowhere = np.array([[10.0, 20, 1]]), np.array([[10.0, 20, 1000]])
-    error_cm, share = points_alone.expected_cm(found, here)
+    error_cm, share = quality.expected_cm(found.cameras, spread, here)
     assert 0.1 < error_cm < 5 and share == 1
-    assert np.isnan(points_alone.expected_cm(found, nowhere)[0])
-    assert points_alone.expected_cm(found, np.concatenate([here, nowhere])) == (error_cm, 0.5)
+    assert np.isnan(quality.expected_cm(found.cameras, spread, nowhere)[0])
+    both = np.concatenate([here, nowhere])
+    assert quality.expected_cm(found.cameras, spread, both) == (error_cm, 0.5)
 
 
 def test_a_wrong_click_is_named_and_moves_nothing():

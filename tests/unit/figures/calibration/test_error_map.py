@@ -100,3 +100,17 @@ def test_an_unknown_covariance_is_drawn_blank():
     rows = error_map.table(cameras(), unknown, COURT, [0.0])
     assert rows["sigma_cm"].isna().all()
     error_map.draw(rows, cameras(), COURT, "made up").draw_without_rendering()
+
+
+def test_refined_cameras_are_drawn_below_those_before_on_one_scale():
+    half = CameraCovariance(["side", "back"], covariance().covariance / 4)
+    tables = [error_map.table(cameras(), one, COURT, [0.0, 1.0]) for one in (half, covariance())]
+    rows = error_map.compared(*tables)
+    np.testing.assert_allclose(rows["before_cm"], 2 * rows["sigma_cm"])
+    drawing = error_map.draw(rows, cameras(), COURT, "made up")
+    panels = [axis for axis in drawing.axes if "z = " in axis.get_title()]
+    words = [axis.get_title().split(":")[0] for axis in panels]
+    assert words == ["before", "before", "after", "after"]
+    assert panels[0].get_position().y0 > panels[2].get_position().y1
+    (scale,) = {tuple(axis.collections[0].levels) for axis in panels}
+    assert scale[0] <= rows["sigma_cm"].min() < rows["before_cm"].max() <= scale[-1]

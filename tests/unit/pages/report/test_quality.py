@@ -1,5 +1,6 @@
 """The quality page: cameras, residuals, clocks, joints, each with the numbers of its file."""
 
+import json
 import math
 import re
 
@@ -29,6 +30,37 @@ def test_the_page_states_calibrations_and_residuals(tmp_path):
     assert "42 of 42 pictures registered, 2416 points" in re.sub(r"\s+", " ", html)
     assert cells(html, r"sfm-n40 \(takes\)") == ["2.00", "3.00", "0.70", "0.30", "0"]
     assert "Calibration: odd." in html
+
+
+def test_the_page_says_which_calibration_was_used_and_why(tmp_path):
+    html = re.sub(r"\s+", " ", page(tmp_path))
+    assert "Takes are measured with the cameras <b>sfm-n40</b>: calibrated by one bundle" in html
+    assert "Expected error over the playing volume: 0.70 cm." in html and "Refined from" not in html
+
+
+def test_of_cameras_refined_by_people_both_qualities_and_the_verdict_are_said(tmp_path):
+    study = report_made.study(tmp_path)
+    refined = {"calibration": "sfm-n40-people", "taken": "refined", "expected_before_cm": 0.7}
+    refined["wrong"] = ["f_px of camera c1: <odd>"]
+    refined["warnings"] = ["cameras refined: held out, joints better", *refined["wrong"]]
+    refined["warnings"].append("camera c1: moved at 3 s")
+    (tmp_path / "refined.json").write_text(json.dumps(refined | {"expected_volume_rms_cm": 0.43}))
+    session = study["sessions"][0] | {"id": "quality-hall", "calibration": "sfm-n40-people"}
+    session["files"]["quality"]["sfm-n40-people"] = str(tmp_path / "refined.json")
+    facts = report_facts.of_session(session["files"])
+    take = session["takes"][0]
+    takes = [(take, report_facts.of_take(take["files"]), [])]
+    html = re.sub(r"\s+", " ", quality.session(session, facts, [], takes))
+    assert "playing volume: 0.43 cm." in html
+    assert "Refined from <b>sfm-n40</b> (calibrated by one bundle" in html
+    assert "expected error there: 0.70 cm; the map of expected errors shows both." in html
+    assert "Cameras refined: held out, joints better." in html
+    assert "Contradicted by people: f_px of camera c1: &lt;odd&gt;." in html
+    assert "<p>Camera c1: moved at 3 s.</p>" in html
+    unknown = facts["quality"]["sfm-n40-people"] | {"expected_before_cm": None}
+    facts["quality"]["sfm-n40-people"] = unknown | {"expected_volume_rms_cm": None}
+    html = re.sub(r"\s+", " ", quality.session(session, facts, [], takes))
+    assert "playing volume: not known" in html and "map of expected errors" not in html
 
 
 def test_the_page_states_clocks_and_movement(tmp_path):

@@ -167,6 +167,14 @@ def test_cameras_refined_by_people_rest_on_their_base_and_its_people(job, study)
     assert takes == {"shot", "rally"}
 
 
+def test_maps_of_refined_cameras_show_their_base_too(job):
+    one = job(session="walk-4cams-tiny", calibration="file-people")
+    assert calibration.error_map(one)["stated"]["rotation_deg"] == 0.3
+    assert "takes" not in calibration.error_map(one)["stated"]
+    alone = job(session="players-tiny", calibration="known")
+    assert calibration.of_base(alone, paths.CAMERAS) == calibration.base_covariance(alone) == []
+
+
 def test_takes_that_refine_cameras_must_be_filmed(job, study):
     session = study.sessions["players-tiny"]
     step = {**session.parameters["refine_cameras"], "takes": ["shot", "nothing"]}

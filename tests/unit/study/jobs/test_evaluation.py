@@ -35,6 +35,20 @@ def test_networks_have_a_truth_where_they_have_skeletons(study):
     assert evaluation.compared_truths([replace(takes[0], pose3d=None)]) == []
 
 
+def test_all_calibrations_are_put_side_by_side(study):
+    ways = {(one["session"], one["calibration"]): one for one in evaluation.ways(study)}
+    real = ways["walk-4cams-tiny", "file"]
+    assert (real["truth"], real["court"], real["base"]) == ([], "", "")
+    pose3d = "takes/balancing/pose3d/file/all-robust/blazepose-full.npz"
+    assert real["skeletons"] == [f"results/walk-4cams-tiny/{pose3d}"]
+    plain = ways["plain-tiny", "sim3-n12"]
+    assert plain["truth"] == "results/virtual/plain-tiny/truth.npz"
+    assert plain["court"].endswith("courts/badminton.yaml") and plain["skeletons"] == []
+    files = evaluation.ways_files(study)
+    assert {real["cameras"], plain["quality"], plain["truth"], *real["skeletons"]} < set(files)
+    assert len(files) == len(set(files))
+
+
 def replace_step(study, step):
     """Return the study with another step in the parameters of every session."""
     changed = {

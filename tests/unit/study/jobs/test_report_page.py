@@ -68,11 +68,12 @@ def test_figures_bear_the_caption_and_parameters_of_their_rule(content):
 def test_tables_are_those_that_the_study_makes(content, study, rules, studies):
     assert [(table["file"], table["title"]) for table in content["tables"]] == [
         ("results/figures/calibration.csv", "Calibration"),
+        ("results/figures/ways.csv", "Ways to calibrate"),
         ("results/figures/players.csv", "Players"),
         ("results/figures/angles.csv", "Joint angles"),
     ]
     alone = report_page.content(studies(sessions=["walk-4cams-tiny"]), rules, "captions")
-    assert alone["tables"] == []
+    assert [table["title"] for table in alone["tables"]] == ["Ways to calibrate"]
 
 
 def test_a_session_is_told_with_its_first_calibration_and_its_overrides(content):

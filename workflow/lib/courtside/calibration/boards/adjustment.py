@@ -385,7 +385,7 @@ def neighbours_mm(found: Found, seen: Corners, board: Board) -> tuple[float, flo
         *shape, 3
     )
     pairs = board.neighbours
-    side = board.marker_m if board.kind == "tags" else board.square_m
+    side = board.side_m
     apart = np.linalg.norm(xyz[:, pairs[:, 0]] - xyz[:, pairs[:, 1]], axis=-1)
     off = 1000 * (apart[np.isfinite(apart)] - side)
     return (float(off.mean()), float(off.std()), len(off)) if len(off) else (np.nan, np.nan, 0)

@@ -11,14 +11,21 @@ from numpy.typing import NDArray
 
 from courtside.study.errors import InputError
 
-KINDS = ("charuco", "chessboard", "tags")
+KINDS = ("charuco", "chessboard", "tags", "aprilgrid")
 MARKER_SHARE = 0.75  # of a square, where the session does not say it: as most programs print them
+# Of Kalibr's AprilGrid: family, cells of black around the bits, and the share as in its examples.
+FAMILY, BORDER, GRID_SHARE = "DICT_APRILTAG_36h11", 2, 1 / 1.3
+SADDLE_SHARE = 0.12  # of a tag: looked so far around its corners; its bits begin at 0.2
 Y_UP = np.array([1.0, -1.0, 1.0])  # OpenCV's boards have y down: with y up, z points at who looks
 
 
 @dataclass(frozen=True)
 class Board:
-    """A ChArUco board, a chessboard, or a grid of tags as OpenCV's `aruco` prints them.
+    """A ChArUco board, a chessboard, a grid of tags as OpenCV's `aruco` prints them, an AprilGrid.
+
+    Kalibr's AprilGrid has tag 0 at the bottom left, wide borders and squares between the tags; its
+    corners are numbered row by row from the bottom left, x to the right and y up from there
+    (`GridCalibrationTargetAprilgrid`).
 
     Raises `InputError` for one that is impossible or looks the same when it is turned round.
     """
@@ -34,7 +41,8 @@ class Board:
     @classmethod
     def of(cls, given: Mapping[str, Any]) -> "Board":
         """Build a board from the keys of a session."""
-        name = given.get("dictionary")
+        grid = given["kind"] == "aprilgrid"
+        name = given.get("dictionary", FAMILY if grid else None)
         if given["kind"] != "chessboard" and (name is None or not hasattr(cv2.aruco, name)):
             known = [key for key in dir(cv2.aruco) if key.startswith("DICT_")]
             raise InputError(
@@ -42,7 +50,7 @@ class Board:
                 "where the board was printed"
             )
         square_m = float(given["square_m"])
-        marker_m = float(given.get("marker_m", MARKER_SHARE * square_m))
+        marker_m = float(given.get("marker_m", (GRID_SHARE if grid else MARKER_SHARE) * square_m))
         columns, rows = given["squares"]
         made = cls(
             given["kind"],
@@ -70,6 +78,14 @@ class Board:
         """The corners (N, 3) m by their numbers: x to the right, y up, z towards who looks."""
         if self.kind == "tags":
             return np.concatenate(self._printed.getObjPoints()).reshape(-1, 3) * Y_UP
+        if self.kind == "aprilgrid":
+            x, y = (
+                (np.arange(n)[:, None] * self.square_m + [0, self.marker_m]).ravel()
+                for n in self.squares
+            )
+            return np.column_stack(
+                [np.tile(x, len(y)), np.repeat(y, len(x)), 0 * np.tile(x, len(y))]
+            )
         columns, rows = (count - 1 for count in self.squares)
         y, x = np.mgrid[1 : rows + 1, 1 : columns + 1].reshape(2, -1) * self.square_m
         return np.column_stack([x, -y, np.zeros(len(x))])
@@ -78,19 +94,24 @@ class Board:
     def neighbours(self) -> NDArray:
         """Numbers (E, 2) of corners that lie one square apart; of tags, one side of a tag."""
         apart = np.linalg.norm(self.corners[:, None] - self.corners, axis=-1)
-        side = self.marker_m if self.kind == "tags" else self.square_m
-        return np.argwhere(np.triu(np.abs(apart - side) < 1e-3 * side))
+        return np.argwhere(np.triu(np.abs(apart - self.side_m) < 1e-3 * self.side_m))
+
+    @property
+    def side_m(self) -> float:
+        """How far neighbouring corners are apart."""
+        return self.marker_m if self.kind in ("tags", "aprilgrid") else self.square_m
 
     def find(self, image: NDArray) -> tuple[NDArray, NDArray]:
         """Return the numbers (K,) and px (K, 2) of corners in a grey picture, none without any."""
         image = 255 - image if self.inverted else image
         found = {"charuco": self._charuco, "chessboard": self._chessboard, "tags": self._tags}
+        found["aprilgrid"] = self._tags
         return found[self.kind](image)
 
     @cached_property
     def _printed(self) -> Any:
         words = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, self.dictionary or ""))
-        if self.kind == "tags":
+        if self.kind in ("tags", "aprilgrid"):
             gap = self.square_m - self.marker_m
             return cv2.aruco.GridBoard(self.squares, self.marker_m, gap, words)
         made = cv2.aruco.CharucoBoard(self.squares, self.square_m, self.marker_m, words)
@@ -103,14 +124,30 @@ class Board:
 
     def _tags(self, image: NDArray) -> tuple[NDArray, NDArray]:
         looks = cv2.aruco.DetectorParameters()
-        looks.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_SUBPIX
+        grid = self.kind == "aprilgrid"
+        if not grid:
+            looks.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_SUBPIX
+        looks.markerBorderBits = BORDER if grid else 1
         detector = cv2.aruco.ArucoDetector(self._printed.getDictionary(), looks)
         squares, ids, _ = detector.detectMarkers(image)
         known = self._printed.getIds().ravel().tolist()
         seen = {} if ids is None else dict(zip(ids.ravel().tolist(), squares, strict=True))
-        numbers = [4 * known.index(tag) + np.arange(4) for tag in seen if tag in known]
+        numbers = [self._numbers(known.index(tag)) for tag in seen if tag in known]
         xy = [square.reshape(4, 2) for tag, square in seen.items() if tag in known]
+        xy = [_saddles(image, square) for square in xy] if grid else xy
         return _pairs(np.array(numbers), np.array(xy)) if numbers else _pairs(None, None)
+
+    def _numbers(self, tag: int) -> NDArray:
+        """Return the numbers of a tag's corners in OpenCV's order: from its top left, clockwise.
+
+        Kalibr prints OpenCV's tags turned by half a turn.
+        """
+        if self.kind == "tags":
+            return 4 * tag + np.arange(4)
+        width = 2 * self.squares[0]
+        row, column = divmod(tag, self.squares[0])
+        left = 2 * row * width + 2 * column
+        return left + np.array([1, 0, width, width + 1])
 
     def _chessboard(self, image: NDArray) -> tuple[NDArray, NDArray]:
         columns, rows = (count - 1 for count in self.squares)
@@ -127,6 +164,15 @@ class Board:
         # Which end is which: the squares beside opposite corners have different colours.
         grid = grid[::-1, ::-1] if first > last else grid
         return _pairs(np.arange(rows * columns), grid)
+
+
+def _saddles(image: NDArray, square: NDArray) -> NDArray:
+    """Return the corners (4, 2) px of a tag where four squares meet, from nearby."""
+    side_px = np.linalg.norm(np.roll(square, 1, axis=0) - square, axis=1).min()
+    reach = max(2, round(SADDLE_SHARE * float(side_px)))
+    stop = cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 40, 0.01
+    start = np.ascontiguousarray(square, dtype=np.float32)
+    return cv2.cornerSubPix(image, start, (reach, reach), (-1, -1), stop)
 
 
 def _brightness(image: NDArray, xy: NDArray) -> float:

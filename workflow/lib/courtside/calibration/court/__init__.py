@@ -7,8 +7,9 @@ joint_adjustment: condense, condense_free, solve, free, Ties, Solution: tie poin
     court points
 resection: dlt, nonlinear: one camera from known points, by `one_camera`
 known_points: method, calibrate, cameras: all cameras from known points, each by itself
-points_alone: calibrate, said, expected_cm: all cameras from points alone, together
+points_alone: calibrate, said: all cameras from points alone, together
 place_checks: shifts: cameras whose points are all at wrong places
 click_checks: leave_one_out, find_wrong_clicks, inward_shift, inward_shift_of_points, check
-quality: check_cameras, adjust_and_check, check_maps, leave_one_out_errors; errors against the truth
+quality: check_cameras, adjust_and_check, check_maps, leave_one_out_errors, expected_cm; errors
+    against the truth
 """

@@ -12,14 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection, solver, variance_components
 from courtside.calibration.bundle.problem import IMAGE, LENS
 from courtside.calibration.court import click_checks, joint_adjustment, resection
 from courtside.calibration.court.court import ClickedPoints, Court
 from courtside.calibration.court.joint_adjustment import Solution, Ties
-from courtside.calibration.records import covariance as camera_covariance
-from courtside.geometry.camera import Camera, in_picture, project
+from courtside.geometry.camera import Camera, project
 
 # ASSUME: what lenses and sensors usually are, standard deviations: square pixels, a principal point
 # within 1 % of the picture's width of its centre, barrel distortion that a k2 follows. Points on a
@@ -110,28 +108,6 @@ def said(found: Found) -> dict[str, Any]:
             shown = value if isinstance(value, int) else round(float(value), 4)
             report.setdefault(key, {})[camera.name] = shown
     return report
-
-
-def expected_cm(found: Found, xyz: NDArray) -> tuple[float, float]:
-    """Return the expected error of places (N, 3) m, root mean square, cm, and the share seen.
-
-    Of places that two cameras or more have in their pictures, from these alone; NaN of none.
-    """
-    cameras = found.solution.cameras
-    shared = camera_covariance.of_network([c.name for c in cameras], found.solution.covariance)
-    seen = np.stack([in_picture(c, project(c, xyz)) for c in cameras], axis=1)
-    rows: list[NDArray] = []
-    for who in np.unique(seen[seen.sum(axis=1) > 1], axis=0):
-        chosen = [camera for camera, one in zip(cameras, who, strict=True) if one]
-        spread = shared.of([camera.name for camera in chosen]).of_columns()
-        there = xyz[(seen == who).all(axis=1)]
-        network = selection.of_cameras(chosen)
-        rows.append(point_covariance.point_covariance(network, spread, there))
-    share = float((seen.sum(axis=1) > 1).mean())
-    if not rows:
-        return float("nan"), share
-    variance = np.trace(np.concatenate(rows), axis1=1, axis2=2)
-    return float(100 * np.sqrt(variance.mean())), share
 
 
 def _lenses(starts: Sequence[Camera]) -> Ties:

@@ -7,12 +7,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.calibration import point_covariance as propagation
+from courtside.calibration.bundle import selection
 from courtside.calibration.court import click_checks, joint_adjustment
 from courtside.calibration.court.court import ClickedPoints, Court, to_line_centres
 from courtside.calibration.point_covariance import ellipsoid, field, mahalanobis
+from courtside.calibration.records.covariance import CameraCovariance
 from courtside.calibration.records.support import Support
 from courtside.geometry import rotations
-from courtside.geometry.camera import Camera
+from courtside.geometry.camera import Camera, in_picture, project
 from courtside.study.errors import InputError
 
 # Of the verified matches of a pair of images. Chosen on small halls with ten images
@@ -247,3 +250,22 @@ def coverage(error_m: NDArray, covariance: NDArray) -> dict[str, float]:
 def expected_rms_cm(covariance: NDArray) -> float:
     """Return the root mean square length, cm, of errors with covariances (N, 3, 3) m2."""
     return 100 * np.sqrt(np.mean(np.trace(covariance, axis1=1, axis2=2)))
+
+
+def expected_cm(
+    cameras: Sequence[Camera], covariance: CameraCovariance, xyz: NDArray
+) -> tuple[float, float]:
+    """Return the expected error of places (N, 3) m, root mean square, cm, and the share seen.
+
+    Of places that two cameras or more have in their pictures, from these alone; NaN of none.
+    """
+    seen = np.stack([in_picture(c, project(c, xyz)) for c in cameras], axis=1)
+    variance: list[float] = []
+    for who in np.unique(seen[seen.sum(axis=1) > 1], axis=0):
+        chosen = [camera for camera, one in zip(cameras, who, strict=True) if one]
+        spread = covariance.of([camera.name for camera in chosen]).of_columns()
+        there = xyz[(seen == who).all(axis=1)]
+        each = propagation.point_covariance(selection.of_cameras(chosen), spread, there)
+        variance += list(np.trace(each, axis1=1, axis2=2))
+    share = float((seen.sum(axis=1) > 1).mean())
+    return (float(100 * np.sqrt(np.mean(variance))) if variance else float("nan")), share

@@ -20,7 +20,7 @@ MISSING = "-"  # printed where there is no value
 Settings: TypeAlias = dict[str, Any]  # named arguments of `Builder.add`
 Parts: TypeAlias = Mapping[str, tuple[str, int, str]]  # column, decimals and unit of each part
 KEPT = 8  # digits of an exact value
-DIGITS = 16  # of a checksum
+DIGITS = 12  # of a checksum
 
 
 @dataclass(frozen=True)

@@ -42,16 +42,8 @@ MEASURED = (  # of the results of a default run
 STATED = (
     *("real-checks", "markers", "hall-points", "device-checks", "stated-errors", "flags", "crowd"),
     *("file-evidence", "file-mended", "networks", "offset-cameras", "persons-found", "batches"),
-    *(
-        "file-faults",
-        "refined-people",
-        "knocked-cameras",
-        "more-of-people",
-        "mapping-checks",
-        "click-model",
-        "click-alarms",
-        "worlds",
-    ),
+    *("ways", "lines-clicks", "file-faults", "refined-people", "knocked-cameras", "more-of-people"),
+    *("mapping-checks", "click-model", "click-alarms", "worlds"),
     *("halls", "halls-strengths"),
     *("body-model", "body-model-hall", "contacts", "strokes", "stroke-cues"),
     *("speed", "costs", "stages", "faults", "trust"),

@@ -414,6 +414,31 @@ VIEWS = {
             "with": "{low.command}",
         },
     ),
+    "ways": View(
+        "ways",
+        {
+            "way": "{row}",
+            "alone: volume error, median / 95 %, cm; shape, cm; accepted, %": "{alone}",
+            "refined by people; refined cameras taken": "{refined}",
+        },
+        "^`players-b`",
+    ),
+    "ways-real": View(
+        "ways",
+        {
+            "recording: way": "{row}",
+            "alone; accepted views by camera, %": "{alone}",
+            "refined by people; which cameras were taken": "{refined}",
+        },
+        "^`(walk|charuco|hall)",
+    ),
+    "lines-clicks": View(
+        "lines-clicks",
+        {
+            "hall": "{row}",
+            "court found; 18 clicks, median / 95 %, cm; court lines, cm; lines / clicks": "{found}",
+        },
+    ),
     "refined-people": View(
         "refined-people",
         {

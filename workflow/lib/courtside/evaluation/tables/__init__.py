@@ -1,4 +1,4 @@
-"""Tables of the study: calibration, players, racket, networks.
+"""Tables of the study: calibration, ways to calibrate, players, racket, networks.
 
 angles: `read`, `table`: errors of joint angles
 calibration: read, tidy, table: errors of calibrations; pick, summary, spread, structures_of: parts
@@ -6,4 +6,5 @@ calibration: read, tidy, table: errors of calibrations; pick, summary, spread, s
 networks: `in_space`, `table`: networks on the same frames, with intervals
 players: `read`, `together`, `table`: errors of simulated players
 racket: `read`, `table`: lengths of a racket
+ways: `said`, `against_truth`, `accepted`: all calibrations of sessions side by side
 """

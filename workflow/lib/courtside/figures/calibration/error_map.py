@@ -1,6 +1,7 @@
 """Expected 3D error of a calibration over the court, from its covariance."""
 
 from collections.abc import Sequence
+from itertools import product
 
 import numpy as np
 import pandas as pd
@@ -22,6 +23,7 @@ from courtside.geometry.camera import Camera
 
 COLUMNS, ROWS = 25, 55  # of the grid, along the short and the long side
 LEVELS = 14  # of colour, about
+PANELS = {"before_cm": "before: ", "sigma_cm": "after: "}
 ROOM_M = 3.2  # around the court, for the cameras
 
 
@@ -47,35 +49,53 @@ def table(
     return pd.DataFrame({"x_m": xyz[:, 0], "y_m": xyz[:, 1], "z_m": xyz[:, 2], "sigma_cm": sigma})
 
 
+def compared(rows: pd.DataFrame, before: pd.DataFrame) -> pd.DataFrame:
+    """Return the table of refined cameras with `before_cm`, that of the cameras before."""
+    return rows.assign(before_cm=before["sigma_cm"])
+
+
 def draw(rows: pd.DataFrame, cameras: list[Camera], court: Court, title: str) -> Figure:
-    """Draw the table of `table`: one panel per height, one scale of colours."""
+    """Draw the table of `table`: one panel per height, one scale of colours.
+
+    With `before_cm` a row of panels above has the error before cameras were refined.
+    """
     heights = rows["z_m"].unique()
+    columns = [name for name in PANELS if name in rows]
     wide, tall = np.asarray(court.size_m) + 2 * ROOM_M
-    drawing = style.figure(min(160, 18 + (style.WIDTH_MM - 30) / len(heights) * tall / wide))
-    axes = drawing.subplots(1, len(heights), sharex=True, sharey=True, squeeze=False)[0]
-    known = rows["sigma_cm"].dropna()
-    low, high = (known.min(), known.max()) if len(known) else (0.0, 1.0)
-    levels = MaxNLocator(LEVELS).tick_values(low, max(high, low + 1e-3))
-    for axis, height in zip(axes, heights, strict=True):
-        part = rows[rows["z_m"] == height]
-        filled = _draw_height(axis, part, levels)
+    each_mm = (style.WIDTH_MM - 30) / len(heights) * tall / wide
+    drawing = style.figure(min(160 if len(columns) == 1 else 230, 18 + len(columns) * each_mm))
+    axes = drawing.subplots(len(columns), len(heights), sharex=True, sharey=True, squeeze=False)
+    levels = _levels(rows[columns].to_numpy())
+    for (name, panels), height in product(zip(columns, axes, strict=True), enumerate(heights)):
+        axis, part = panels[height[0]], rows[rows["z_m"] == height[1]]
+        filled = _draw_height(axis, part, part[name], levels)
         court_plan.draw(axis, court)
         for camera in cameras:
             _point_to(axis, camera, court)
-        axis.set_title(f"z = {height:g} m: median {part['sigma_cm'].median():.2f} cm")
-        axis.set(xlim=(-ROOM_M, wide - ROOM_M), ylim=(-ROOM_M, tall - ROOM_M), xlabel="x (m)")
+        word = PANELS[name] if len(columns) > 1 else ""
+        axis.set_title(f"{word}z = {height[1]:g} m: median {part[name].median():.2f} cm")
+        axis.set(xlim=(-ROOM_M, wide - ROOM_M), ylim=(-ROOM_M, tall - ROOM_M))
+        axis.set(xlabel="x (m)", ylabel="y (m)")
+        axis.label_outer()
         for each in (axis.xaxis, axis.yaxis):
             each.set_major_locator(MaxNLocator(4, integer=True, steps=[1, 2, 5, 10]))
-    axes[0].set_ylabel("y (m)")
-    bar = drawing.colorbar(filled, ax=list(axes), pad=0.01, aspect=30, ticks=levels[::2])
+    bar = drawing.colorbar(filled, ax=list(axes.flat), pad=0.01, aspect=30, ticks=levels[::2])
     bar.set_label("expected 3D error (cm)")
     drawing.suptitle(title, fontsize=8)
     return drawing
 
 
-def _draw_height(axis: Axes, part: pd.DataFrame, levels: NDArray) -> ContourSet:
+def _levels(sigma_cm: NDArray) -> NDArray:
+    known = sigma_cm[np.isfinite(sigma_cm)]
+    low, high = (known.min(), known.max()) if len(known) else (0.0, 1.0)
+    return MaxNLocator(LEVELS).tick_values(low, max(high, low + 1e-3))
+
+
+def _draw_height(
+    axis: Axes, part: pd.DataFrame, sigma_cm: pd.Series, levels: NDArray
+) -> ContourSet:
     x, y = (part[name].unique() for name in ("x_m", "y_m"))
-    values = part["sigma_cm"].to_numpy().reshape(len(y), len(x))
+    values = sigma_cm.to_numpy().reshape(len(y), len(x))
     filled = axis.contourf(x, y, values, levels=levels, cmap="YlGnBu", zorder=0)
     if np.isfinite(values).any() and np.nanmax(values) > np.nanmin(values):
         lines = axis.contour(

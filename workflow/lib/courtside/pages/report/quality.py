@@ -6,7 +6,9 @@ from collections.abc import Iterable, Sequence
 from markupsafe import Markup
 
 from courtside.pages import page
+from courtside.pages.report import methods
 from courtside.pages.report import warnings as warned
+from courtside.study.methods import Calibration
 
 STAGES = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
 
@@ -29,6 +31,7 @@ def session(
         found=found,
         facts=facts,
         calibrations=[_calibration(*one) for one in facts["quality"].items()],
+        used=_used(configured["calibration"], facts["quality"]),
         takes=[_take(*one) for one in takes],
         stages=STAGES,
         number=number,
@@ -59,6 +62,27 @@ def _calibration(name: str, content: dict) -> dict:
     errors = [row["error_cm"] for row in points if row["error_cm"] is not None]
     median = warned.left_out_cm(content)
     return {"name": name, "median_cm": median, "largest_cm": max(errors, default=None), **content}
+
+
+def _used(name: str | None, known: dict[str, dict]) -> dict | None:
+    """Return what the template says of the calibration that takes are measured with, and why.
+
+    `words`: what it is; `expected_cm` and, of one refined by people, `base`, `before_cm`, `line`
+    (which cameras were taken, by what was held out), `wrong` (numbers named) and `others` (what
+    else its `warnings` say).
+    """
+    if not name or name not in known:
+        return None
+    content, way = known[name], Calibration.parse(name)
+    found: dict = {"name": name, "words": methods.CALIBRATED[way.kind], "base": way.base}
+    found["expected_cm"] = content.get("expected_volume_rms_cm")
+    if way.base:
+        line, *others = content["warnings"]
+        wrong = [one for one in others if one in content.get("wrong", ())]
+        found |= {"line": line, "wrong": wrong, "before_cm": content.get("expected_before_cm")}
+        found["others"] = [one for one in others if one not in wrong]
+        found |= {"of_base": methods.CALIBRATED[Calibration.parse(way.base).kind]}
+    return found
 
 
 def limits() -> Markup:

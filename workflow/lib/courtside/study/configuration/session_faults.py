@@ -180,7 +180,7 @@ def _board_faults(file: Path, content: Content) -> Iterator[str]:
         missing = sorted(set(content["cameras"]) - set(given.get(key, content["cameras"])))
         if missing:
             yield f"{where}.{key}: expected every camera, found none for {', '.join(missing)}"
-    if given["kind"] != "chessboard" and "dictionary" not in given:
+    if given["kind"] in ("charuco", "tags") and "dictionary" not in given:
         yield (
             f"{where}: expected `dictionary` of its markers, such as DICT_4X4_50, found none; it "
             "stands where the board was printed"

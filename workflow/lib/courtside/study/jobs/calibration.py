@@ -72,14 +72,20 @@ def refining(job: Job) -> list[dict[str, Any]]:
     return _seen(job, _base(job)["calibration"], wanted)
 
 
-def of_base(job: Job, pattern: str) -> str:
-    """Return a file of the calibration that people refine."""
-    return _base(job).fill(pattern)
+def of_base(job: Job, pattern: str) -> str | list:
+    """Return a file of the calibration that people refine; nothing of another."""
+    return _base(job).fill(pattern) if _way(job).base else []
 
 
 def base_covariance(job: Job) -> str | list:
     """Return its covariance where it has one."""
-    return covariance(_base(job))
+    return covariance(_base(job)) if _way(job).base else []
+
+
+def error_map(job: Job) -> dict[str, Any]:
+    """Return the heights of a map of expected errors, and what is stated of a base's cameras."""
+    stated = {key: value for key, value in job.step("refine_cameras").items() if key != "takes"}
+    return {**job.step("draw_error_map"), "stated": stated}
 
 
 def base_file(job: Job) -> str | list:

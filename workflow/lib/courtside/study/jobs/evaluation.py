@@ -4,10 +4,12 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from courtside.study import paths
+from courtside.study.configuration.sessions import Session, Study
 from courtside.study.jobs import calibration
 from courtside.study.jobs.calibration import CLICK_KEYS
 from courtside.study.jobs.job import Job
 from courtside.study.jobs.takes import every_fusion
+from courtside.study.methods import Calibration
 from courtside.study.targets.calibration import racket_models
 from courtside.study.targets.together import EvaluatedTake
 
@@ -159,6 +161,39 @@ def racket(job: Job) -> dict[str, Any]:
     clicks = {**settings["clicks"], "n_draws": step["n_runs"]}
     del settings["sets"], settings["strengths"]
     return {**settings, "clicks": clicks, "length_m": step["length_m"], "tips_px": step["tips_px"]}
+
+
+def ways(study: Study) -> list[dict[str, Any]]:
+    """Return of each calibration of the sessions with fixed cameras what says how good it is."""
+    return [
+        _way(study, session, way)
+        for session in study.sessions.values()
+        if session.cameras and not session.condition
+        for way in session.calibrations()
+    ]
+
+
+def _way(study: Study, session: Session, way: str) -> dict[str, Any]:
+    """Return its files, empty where there are none; `skeletons` of the takes measured with it."""
+    model = session.parameters["models"][0]
+    job = Job(study, {"session": session.name, "calibration": way, "model": model})
+    used = way in session.take_calibrations()
+    filmed = [name for name, take in session.takes.items() if take.cameras and used]
+    return {
+        **{"session": session.name, "calibration": way, "base": Calibration.parse(way).base or ""},
+        "cameras": job.fill(paths.CAMERAS),
+        "quality": job.fill(paths.CALIBRATION_QUALITY),
+        "truth": job.true_file(paths.TRUTH),
+        "court": str(job.court_file() or ""),
+        "skeletons": job.of_each(paths.POSE3D, take=filmed, fusion=session.fusions()[:1]),
+    }
+
+
+def ways_files(study: Study) -> list[str]:
+    """Return these files in one list."""
+    keys = ("cameras", "quality", "truth", "court")
+    every = [[*(one[key] for key in keys if one[key]), *one["skeletons"]] for one in ways(study)]
+    return list(dict.fromkeys(path for files in every for path in files))
 
 
 def round_trip_skeletons(job: Job) -> list[str]:

@@ -9,6 +9,7 @@ from courtside.study import paths
 from courtside.study.configuration import consent
 from courtside.study.configuration.sessions import Session, Study, Take
 from courtside.study.execution import verdicts
+from courtside.study.jobs import evaluation
 from courtside.study.methods import Calibration, Variant
 from courtside.study.targets import calibration, devices, pages, takes, together
 
@@ -27,6 +28,12 @@ TABLES = {
         "Calibration",
         "Errors of the fixed cameras against the truth of simulated sessions, by method, number of "
         "clicks and number of pictures of the walk.",
+    ),
+    paths.WAYS_TABLE: (
+        "Ways to calibrate",
+        "All calibrations of each session: the predicted error over the court, before and after "
+        "people refined cameras, the true one of simulated sessions and what the best similarity "
+        "leaves of it, and the views of limb joints that are accepted in the takes measured so.",
     ),
     paths.PLAYERS_TABLE: (
         "Players",
@@ -55,6 +62,7 @@ def content(study: Study, rules: Iterable[Any], captions: str) -> dict[str, Any]
     rules = list(rules)
     sessions = [session for session in study.sessions.values() if not session.condition]
     wanted = calibration.every_study_figure(study) + together.every_players_figure(study)
+    wanted += [paths.WAYS_TABLE] * bool(evaluation.ways(study))
     return {
         "title": "Report of the study",
         "parameters": {name: study.parameters[name] for name in STEPS},
@@ -135,9 +143,8 @@ def _session(study: Study, session: Session) -> dict[str, Any]:
     first = session.variants()[0]
     variant = first if photos else Variant("global", (mapped_by or first).n_images)
     known = {"session": session.name, **vars(variant)}
-    quality = {
-        one.name: paths.CALIBRATION_QUALITY.format(**known, calibration=one.name) for one in ways
-    }
+    shown = dict.fromkeys(name for one in ways for name in (one.base, one.name) if name)
+    quality = {name: paths.CALIBRATION_QUALITY.format(**known, calibration=name) for name in shown}
     model = {
         "model": paths.SFM_SUMMARY.format(**known),
         "static": [paths.STATIC_CHECK.format(**known, camera=camera) for camera in session.cameras],
