@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from courtside.evaluation.numbers.markers import View
 from courtside.evaluation.numbers.register import DIGITS, ORIGINS, STUDY, Number, Source
 from courtside.study.errors import InputError, StrPath
 
@@ -79,3 +80,226 @@ def _value(printed: str) -> float:
         return float(printed)
     except ValueError:
         return math.nan
+
+
+FOUND = {"by": "{found.origin}", "with": "{found.command}"}
+VIEWS = {  # the columns that the documents show of their tables
+    "offset-cameras": View(
+        "offset-cameras",
+        {
+            "corrected, median / 95 %, mm": "{row}",
+            "offsets fitted by clicked cameras": "{before}",
+            "by true cameras (used)": "{after}",
+            "by": "{after.origin}",
+            "with": "{after.command}",
+        },
+    ),
+    "persons-found": View(
+        "persons-found",
+        {
+            "persons of 80 px or more; detector": "{row}",
+            "found in the whole picture, %": "{whole}",
+            "in tiles, as the study looks, %": "{tiles}",
+            "persons": "{tiles.n}",
+            "by": "{tiles.origin}",
+            "with": "{tiles.command}",
+        },
+    ),
+    "stated-errors": View(
+        "stated-errors",
+        {
+            "90 % ellipsoids hold, %": "{row}",
+            "target": "{target}",
+            **{stage: f"{{{stage}}}" for stage in ("raw", "filtered", "corrected")},
+            "by": "{raw.origin}",
+            "with": "{raw.command}",
+        },
+    ),
+    "flags": View(
+        "flags",
+        {
+            "flag of errors above 100 mm": "{row}",
+            "four views: right / found, %": "{four}",
+            "three views: right / found, %": "{three}",
+            "by": "{four.origin}",
+            "with": "{four.command}",
+        },
+    ),
+    "file-mended": View(
+        "file-mended",
+        {
+            "`walk-4cams`, cameras": "{row}",
+            "file as it is": "{found}",
+            "mended": "{mended}",
+            "by": "{found.origin}",
+            "with": "{found.command}",
+        },
+    ),
+    "file-faults": View(
+        "file-faults",
+        {
+            "fault of one camera of four (`players-b/shot`, 6 seeds each)": "{row}",
+            "static points: warned, camera and fault named": "{static}",
+            "joints": "{joints}",
+            "both": "{both}",
+            "by": "{static.origin}",
+            "with": "{static.command}",
+        },
+    ),
+    "contacts": View(
+        "contacts",
+        {
+            "takes": "{row}",
+            "frames right": "{frames}",
+            "landing: error, median / 90 %": "{onset}",
+            "in its 90 % interval": "{onset_held}",
+            "leaving: error, median / 90 %": "{end}",
+            "in that of leaving": "{end_held}",
+            "landings found": "{steps}",
+            "a standing foot moves": "{moved}",
+            "by": "{frames.origin}",
+            "with": "{frames.command}",
+        },
+    ),
+    "strokes": View(
+        "strokes",
+        {
+            "takes": "{row}",
+            "hits": "{hits}",
+            "found (>= 95 %)": "{found}",
+            "false (<= 5 %)": "{false}",
+            "error of the time in frames, median (<= 1) / 95 %": "{median} / {p95}",
+            "in 90 % intervals (80 to 97 %)": "{held}",
+            "by": "{hits.origin}",
+            "with": "{hits.command}",
+        },
+    ),
+    "stroke-cues": View(
+        "stroke-cues",
+        {
+            "extremum nearest to the stroke, less the true hit, in frames": "{row}",
+            "overhead: median, sd (within one frame)": "{overhead}",
+            "low: median, sd (within one frame)": "{low}",
+            "by": "{low.origin}",
+            "with": "{low.command}",
+        },
+    ),
+    "ways": View(
+        "ways",
+        {
+            "way": "{row}",
+            "alone: volume error, median / 95 %, cm; shape, cm; accepted, %": "{alone}",
+            "refined by people; refined cameras taken": "{refined}",
+        },
+        "^`players-b`",
+    ),
+    "ways-real": View(
+        "ways",
+        {
+            "recording: way": "{row}",
+            "alone; accepted views by camera, %": "{alone}",
+            "refined by people; which cameras were taken": "{refined}",
+        },
+        "^`(walk|charuco|hall)",
+    ),
+    "lines-clicks": View(
+        "lines-clicks",
+        {
+            "hall": "{row}",
+            "court found; 18 clicks, median / 95 %, cm; court lines, cm; lines / clicks": "{found}",
+        },
+    ),
+    "refined-people": View(
+        "refined-people",
+        {
+            "cameras": "{row}",
+            "before": "{before}",
+            "taken": "{taken}",
+            "shape before": "{shape_before}",
+            "shape taken": "{shape}",
+            "in 90 % ellipsoids": "{coverage}",
+            "by": "{taken.origin}",
+            "with": "{taken.command}",
+        },
+    ),
+    "knocked-cameras": View(
+        "knocked-cameras",
+        {
+            "take": "{row}",
+            "found": "{found}",
+            "turn off, across the view": "{across}",
+            "about the optical axis": "{roll}",
+            "joints without the knock": "{whole}",
+            "with it": "{knocked}",
+            "with two poses": "{repaired}",
+            "by": "{repaired.origin}",
+            "with": "{repaired.command}",
+        },
+    ),
+    "more-of-people": View(
+        "more-of-people",
+        {
+            "cameras": "{row}",
+            "volume": "{volume}",
+            "limb lengths": "{limbs}",
+            "tilt of the floor": "{tilt}",
+            "volume, floor level": "{levelled}",
+            "with": "{volume.command}",
+        },
+    ),
+    **{
+        name: View(
+            name,
+            {
+                first: "{row}",
+                **{strength: f"{{{strength}}}" for strength in ("x1", "x2", "x3")},
+                "by": "{x1.origin}",
+                "with": "{x1.command}",
+            },
+        )
+        for name, first in {"click-model": "halls: clicks", "click-alarms": "clicks"}.items()
+    },
+    "worlds": View(
+        "worlds",
+        {
+            "effect, strength 1": "{row}",
+            "18 clicks, cm": "{walk18}",
+            "held, 18": "{held18}",
+            "3 clicks, cm": "{walk3}",
+            "held, 3": "{held3}",
+            "warnings": "{warnings}",
+            "by": "{walk18.origin}",
+            "with": "{walk18.command}",
+        },
+    ),
+    "speed": View(
+        "speed",
+        {
+            "comparison, largest work": "{row}",
+            "here": "{found}",
+            "other": "{other}",
+            "other / here": "{ratio}",
+            **FOUND,
+        },
+    ),
+    "stages": View(
+        "stages",
+        {
+            "stage": "{row}",
+            "before": "{before}",
+            "after": "{found}",
+            "ratio": "{ratio}",
+            "profile before": "{profile_before}",
+            "profile after": "{profile_after}",
+            **FOUND,
+        },
+    ),
+    "faults": View(
+        "faults",
+        {"fault": "{row}", "times": "{times}", "survived": "{found}", **FOUND},
+    ),
+    "trust": View(
+        "trust",
+        {"what was done": "{row}", "times": "{times}", "what happened": "{found}", **FOUND},
+    ),
+}

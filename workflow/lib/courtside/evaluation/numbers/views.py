@@ -1,10 +1,10 @@
 """The tables of the documents: which columns each shows of a table of the register."""
 
+from courtside.evaluation.numbers import stated
 from courtside.evaluation.numbers.markers import View
 
 STAGES = ("raw", "filtered", "corrected")
 HALL, HALLS = "^`", "^all "
-FOUND = {"by": "{found.origin}", "with": "{found.command}"}
 
 
 def _walk(name: str) -> str:
@@ -298,34 +298,15 @@ VIEWS = {
         {"take: source": "{row}", "angle, degrees": "{angle}", "unit, %": "{unit}"},
     ),
     **{
-        name: View(name, {"what": "{row}", "target": "{target}", "found": "{found}", **FOUND})
+        name: View(
+            name, {"what": "{row}", "target": "{target}", "found": "{found}", **stated.FOUND}
+        )
         for name in ("real-checks", "device-checks", "crowd")
     },
     **{
-        name: View(name, {"what": "{row}", "found": "{found}", **FOUND})
+        name: View(name, {"what": "{row}", "found": "{found}", **stated.FOUND})
         for name in ("hall-points", "file-evidence", "mapping-checks", "costs", "batches")
     },
-    "offset-cameras": View(
-        "offset-cameras",
-        {
-            "corrected, median / 95 %, mm": "{row}",
-            "offsets fitted by clicked cameras": "{before}",
-            "by true cameras (used)": "{after}",
-            "by": "{after.origin}",
-            "with": "{after.command}",
-        },
-    ),
-    "persons-found": View(
-        "persons-found",
-        {
-            "persons of 80 px or more; detector": "{row}",
-            "found in the whole picture, %": "{whole}",
-            "in tiles, as the study looks, %": "{tiles}",
-            "persons": "{tiles.n}",
-            "by": "{tiles.origin}",
-            "with": "{tiles.command}",
-        },
-    ),
     "held": View(
         "held",
         {
@@ -335,201 +316,5 @@ VIEWS = {
             "values, corrected": "{corrected.n}",
         },
     ),
-    "stated-errors": View(
-        "stated-errors",
-        {
-            "90 % ellipsoids hold, %": "{row}",
-            "target": "{target}",
-            **_stages("{STAGE}"),
-            "by": "{raw.origin}",
-            "with": "{raw.command}",
-        },
-    ),
-    "flags": View(
-        "flags",
-        {
-            "flag of errors above 100 mm": "{row}",
-            "four views: right / found, %": "{four}",
-            "three views: right / found, %": "{three}",
-            "by": "{four.origin}",
-            "with": "{four.command}",
-        },
-    ),
-    "file-mended": View(
-        "file-mended",
-        {
-            "`walk-4cams`, cameras": "{row}",
-            "file as it is": "{found}",
-            "mended": "{mended}",
-            "by": "{found.origin}",
-            "with": "{found.command}",
-        },
-    ),
-    "file-faults": View(
-        "file-faults",
-        {
-            "fault of one camera of four (`players-b/shot`, 6 seeds each)": "{row}",
-            "static points: warned, camera and fault named": "{static}",
-            "joints": "{joints}",
-            "both": "{both}",
-            "by": "{static.origin}",
-            "with": "{static.command}",
-        },
-    ),
-    "contacts": View(
-        "contacts",
-        {
-            "takes": "{row}",
-            "frames right": "{frames}",
-            "landing: error, median / 90 %": "{onset}",
-            "in its 90 % interval": "{onset_held}",
-            "leaving: error, median / 90 %": "{end}",
-            "in that of leaving": "{end_held}",
-            "landings found": "{steps}",
-            "a standing foot moves": "{moved}",
-            "by": "{frames.origin}",
-            "with": "{frames.command}",
-        },
-    ),
-    "strokes": View(
-        "strokes",
-        {
-            "takes": "{row}",
-            "hits": "{hits}",
-            "found (>= 95 %)": "{found}",
-            "false (<= 5 %)": "{false}",
-            "error of the time in frames, median (<= 1) / 95 %": "{median} / {p95}",
-            "in 90 % intervals (80 to 97 %)": "{held}",
-            "by": "{hits.origin}",
-            "with": "{hits.command}",
-        },
-    ),
-    "stroke-cues": View(
-        "stroke-cues",
-        {
-            "extremum nearest to the stroke, less the true hit, in frames": "{row}",
-            "overhead: median, sd (within one frame)": "{overhead}",
-            "low: median, sd (within one frame)": "{low}",
-            "by": "{low.origin}",
-            "with": "{low.command}",
-        },
-    ),
-    "ways": View(
-        "ways",
-        {
-            "way": "{row}",
-            "alone: volume error, median / 95 %, cm; shape, cm; accepted, %": "{alone}",
-            "refined by people; refined cameras taken": "{refined}",
-        },
-        "^`players-b`",
-    ),
-    "ways-real": View(
-        "ways",
-        {
-            "recording: way": "{row}",
-            "alone; accepted views by camera, %": "{alone}",
-            "refined by people; which cameras were taken": "{refined}",
-        },
-        "^`(walk|charuco|hall)",
-    ),
-    "lines-clicks": View(
-        "lines-clicks",
-        {
-            "hall": "{row}",
-            "court found; 18 clicks, median / 95 %, cm; court lines, cm; lines / clicks": "{found}",
-        },
-    ),
-    "refined-people": View(
-        "refined-people",
-        {
-            "cameras": "{row}",
-            "before": "{before}",
-            "taken": "{taken}",
-            "shape before": "{shape_before}",
-            "shape taken": "{shape}",
-            "in 90 % ellipsoids": "{coverage}",
-            "by": "{taken.origin}",
-            "with": "{taken.command}",
-        },
-    ),
-    "knocked-cameras": View(
-        "knocked-cameras",
-        {
-            "take": "{row}",
-            "found": "{found}",
-            "turn off, across the view": "{across}",
-            "about the optical axis": "{roll}",
-            "joints without the knock": "{whole}",
-            "with it": "{knocked}",
-            "with two poses": "{repaired}",
-            "by": "{repaired.origin}",
-            "with": "{repaired.command}",
-        },
-    ),
-    "more-of-people": View(
-        "more-of-people",
-        {
-            "cameras": "{row}",
-            "volume": "{volume}",
-            "limb lengths": "{limbs}",
-            "tilt of the floor": "{tilt}",
-            "volume, floor level": "{levelled}",
-            "with": "{volume.command}",
-        },
-    ),
-    **{
-        name: View(
-            name,
-            {
-                first: "{row}",
-                **{strength: f"{{{strength}}}" for strength in ("x1", "x2", "x3")},
-                "by": "{x1.origin}",
-                "with": "{x1.command}",
-            },
-        )
-        for name, first in {"click-model": "halls: clicks", "click-alarms": "clicks"}.items()
-    },
-    "worlds": View(
-        "worlds",
-        {
-            "effect, strength 1": "{row}",
-            "18 clicks, cm": "{walk18}",
-            "held, 18": "{held18}",
-            "3 clicks, cm": "{walk3}",
-            "held, 3": "{held3}",
-            "warnings": "{warnings}",
-            "by": "{walk18.origin}",
-            "with": "{walk18.command}",
-        },
-    ),
-    "speed": View(
-        "speed",
-        {
-            "comparison, largest work": "{row}",
-            "here": "{found}",
-            "other": "{other}",
-            "other / here": "{ratio}",
-            **FOUND,
-        },
-    ),
-    "stages": View(
-        "stages",
-        {
-            "stage": "{row}",
-            "before": "{before}",
-            "after": "{found}",
-            "ratio": "{ratio}",
-            "profile before": "{profile_before}",
-            "profile after": "{profile_after}",
-            **FOUND,
-        },
-    ),
-    "faults": View(
-        "faults",
-        {"fault": "{row}", "times": "{times}", "survived": "{found}", **FOUND},
-    ),
-    "trust": View(
-        "trust",
-        {"what was done": "{row}", "times": "{times}", "what happened": "{found}", **FOUND},
-    ),
+    **stated.VIEWS,
 }
