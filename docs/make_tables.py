@@ -11,14 +11,13 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
-from courtside.evaluation.numbers import register, study
+from courtside.evaluation.numbers import study
 from courtside.study.errors import InputError
 
 
 def main(results, documents_only):
     """Return the lines to print."""
-    kept = ROOT / study.REGISTER
-    found = register.read(kept) if documents_only else study.numbers(results, ROOT)
+    found = study.kept(ROOT) if documents_only else study.numbers(results, ROOT)
     changed = study.write(found, ROOT)
     return [f"{len(found)} numbers; changed: {', '.join(changed) or 'nothing'}"]
 

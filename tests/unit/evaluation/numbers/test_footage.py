@@ -2,15 +2,15 @@
 
 from pathlib import Path
 
-from courtside.evaluation.numbers import footage, register
+from courtside.evaluation.numbers import footage, register, stated
 
 ROOT = Path(__file__).parents[4]
 
 
 def test_each_reference_is_named_and_has_all_three_stages(source):
-    documents = register.Source(ROOT)
     rows = {}
-    for number in footage.corrections(source, documents):
+    stands = [one for one in stated.numbers(register.Source(ROOT)) if one.table == footage.TABLE]
+    for number in [*footage.corrections(source), *stands]:
         rows.setdefault(number.row, set()).add(number.part.split("_")[0])
     assert len(rows) >= 3
     assert all(" against " in row for row in rows)

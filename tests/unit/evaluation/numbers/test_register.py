@@ -26,7 +26,7 @@ def test_a_register_comes_back_as_it_was_written(tmp_path, built):
     assert median == replace(built[0], value=0.12345679)
     assert (median.name, median.printed) == ("joints/median/`s/t`: all", "0.12")
     assert (median.n, median.n_failed, p95.n, p95.printed) == (90, 2, None, "-")
-    assert median.selector == "row 1; a" and len(median.sha256) == 12 and math.isnan(p95.value)
+    assert median.selector == "row 1; a" and len(median.sha256) == 16 and math.isnan(p95.value)
 
 
 def test_two_numbers_of_one_name_are_refused(tmp_path, built):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from courtside.evaluation.numbers import footage, register, stated
+from courtside.evaluation.numbers import register, stated
 from courtside.study.errors import InputError
 
 HEAD = "table,row,part,printed,unit,sessions,n,n_failed,origin,command\n"
@@ -17,22 +17,12 @@ def documents(tmp_path, line):
 
 def test_a_number_by_hand_keeps_its_text_and_command(tmp_path):
     of = documents(tmp_path, "speed,a row,found,4.6 ms,,,12,,by hand,run.py")
-    (found,) = stated.numbers(of, "speed")
+    (found,) = stated.numbers(of)
     assert (found.printed, found.command, found.n) == ("4.6 ms", "run.py", 12)
-    assert found.source == "docs/numbers/hand.csv"
-    other = documents(tmp_path, "speed,a row,found,4.7 ms,,,12,,by hand,run.py")
-    assert stated.numbers(other, "speed")[0].sha256 != found.sha256
-    assert stated.numbers(of, "other") == []
+    assert found.source == "docs/numbers/hand.csv" and found.selector == "line 2"
 
 
 @pytest.mark.parametrize("line", ["speed,a,b,1,,,,,by hand,", "speed,a,b,1,,,,,study,run.py"])
 def test_a_number_without_command_or_as_if_of_the_study_is_refused(tmp_path, line):
     with pytest.raises(InputError, match="line 2: expected an origin"):
-        stated.numbers(documents(tmp_path, line), "speed")
-
-
-def test_real_footage_stands_below_virtual_with_its_reference(tmp_path, source, value):
-    of = documents(tmp_path, '"footage",real,raw_median,78.5,mm,,,,by hand,once')
-    found = footage.corrections(source, of)
-    assert value(found, "virtual, `players-b/footwork`", "corrected_p95").printed == "48.0"
-    assert (found[-1].row, found[-1].value, found[-1].origin) == ("real", 78.5, "by hand")
+        stated.numbers(documents(tmp_path, line))

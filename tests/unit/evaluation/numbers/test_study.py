@@ -30,7 +30,9 @@ def test_documents_are_written_once_and_then_stay(source, repository):
     assert study.write(found, repository) == [study.REGISTER, *study.DOCUMENTS]
     assert "| 12.7; 11.9 |" in (repository / "README.md").read_text()
     assert study.write(found, repository) == []
-    assert study.filled(register.read(repository / study.REGISTER), repository) == {
+    kept = {number.source for number in register.read(repository / study.REGISTER)}
+    assert not [source for source in kept if source.startswith("docs/")]
+    assert study.filled(study.kept(repository), repository) == {
         name: (repository / name).read_text() for name in study.DOCUMENTS
     }
 

@@ -1,6 +1,6 @@
 """Numbers of joints: corrected, real beside virtual; one by one; of fewer cameras."""
 
-from courtside.evaluation.numbers import players, stated
+from courtside.evaluation.numbers import players
 from courtside.evaluation.numbers.register import Builder, Cut, Number, Source
 from courtside.evaluation.tables.players import STAGES
 from courtside.records.keypoints import skeleton
@@ -17,8 +17,8 @@ PER_VIEWS = {  # part: column, decimals, unit
 }
 
 
-def corrections(source: Source, documents: Source) -> list[Number]:
-    """Return the distances to each reference, raw, filtered and corrected: virtual, then real."""
+def corrections(source: Source) -> list[Number]:
+    """Return the errors of virtual joints beside real footage: raw, filtered and corrected."""
     build, table = Builder(TABLE), source.table(players.TABLE)
     table = table[(table["fusion"] == players.OURS) & (table["model"] == players.NETWORK)]
     for session, take in VIRTUAL:
@@ -31,7 +31,7 @@ def corrections(source: Source, documents: Source) -> list[Number]:
                 f"{row['stage']}_{part}": (f"{part}_mm", 1, "mm") for part in ("median", "p95")
             }
             build.add_columns(name, row, shown, cut, n=row["n"])
-    return [*build.numbers, *stated.numbers(documents, TABLE)]
+    return build.numbers
 
 
 def views(source: Source) -> list[Number]:

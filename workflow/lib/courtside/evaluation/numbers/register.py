@@ -20,7 +20,7 @@ MISSING = "-"  # printed where there is no value
 Settings: TypeAlias = dict[str, Any]  # named arguments of `Builder.add`
 Parts: TypeAlias = Mapping[str, tuple[str, int, str]]  # column, decimals and unit of each part
 KEPT = 8  # digits of an exact value
-DIGITS = 12  # of a checksum
+DIGITS = 16  # of a checksum
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Number:
     n_failed: int | None  # trials without a value
     origin: str  # one of `ORIGINS`
     command: str  # that measured a number by hand; where a published one stands
-    sha256: str  # first digits: of the source, or of the row of a stated number
+    sha256: str  # of the source, its first digits
 
     @property
     def name(self) -> str:

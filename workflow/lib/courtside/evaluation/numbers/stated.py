@@ -1,22 +1,20 @@
 """Numbers that no study makes: measured by hand or by a benchmark, or published by others."""
 
 import csv
-import hashlib
 import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from courtside.evaluation.numbers.markers import View
-from courtside.evaluation.numbers.register import DIGITS, ORIGINS, STUDY, Number, Source
+from courtside.evaluation.numbers.register import ORIGINS, STUDY, Number, Source
 from courtside.study.errors import InputError, StrPath
 
 FOLDER = "docs/numbers"  # of their tables, one for each command that writes one, and one by hand
 COLUMNS = ("table", "row", "part", "printed", "unit", "sessions", "n", "n_failed", "origin")
-SELECTOR = "its row"
 
 
-def numbers(documents: Source, table: str) -> list[Number]:
-    """Return the numbers of one table, in the order of their files.
+def numbers(documents: Source) -> list[Number]:
+    """Return the numbers of all tables, in the order of their files.
 
     `documents` is the repository. An `InputError` where a number says neither the command that
     measured it nor where it is published.
@@ -26,22 +24,11 @@ def numbers(documents: Source, table: str) -> list[Number]:
         rows = documents.texts(file)
         if missing := {*COLUMNS, "command"} - set(rows):
             raise InputError(f"{file}: expected columns {sorted(missing)}, found none; add them")
-        for at, row in enumerate(rows.to_dict("records"), start=2):
-            if row["table"] == table:
-                found.append(_number(file, at, row))
+        found += [
+            _number(documents, file, line, row)
+            for line, row in enumerate(rows.to_dict("records"), start=2)
+        ]
     return found
-
-
-def joined(rows: Iterable[Sequence[object]]) -> list[list[object]]:
-    """Join rows of one table, label and first word of the part: `alone`, `alone_shape` to one."""
-    found: dict[tuple, list[object]] = {}
-    for row in rows:
-        key = (row[0], row[1], str(row[2]).partition("_")[0])
-        if key in found:
-            found[key][3] = f"{found[key][3]}; {row[3]}"
-        else:
-            found[key] = [*row[:2], key[2], *row[3:]]
-    return list(found.values())
 
 
 def write(path: StrPath, rows: Iterable[Sequence[object]]) -> None:
@@ -52,7 +39,7 @@ def write(path: StrPath, rows: Iterable[Sequence[object]]) -> None:
         table.writerows(rows)
 
 
-def _number(file: str, line: int, row: dict[str, str]) -> Number:
+def _number(documents: Source, file: str, line: int, row: dict[str, str]) -> Number:
     if row["origin"] not in set(ORIGINS) - {STUDY} or not row["command"]:
         raise InputError(
             f"{file}, line {line}: expected an origin of {ORIGINS[1:]}, and the command or place "
@@ -64,15 +51,11 @@ def _number(file: str, line: int, row: dict[str, str]) -> Number:
         **{key: row[key] for key in ("origin", "command")},
         value=_value(row["printed"]),
         source=Path(file).as_posix(),
-        selector=SELECTOR,
+        selector=f"line {line}",
         n=counts["n"],
         n_failed=counts["n_failed"],
-        sha256=_checksum(row),
+        sha256=documents.sha256(file),
     )
-
-
-def _checksum(row: dict[str, str]) -> str:
-    return hashlib.sha256("\n".join(map(str, row.values())).encode()).hexdigest()[:DIGITS]
 
 
 def _value(printed: str) -> float:

@@ -30,6 +30,7 @@ MEASURED = (  # of the results of a default run
     players.angles,
     players.measures,
     players.held,
+    footage.corrections,
     footage.joints,
     footage.views,
     networks.virtual,
@@ -38,15 +39,6 @@ MEASURED = (  # of the results of a default run
     published.round_trip,
     devices.sources,
     devices.body_frames,
-)
-STATED = (
-    *("real-checks", "markers", "hall-points", "device-checks", "stated-errors", "flags", "crowd"),
-    *("file-evidence", "file-mended", "networks", "offset-cameras", "persons-found", "batches"),
-    *("ways", "lines-clicks", "file-faults", "refined-people", "knocked-cameras", "more-of-people"),
-    *("mapping-checks", "click-model", "click-alarms", "worlds"),
-    *("halls", "halls-strengths"),
-    *("body-model", "body-model-hall", "contacts", "strokes", "stroke-cues"),
-    *("speed", "costs", "stages", "faults", "trust"),
 )
 
 
@@ -59,19 +51,25 @@ def numbers(results: StrPath, repository: StrPath) -> list[Number]:
     if not source.folder.is_dir():
         raise InputError(f"{results}: expected a folder of results, found none; run snakemake")
     found = [number for table in MEASURED for number in table(source)]
-    found += published.table_1(documents)
-    found += footage.corrections(source, documents)
-    return found + [number for table in STATED for number in stated.numbers(documents, table)]
+    return [*found, *published.table_1(documents), *stated.numbers(documents)]
+
+
+def kept(repository: StrPath) -> list[Number]:
+    """Return all numbers as the repository keeps them: those of the register, then stated ones."""
+    return [*register.read(Path(repository) / REGISTER), *stated.numbers(Source(repository))]
 
 
 def write(numbers_: list[Number], repository: StrPath) -> list[str]:
-    """Write the register and the tables of the documents; return the files that changed."""
+    """Write the register and the tables of the documents; return the files that changed.
+
+    The register keeps what is not stated: each number stands in one file.
+    """
     changed = []
     path = Path(repository) / REGISTER
     before = path.read_text(encoding="utf-8") if path.is_file() else ""
-    register.write(path, numbers_)
+    register.write(path, [one for one in numbers_ if not one.source.startswith(stated.FOLDER)])
     changed += [REGISTER] if path.read_text(encoding="utf-8") != before else []
-    for name, text in filled(register.read(path), repository).items():
+    for name, text in filled(kept(repository), repository).items():
         document = Path(repository) / name
         if document.read_text(encoding="utf-8") != text:
             document.write_text(text, encoding="utf-8", newline="\n")
@@ -80,12 +78,11 @@ def write(numbers_: list[Number], repository: StrPath) -> list[str]:
 
 
 def filled(numbers_: list[Number], repository: StrPath) -> dict[str, str]:
-    """Return the documents with the tables that a register gives, by their names."""
+    """Return the documents with their tables of these numbers, by the documents' names."""
     texts = {name: (Path(repository) / name).read_text(encoding="utf-8") for name in DOCUMENTS}
     return {name: markers.fill(text, VIEWS, numbers_) for name, text in texts.items()}
 
 
 def report(results: StrPath, repository: StrPath) -> list[str]:
     """Return a line for every number of the register that these results do not give any more."""
-    kept = register.read(Path(repository) / REGISTER)
-    return register.stale(kept, numbers(results, repository))
+    return register.stale(kept(repository), numbers(results, repository))
