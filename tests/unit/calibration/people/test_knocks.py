@@ -70,3 +70,11 @@ def test_a_knock_is_told_in_the_clock_of_its_camera(found):
     assert row["camera"] == "c2" and row["taken"] == 1 and row["joints"] == "better"
     (line,) = knocks.lines([row, {**row, "taken": 0}])
     assert line.startswith("camera c2 was knocked at ") and "of take t by 0.4" in line
+
+
+def test_a_camera_that_sees_nobody_of_the_others_hinders_no_search(monkeypatch):
+    monkeypatch.setattr(knocks, "_judged", lambda *_: (0.0, {"joints": "not better"}))
+    blind = SEEN.xy.copy()
+    blind[3] = np.nan
+    found = knocks.find(TRUE, KNOWN, replace(SEEN, xy=blind), LIMITS)
+    assert all(one.camera != 3 for one in found)

@@ -305,7 +305,8 @@ def _gains(matrix: NDArray, right: NDArray, times: NDArray) -> NDArray:
     """Return how much a step at each time lowers the cost of each camera, (C, T)."""
     ahead = [np.cumsum(part, axis=1) - part for part in (matrix, right)]
     whole = [part.sum(axis=1, keepdims=True) for part in (matrix, right)]
-    ridge = 1e-6 * np.trace(whole[0], axis1=2, axis2=3)[..., None, None] * np.eye(3) + 1e-12
+    small = 1e-6 * np.trace(whole[0], axis1=2, axis2=3)[..., None, None] + 1e-12
+    ridge = small * np.eye(3)  # also of a camera that sees nobody
 
     def cost(one: NDArray, other: NDArray) -> NDArray:
         return (np.linalg.solve(one + ridge, other[..., None])[..., 0] * other).sum(axis=-1)
