@@ -31,6 +31,18 @@ def numbers(documents: Source) -> list[Number]:
     return found
 
 
+def joined(rows: Iterable[Sequence[object]]) -> list[list[object]]:
+    """Join rows of one table, label and first word of the part: `alone`, `alone_shape` to one."""
+    found: dict[tuple, list[object]] = {}
+    for row in rows:
+        key = (row[0], row[1], str(row[2]).partition("_")[0])
+        if key in found:
+            found[key][3] = f"{found[key][3]}; {row[3]}"
+        else:
+            found[key] = [*row[:2], key[2], *row[3:]]
+    return list(found.values())
+
+
 def write(path: StrPath, rows: Iterable[Sequence[object]]) -> None:
     """Write the table of one command; each row has the values of `COLUMNS`, then the command."""
     with Path(path).open("w", newline="", encoding="utf-8") as stream:
