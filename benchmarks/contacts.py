@@ -16,6 +16,7 @@ import numpy as np
 import pandas as pd
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
+from courtside.calibration.point_covariance import WITHIN_90
 from courtside.evaluation.movement import contacts
 from courtside.evaluation.numbers import stated
 from courtside.footwork import feet
@@ -62,7 +63,7 @@ def numbers(row, rows, pairs, command):
         error, sigma = np.concatenate([each[at] for each in pairs]).T
         median, p90 = 1000 * np.quantile(abs(error), [0.5, 0.9])
         printed[what] = f"{median:.0f} / {p90:.0f} ms"
-        held = 100 * np.mean(abs(error) <= contacts.WITHIN_90 * sigma)
+        held = 100 * np.mean(abs(error) <= WITHIN_90 * sigma)
         printed[f"{what}_held"] = f"{held:.0f} % (n = {len(error)})"
     found, true = rows.n_found_onset.sum(), rows.n_true_onset.sum()
     exact = (rows.n_found_onset == rows.n_true_onset).sum()

@@ -20,6 +20,7 @@ import pandas as pd
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.court import court
+from courtside.calibration.point_covariance import WITHIN_90
 from courtside.evaluation.movement import contacts, strokes
 from courtside.footwork import feet
 from courtside.kinematics import cutoffs
@@ -149,7 +150,7 @@ def main():
         said(part)
     said(films)
     error, sigma = next_steps(given.results).T
-    within = (np.abs(error) <= 1.645 * sigma).sum()
+    within = (np.abs(error) <= WITHIN_90 * sigma).sum()
     print(
         f"hit to the own next step: n = {len(error)}, median {np.median(np.abs(error)):.0f} ms, "
         f"largest {np.abs(error).max():.0f} ms, {within} in their 90 % intervals"

@@ -12,6 +12,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from courtside.calibration.point_covariance import WITHIN_90
+from courtside.footwork import tracks
 from courtside.records.footwork import Contacts
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.truth.take_truth import TakeTruth
@@ -19,9 +21,7 @@ from courtside.records.truth.take_truth import TakeTruth
 TOUCHES_M = 0.001
 NEAR_S = 0.15  # ASSUME: a true and a found onset further apart are not of one step
 EDGE_S = 0.1  # onsets and ends this near to the ends of what is known are not judged
-WITHIN_90 = 1.645  # standard deviations of normal errors
 BOUNDARIES = ("onset", "end")
-POINTS = ("heel", "foot_index", "big_toe")  # of the measured foot, whose movement is given
 
 
 def true_contact(truth: TakeTruth, person: str, foot: str) -> tuple[NDArray, dict[str, NDArray]]:
@@ -128,8 +128,7 @@ def _movement(points: Keypoints3D, person: str, foot: str, steps: pd.DataFrame) 
 
     Root mean square distance on the floor from its mean of the stance, of the middle half of each.
     """
-    names = points.joints.tolist()
-    named = [names.index(f"{foot}_{n}") for n in POINTS if f"{foot}_{n}" in names][:2]
+    named = tracks.points_of(points.joints.tolist(), foot)
     row, squares = points.person_id.tolist().index(person), []
     for step in steps.itertuples():
         start, stop = (float(step.onset_s), float(step.end_s))

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from courtside.calibration.point_covariance import WITHIN_90
 from courtside.records import tables
 from courtside.records.devices import clocks
 from courtside.records.keypoints import keypoints, missing_reason, skeleton
@@ -14,7 +15,6 @@ from courtside.study.errors import StrPath
 from courtside.study.execution import verdicts
 from courtside.study.execution.files import read_json
 
-NINE_IN_TEN = 1.645  # half of the 90 % interval of normal errors, in standard deviations
 SUMMARY = ("person", "measure", "value", "sigma", "sigma_camera", "unit", "n")
 FRAMES = ("person", "time_s", "neck_reason")
 FOOTWORK = ("person", "measure", "value", "sigma", "unit", "n")
@@ -128,7 +128,7 @@ def _measures(table: pd.DataFrame) -> dict:
     for row in table.itertuples():
         whole = np.hypot(row.sigma, 0 if np.isnan(row.sigma_camera) else row.sigma_camera)
         unit = row.unit if isinstance(row.unit, str) else ""
-        value = (float(row.value), NINE_IN_TEN * float(whole), unit, not np.isnan(row.sigma_camera))
+        value = (float(row.value), WITHIN_90 * float(whole), unit, not np.isnan(row.sigma_camera))
         found.setdefault(str(row.person), {})[row.measure] = value
     return found
 

@@ -5,7 +5,7 @@ import statistics
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from courtside.pages.report.facts import NINE_IN_TEN
+from courtside.calibration.point_covariance import WITHIN_90
 from courtside.records.devices.clocks import Clock
 from courtside.study.execution import verdicts
 
@@ -222,7 +222,7 @@ def distance(person: str, measures: dict) -> Warned | None:
 def true_path(row: dict) -> Warned | None:
     """Return a warning if an error bar does not hold the true distance of a simulated take."""
     off, sigma = row["distance_error_percent"], row["distance_sigma_percent"]
-    if row["point"] != "neck" or math.isnan(off) or abs(off) <= NINE_IN_TEN * sigma:
+    if row["point"] != "neck" or math.isnan(off) or abs(off) <= WITHIN_90 * sigma:
         return None
     side = "smaller" if off > 0 else "larger"
     text = f"the true distance of this simulated take is {abs(off):.1f} % {side}"
