@@ -4,9 +4,10 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
+from courtside.geometry import interpolation, rotations
+from courtside.geometry.similarity import kabsch
 from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy
 from courtside.records.keypoints.skeleton import Skeleton
 
@@ -39,16 +40,8 @@ def even(posed: PosedHierarchy) -> PosedHierarchy:
     time_s = np.linspace(known[0], known[-1], count)
     if count == len(known) and np.abs(time_s - known).max() <= EVEN_S:
         return posed
-    turns = np.stack(
-        [
-            scipy.spatial.transform.Slerp(
-                known, scipy.spatial.transform.Rotation.from_matrix(joint)
-            )(time_s).as_matrix()
-            for joint in np.moveaxis(posed.parent_from_joint, 1, 0)
-        ],
-        axis=1,
-    )
-    places = scipy.interpolate.interp1d(known, posed.translation, axis=0)(time_s)
+    turns = rotations.interpolate(known, posed.parent_from_joint, time_s)
+    places = interpolation.linear(known, posed.translation, time_s)
     return replace(posed, time_s=time_s, translation=places, parent_from_joint=turns)
 
 
@@ -89,7 +82,7 @@ def of_joints(time_s: NDArray, xyz: NDArray, skeleton: Skeleton) -> PosedHierarc
     for node in range(len(nodes)):
         ends = np.flatnonzero(parents == node)
         together = np.einsum("tki,kj->tij", pointing[:, ends], best[ends])
-        turns[:, node] = _nearest(together + FEEBLE * turns[:, above[node]])
+        turns[:, node] = kabsch(together + FEEBLE * turns[:, above[node]])[0]
     local = np.swapaxes(turns[:, above], 2, 3) @ turns
     local[:, 0] = turns[:, 0]
     places = np.repeat(shape.offsets[None], len(xyz), axis=0)
@@ -128,10 +121,3 @@ def _tree(skeleton: Skeleton) -> list[Node]:
         placed.append(len(nodes))
         nodes.append(Node(name, above, joint, joint))
     return nodes
-
-
-def _nearest(matrices: NDArray) -> NDArray:
-    """Return the rotations (T, 3, 3) nearest to matrices."""
-    left, _, right = np.linalg.svd(matrices)
-    left[:, :, 2] *= np.sign(np.linalg.det(left @ right))[:, None]
-    return left @ right
