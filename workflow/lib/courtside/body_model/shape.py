@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from courtside.body_model import segments
 from courtside.body_model.segments import SIDES, Model
+from courtside.records.keypoints.skeleton import TOES
 
 BEST = 0.5  # share of the frames, those of least uncertainty, that a length is the median of
 LUMBAR = 0.2  # ASSUME: height of the joint of pelvis and thorax, share of the trunk's length
@@ -17,13 +18,13 @@ STERNUM_M = 0.02  # ASSUME: of the clavicle's inner end from the middle plane
 # (`joint_correction.LENGTH_SIGMA`).
 SYSTEMATIC = 0.04
 # Share of body height, men and women together (Winter 2009, fig. 4.1; hips, shoulders: ASSUME),
-# which counts the less the more of a length a take shows; ASSUME: 6 % standard deviation.
+# which counts the less the more of a length a take shows.
 OF_HEIGHT = {
     "thigh": 0.245, "shank": 0.246, "upper_arm": 0.186, "forearm": 0.146,
     "hips": 0.12, "shoulders": 0.2, "trunk": 0.288,
 }  # fmt: skip
-HEIGHT_M, HEIGHT_SIGMA = 1.72, 0.06  # ASSUME: of an adult whose height is not stated
-TOES = ("foot_index", "big_toe")  # of which a network has one
+OF_HEIGHT_SIGMA = 0.06  # ASSUME: standard deviation of such a length, as a share of it
+HEIGHT_M, HEIGHT_SIGMA = 1.72, 0.06  # ASSUME: of an adult whose height is not stated; as a share
 LEAST = 10  # frames that a median needs
 PAIRS = {
     "thigh": ("hip", "knee"),
@@ -56,12 +57,12 @@ def lengths(
     (T,). Both sides count together. Each is the weighted mean of the median of the best frames and
     of its usual share of the height.
     """
-    tall = (height_m or HEIGHT_M, 0.0 if height_m else HEIGHT_SIGMA)
+    own_sigma = np.hypot(OF_HEIGHT_SIGMA, 0.0 if height_m else HEIGHT_SIGMA)
     found = {}
     for name in OF_HEIGHT:
         apart, spread = _distances(name, place, sigma)
-        prior = OF_HEIGHT[name] * tall[0]
-        prior_sigma = prior * np.hypot(HEIGHT_SIGMA, tall[1])
+        prior = OF_HEIGHT[name] * (height_m or HEIGHT_M)
+        prior_sigma = prior * own_sigma
         known = np.isfinite(apart)
         if known.sum() < LEAST:
             found[name] = (prior, float(prior_sigma))

@@ -7,11 +7,12 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from courtside.geometry import interpolation
 from courtside.kinematics import filtering
+from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
 
 GRID_HZ = 120.0  # of the times between frames at which contact is looked for
-TOES = ("foot_index", "big_toe")  # what skeletons call the toe
 SLOW_M_S = 0.5  # ASSUME: below it a point of the foot may stand
 STANDING_SHARE = 0.25  # ASSUME: quantile of a slow point's heights: a heel often stands raised
 LEAST_FRAMES = 9  # ASSUME: of a run of known frames in which contact is looked for
@@ -40,7 +41,7 @@ class Track:
 def points_of(joints: Sequence[str], side: str) -> list[int]:
     """Return the indices of heel and toe of a side; empty if the skeleton lacks one."""
     names = list(joints)
-    toe = [f"{side}_{name}" for name in TOES if f"{side}_{name}" in names]
+    toe = [f"{side}_{name}" for name in skeleton.TOES if f"{side}_{name}" in names]
     heel = [f"{side}_heel"] if f"{side}_heel" in names else []
     return [names.index(heel[0]), names.index(toe[0])] if heel and toe else []
 
@@ -77,7 +78,7 @@ def _track(
     spline = scipy.interpolate.CubicSpline(own_s, points.xyz[person, frames][:, chosen])
     stated = points.covariance_2d[person, frames][:, chosen]
     variance = np.nan_to_num(np.diagonal(stated, axis1=2, axis2=3), nan=UNKNOWN_M**2)
-    variance = scipy.interpolate.interp1d(own_s, variance, axis=0)(time_s)
+    variance = interpolation.linear(own_s, variance, time_s)
     place = spline(time_s)
     return Track(
         frames, time_s, step, place, spline(time_s, 1), variance, place[..., 2].copy(), cutoff_hz

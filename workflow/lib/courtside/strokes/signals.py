@@ -6,13 +6,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.records.keypoints import missing_reason
+from courtside.records.keypoints import missing_reason, skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.strokes import local_fit
 from courtside.strokes.local_fit import Fit
 
 HANDS = ("left", "right")
-TRUNK = tuple(f"{side}_{part}" for part in ("shoulder", "hip") for side in HANDS)
 # ASSUME: half widths of the fits, of the development takes: a swing lasts 0.15 s, a stop longer.
 ARM_S, TRUNK_S = 0.1, 0.17
 
@@ -70,7 +69,7 @@ def of_person(points: Keypoints3D, person: int) -> Signals:
             above=local_fit.fit(wrist - shoulders, rate_hz, ARM_S).place[:, 2] / size_m,
             measured=known & np.isfinite(wrist).all(axis=1),
         )
-    path = np.concatenate([joint(name) for name in TRUNK], axis=1)
+    path = np.concatenate([joint(name) for name in skeleton.TRUNK], axis=1)
     middle = path.reshape(len(path), -1, 3).mean(axis=1)
     return Signals(points.time_s, arms, local_fit.fit(middle, rate_hz, TRUNK_S), path, size_m)
 

@@ -113,4 +113,5 @@ CHAINS = ("shoulder", "elbow", "wrist"), ("hip", "knee", "ankle")
 LIMBS = tuple(limb for chain in CHAINS for limb in chain)
 PARENT = {stop: start for chain in CHAINS for start, stop in pairwise(chain)}
 JOINTS = tuple(f"{side}_{limb}" for side in ("left", "right") for limb in LIMBS)
+TOES = ("foot_index", "big_toe")  # what networks call the toe; each has one of them
 TRUNK = ("left_shoulder", "right_shoulder", "left_hip", "right_hip")
