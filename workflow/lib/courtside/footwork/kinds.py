@@ -31,7 +31,7 @@ def tables(people: Mapping[str, tuple[Feet, float]]) -> tuple[pd.DataFrame, pd.D
     for person, (feet, leg_m) in people.items():
         kinds: dict[tuple[str, int], str] = {}
         flights = _flights(feet)
-        for left, right, kind, _ in flights:
+        for left, right, kind in flights:
             kinds |= {("left", left): kind, ("right", right): kind}
         own = []
         for side in feet:
@@ -42,7 +42,7 @@ def tables(people: Mapping[str, tuple[Feet, float]]) -> tuple[pd.DataFrame, pd.D
                 if kind in ("step", "lunge") and at and np.isfinite(feet[side][at - 1].end_s):
                     events.append(_event(person, kind, side, [feet[side][at - 1]], [stance]))
         steps += [row for _, row in sorted(own, key=lambda each: each[0])]
-        for left, right, kind, _ in flights:
+        for left, right, kind in flights:
             landing = [feet["left"][left], feet["right"][right]]
             before = [feet["left"][left - 1], feet["right"][right - 1]]
             events.append(_event(person, kind, "both", before, landing))
@@ -73,8 +73,8 @@ def _event(
     return person, kind, foot, *times, float(x_m), float(y_m), quality
 
 
-def _flights(feet: Feet) -> list[tuple[int, int, str, float]]:
-    """Return the flights of both feet: the stances in which they end, kind, and duration (s)."""
+def _flights(feet: Feet) -> list[tuple[int, int, str]]:
+    """Return the flights of both feet: the stances in which they end, and their kind."""
     found = []
     for left, landed in enumerate(feet["left"]):
         for right, other in enumerate(feet["right"]):
@@ -88,7 +88,7 @@ def _flights(feet: Feet) -> list[tuple[int, int, str, float]]:
                 continue
             went = (landed.xy + other.xy - before[0].xy - before[1].xy) / 2
             short = lasts <= JUMP_S and np.linalg.norm(went) <= HOP_M
-            found.append((left, right, "split_step" if short else "jump", lasts))
+            found.append((left, right, "split_step" if short else "jump"))
     return found
 
 

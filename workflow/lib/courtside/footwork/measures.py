@@ -42,10 +42,11 @@ def _counts(steps: pd.DataFrame, events: pd.DataFrame) -> Iterator[Row]:
 
 def _times(steps: pd.DataFrame) -> Iterator[Row]:
     feet = dict(iter(steps.groupby("foot")))  # in order of time
-    for name, own in (("", list(feet.values())), *((f"_{f}", [o]) for f, o in feet.items())):
+    sets = {"": list(feet.values())} | {f"_{foot}": [own] for foot, own in feet.items()}
+    for name, own in sets.items():
         stood = pd.concat(own).dropna(subset=["onset_s", "end_s"])
         yield _mean(f"stance_time{name}", stood.onset_s, stood.end_s, *_sigmas(stood))
-    for name, own in (("", list(feet.values())), *((f"_{f}", [o]) for f, o in feet.items())):
+    for name, own in sets.items():
         left = pd.concat([o[["end_s", "end_sigma_s"]].shift(1) for o in own])
         landed = pd.concat([o[["onset_s", "onset_sigma_s"]] for o in own])
         both = pd.concat([left, landed], axis=1).dropna()
@@ -89,8 +90,8 @@ def corner(xy: NDArray, court: Court) -> NDArray:
     assert court.net is not None
     ahead = court.net["y_m"] - xy[:, 1]  # positive in the near half
     third = np.clip(3 * np.abs(ahead) / (court.size_m[1] / 2), 0, 2.999).astype(int)
-    right = (xy[:, 0] > court.size_m[0] / 2) == (ahead > 0)
-    return np.array([f"{DEPTHS[d]}_{SIDES[r]}" for d, r in zip(third, right.astype(int))])  # noqa: B905
+    right = ((xy[:, 0] > court.size_m[0] / 2) == (ahead > 0)).astype(int)
+    return np.array([f"{DEPTHS[d]}_{SIDES[r]}" for d, r in zip(third, right, strict=True)])
 
 
 def _corners(steps: pd.DataFrame, court: Court | None) -> Iterator[Row]:
