@@ -43,7 +43,8 @@ def _of_persons(quality_csv: StrPath, labels: Mapping[str, str]) -> dict[str, st
         row["person"]: row["verdict"]
         for row in verdicts.read(quality_csv)
         if row["measure"] == WHOLE
-        and (row["camera"], row["person"] == ALL) == (ALL, False)
+        and row["camera"] == ALL
+        and row["person"] != ALL
         and all(row[key] == labels[key] for key in WAY)
     }
 

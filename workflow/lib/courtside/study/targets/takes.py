@@ -8,9 +8,9 @@ from courtside.study.configuration import consent
 from courtside.study.configuration.sessions import Session, Study, Take
 from courtside.study.methods import IMPORTED
 
-# Figures that show persons in pictures.
 # Figures of takes of badminton: elsewhere, throws and headers look like strokes.
 OF_STROKES = ("rally", "strokes")
+# Figures that show persons in pictures.
 PICTURED = ("overlay", "badminton_fig09", "badminton_fig10", "badminton_fig11")
 
 
