@@ -6,6 +6,10 @@ Steps: simulate_session (one rule per session, named after it, for its files bea
 names), simulate_take (likewise, one per take).
 """
 
+# Processes that render a long film. With two cores two films side by side keep them busier than one
+# with two processes; more cores would wait for the longest film.
+RENDERING = 1 if workflow.resource_settings.cores in (1, 2) else 2
+
 for session in STUDY.sessions.values():
     if session.virtual is None:
         continue
@@ -36,7 +40,7 @@ for session in STUDY.sessions.values():
                 f"results/virtual/benchmarks/simulate_session/{session.name}.tsv"
             # As its takes.
             priority: int(max((take.virtual["seconds"] for take in filming), default=0))
-            threads: 2 if session.virtual["walk_frames"] > 24 else 1
+            threads: RENDERING if session.virtual["walk_frames"] > 24 else 1
             resources:
                 mem_mb=2000,
             params:
@@ -65,7 +69,7 @@ for session in STUDY.sessions.values():
             benchmark:
                 f"results/virtual/benchmarks/simulate_take/{session.name}.{take.name}.tsv"
             priority: int(take.virtual["seconds"])  # the longest first, or they are left to the end
-            threads: 2 if take.virtual["seconds"] > 4 else 1
+            threads: RENDERING if take.virtual["seconds"] > 4 else 1
             resources:
                 mem_mb=2500,
             params:

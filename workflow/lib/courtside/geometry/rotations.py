@@ -52,6 +52,17 @@ def invert(b_from_a: NDArray) -> NDArray:
     return np.column_stack([rotation, -rotation @ b_from_a[:, 3]])
 
 
+def cross(a: NDArray, b: NDArray) -> NDArray:
+    """Return the cross products (..., 3) of vectors (..., 3).
+
+    As `np.cross`, without its handling of axes and of vectors in the plane, which takes most of the
+    time where they are few.
+    """
+    ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
+    bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
+    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)
+
+
 def cross_matrices(vectors: ArrayLike) -> NDArray:
     """Return the matrices (..., 3, 3) whose product with another vector is the cross product."""
     x, y, z = np.moveaxis(np.asarray(vectors, float), -1, 0)

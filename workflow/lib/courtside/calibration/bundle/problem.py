@@ -169,12 +169,14 @@ def linearised(network: Network) -> tuple[NDArray, NDArray, NDArray]:
         _coefficients(lens), normalised, in_cam[:, 2:]
     )
     # Before the shutter's turn: r @ (I + [spin]) = r + r x spin.
-    by_still = by_place + np.cross(by_place, _spin(network)[:, None, :])
+    by_still = by_place + rotations.cross(by_place, _spin(network)[:, None, :])
     rotation = network.cam_from_world[network.image_idx, :, :3]
     by_camera = np.zeros((len(in_cam), 2, IMAGE + len(LENS)))
-    by_camera[:, :, :3] = np.cross(still[:, None, :], by_still)  # by_still @ -[x]: rows crossed
+    by_camera[:, :, :3] = rotations.cross(
+        still[:, None, :], by_still
+    )  # by_still @ -[x]: rows crossed
     by_camera[:, :, 3:6] = by_still
-    turned = np.cross(still[:, None, :], by_place)
+    turned = rotations.cross(still[:, None, :], by_place)
     by_camera[:, :, 6:9] = turned * _row_time(network)[:, None, None]
     by_camera[:, 0, 9] = by_camera[:, 1, 10] = 1.0
     by_camera[:, :, IMAGE:] = _by_lens(lens, normalised, distorted)
@@ -209,7 +211,7 @@ def _see(network: Network) -> tuple[NDArray, NDArray, NDArray, NDArray]:
     """
     pose = network.cam_from_world[network.image_idx]
     still = np.einsum("mij,mj->mi", pose[:, :, :3], network.xyz[network.point_idx]) + pose[:, :, 3]
-    in_cam = still + np.cross(_spin(network), still)
+    in_cam = still + rotations.cross(_spin(network), still)
     depth = np.where(in_cam[:, 2:] > 1e-6, in_cam[:, 2:], np.nan)
     normalised = in_cam[:, :2] / depth
     distorted = camera.distort(_coefficients(_lens(network)), normalised)
