@@ -22,6 +22,7 @@ import hall_markers
 import long_take
 import mapping_seeds
 import networks
+import opensim_angles
 import pose_batches
 import real_footage
 import rows
@@ -180,6 +181,20 @@ def test_intervals_of_angles_hold_their_error():
     n, rmse, least, most = body_model.interval(error, 12.0)
     assert n == 800 and least < rmse < most
     assert rmse == pytest.approx(3, abs=0.3)
+
+
+def test_angles_of_opensim_are_compared_at_their_own_frames(tmp_path):
+    columns = [f"{name}_{side}" for name in opensim_angles.ANGLES.values() for side in "lr"]
+    ours = pd.DataFrame(np.arange(60.0).reshape(10, 6), columns=columns)
+    # Frames 3 and 7, counted from 1, and one that this study does not have.
+    rows = [[3 / 60, *ours.loc[2] - 4], [7 / 60, *ours.loc[6] + 2], [50 / 60, *[0.0] * 6]]
+    lines = ["inDegrees=yes", "endheader", "\t".join(["time", *columns])]
+    file = tmp_path / "part.mot"
+    file.write_text("\n".join([*lines, *("\t".join(f"{v:.8f}" for v in r) for r in rows)]))
+    found = dict(opensim_angles.differences(ours, opensim_angles.motion(file)))
+    assert len(found) == 6
+    for apart in found.values():
+        np.testing.assert_allclose(apart, [4, -2], atol=1e-6)
 
 
 def test_without_the_recording_of_the_hall_one_line_says_where_it_is_from(tmp_path):

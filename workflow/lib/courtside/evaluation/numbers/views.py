@@ -233,6 +233,16 @@ VIEWS = {
             "angles": "{model_rmse.n}",
         },
     ),
+    "opensim-angles": View(
+        "opensim-angles",
+        {
+            "angle": "{row}",
+            "RMSE, degrees": "{rmse}",
+            "mean difference, degrees": "{mean}",
+            "scatter about it, degrees": "{scatter}",
+            "frames": "{rmse.n}",
+        },
+    ),
     "joints": View(
         "joints",
         {
