@@ -4,5 +4,6 @@
 - walk_path: `plan`, `worsened`, `Walk`, `way`
 - lens_errors: `added`
 - row_warp: `shifts`
+- chebyshev: `nodes`, `to_pixels`
 - camera_shake: `Shake`, `Shaking`, `Warp`, `turned`
 """

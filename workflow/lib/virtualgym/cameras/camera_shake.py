@@ -4,11 +4,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import BarycentricInterpolator
 from scipy.spatial.transform import Rotation
 
 from courtside.geometry import camera as cameras
 from courtside.geometry.camera import Camera
+from virtualgym.cameras import chebyshev
 
 # ASSUME: number of sines of a tremor per axis, and their frequencies, for a tripod on a floor.
 WAVES = 7
@@ -112,13 +112,11 @@ class Warp:
     def __init__(self, camera: Camera, before: Camera) -> None:
         self.size = camera.size
         self.before = replace(before, cam_from_world=np.eye(3, 4))
-        nodes = -np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
-        places = [(nodes + 1) / 2 * length - 0.5 for length in camera.size]
-        seen = cameras.undistort(camera, np.stack(np.meshgrid(*places), axis=-1))
+        places = np.meshgrid(*(chebyshev.nodes(side, NODES) for side in camera.size))
+        seen = cameras.undistort(camera, np.stack(places, axis=-1))
         self._seen = np.concatenate([seen, np.ones((NODES, NODES, 1))], axis=-1)
         self._across, self._down = (
-            BarycentricInterpolator(place, np.eye(NODES))(np.arange(length)).astype(np.float32)
-            for place, length in zip(places, camera.size, strict=True)
+            chebyshev.to_pixels(side, NODES).astype(np.float32) for side in camera.size
         )
 
     def places(self, still_from_shaken: NDArray) -> NDArray:

@@ -5,13 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import BarycentricInterpolator
 from scipy.spatial.transform import Rotation
 
 from courtside.geometry import camera as cameras
 from courtside.geometry import rotations as transforms
 from courtside.geometry.camera import Camera
-from virtualgym.cameras import row_warp
+from virtualgym.cameras import chebyshev, row_warp
 
 NODES = 28  # per axis: the lens is smooth, so this interpolation is exact to 1e-9 px
 
@@ -30,9 +29,7 @@ def grid(camera: Camera, row_warp_px: NDArray | None = None) -> NDArray:
     -----
     `camera.undistort` at Chebyshev nodes, and a polynomial between them.
     """
-    nodes = -np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
-    places = [(nodes + 1) / 2 * length - 0.5 for length in camera.size]
-    xy = np.stack(np.meshgrid(*places), axis=-1)
+    xy = np.stack(np.meshgrid(*(chebyshev.nodes(side, NODES) for side in camera.size)), axis=-1)
     if row_warp_px is not None:
         xy += np.moveaxis(row_warp.shifts(row_warp_px, xy[..., 1], camera.size[1]), 0, -1)
     seen = cameras.undistort(camera, xy)
@@ -40,10 +37,7 @@ def grid(camera: Camera, row_warp_px: NDArray | None = None) -> NDArray:
         raise ValueError(
             f"camera {camera.name}: expected a lens that fills the picture, found {camera.dist}"
         )
-    across, down = (
-        BarycentricInterpolator(place, np.eye(NODES))(np.arange(length))
-        for place, length in zip(places, camera.size, strict=True)
-    )
+    across, down = (chebyshev.to_pixels(side, NODES) for side in camera.size)
     return np.stack([down @ seen[..., axis] @ across.T for axis in (0, 1)]).astype(np.float32)
 
 
