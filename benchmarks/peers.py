@@ -5,9 +5,9 @@
     python benchmarks/peers.py --folder DIR ...     elsewhere
 
 Every package is pinned and installed with --no-deps, because Pose2Sim's own list asks for OpenSim,
-Qt and more that triangulation does not touch. An environment is made once and used again until its
-pins change. No peer is ever imported into this project's own process: `run_method` starts its
-interpreter.
+Qt and more that triangulation does not touch; `opensim` is Pose2Sim with OpenSim. An environment is
+made once and used again until its pins change. No peer is ever imported into this project's own
+process: `run_method` starts its interpreter.
 """
 
 import argparse
@@ -32,6 +32,11 @@ PLOTTING = """
     contourpy==1.3.3 cycler==0.12.1 fonttools==4.68.0 kiwisolver==1.5.1 matplotlib==3.11.2
     packaging==26.3 pillow==13.0.0 pyparsing==3.3.3 python-dateutil==4.0.0
 """
+POSE2SIM = f"""
+    pose2sim==0.10.49 anytree==2.13.0 c3d==0.6.0 filterpy==2.0.0 numpy==2.4.6
+    opencv-python-headless==5.0.0.93 patsy==1.0.3 statsmodels==0.15.0
+    pandas==3.1.1 rtoml==0.14.0 scipy==1.17.1 tqdm==4.70.1 tzdata==2026.6 {PLOTTING}
+"""
 PINS = {
     "aniposelib": """
         aniposelib==0.8.0 jax==0.10.2 jaxlib==0.10.2 llvmlite==0.50.0 ml_dtypes==0.6.0 numba==0.68.1
@@ -49,11 +54,8 @@ PINS = {
         opt_einsum==3.4.0 protobuf==4.25.9 pycparser==3.12 scipy==1.17.1 sentencepiece==0.2.3
         sounddevice==0.5.6 {PLOTTING}
     """,
-    "pose2sim": f"""
-        pose2sim==0.10.49 anytree==2.13.0 c3d==0.6.0 filterpy==2.0.0 numpy==2.4.6
-        opencv-python-headless==5.0.0.93 patsy==1.0.3 statsmodels==0.15.0
-        pandas==3.1.1 rtoml==0.14.0 scipy==1.17.1 tqdm==4.70.1 tzdata==2026.6 {PLOTTING}
-    """,
+    "opensim": f"opensim==4.6 lxml==6.1.1 {POSE2SIM}",
+    "pose2sim": POSE2SIM,
 }
 THREADS = "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"
 ONE_THREAD = dict.fromkeys(THREADS, "1")

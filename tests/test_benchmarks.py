@@ -23,6 +23,7 @@ import long_take
 import mapping_seeds
 import networks
 import opensim_angles
+import opensim_ik
 import pose_batches
 import real_footage
 import rows
@@ -195,6 +196,21 @@ def test_angles_of_opensim_are_compared_at_their_own_frames(tmp_path):
     assert len(found) == 6
     for apart in found.values():
         np.testing.assert_allclose(apart, [4, -2], atol=1e-6)
+
+
+def test_markers_of_opensims_tool_become_joints_of_the_world(tmp_path):
+    points = SimpleNamespace(
+        joints=np.array(["a", "b"]), time_s=np.arange(3) / 30, xyz=np.ones((1, 3, 2, 3))
+    )
+    points.xyz[0, 2, 1] = np.nan  # missing joints stay so
+    names = "\t".join(["time", *(f"{joint}_t{axis}" for joint in "ba" for axis in "xyz")])
+    rows = [[k / 30, *range(10 * k, 10 * k + 6)] for k in range(1, 3)]  # frame 0 was not solved
+    lines = ["Model Marker Locations", "endheader", names]
+    lines += ["\t".join(f"{value:.8f}" for value in row) for row in rows]
+    (tmp_path / "_ik_model_marker_locations.sto").write_text("\n".join(lines))
+    found = opensim_ik.located(tmp_path, points)
+    assert np.isnan(found[0, 0]).all() and np.isnan(found[0, 2, 1]).all()
+    np.testing.assert_array_equal(found[0, 1], [[15, 13, 14], [12, 10, 11]])
 
 
 def test_without_the_recording_of_the_hall_one_line_says_where_it_is_from(tmp_path):

@@ -180,13 +180,16 @@ rule export_motion:
     input:
         motion_npz=of_job(takes.exported_motion),
     output:
-        mot_path=paths.OPENSIM_MOTION,
+        mot_path=paths.part(paths.OPENSIM, suffix="mot"),
+        osim_path=paths.part(paths.OPENSIM, suffix="osim"),
         bvh_path=paths.part(paths.MOTION_EXPORT, suffix="bvh"),
         glb_path=paths.part(paths.MOTION_EXPORT, suffix="glb"),
     log:
         f"results/{{session}}/logs/export_motion/{paths.OF_FUSED}.{{person}}.log",
     params:
         code=code("export_motion.py"),
+        sex_of=of_job(takes.sexes),
+        mass_kg_of=of_job(takes.masses),
     script:
         "../scripts/export_motion.py"
 

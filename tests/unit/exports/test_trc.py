@@ -57,6 +57,17 @@ def test_missing_values_are_blank(written):
     assert all(cells[: 2 + 3 * 4])
 
 
+def test_no_line_ends_in_a_blank_which_opensim_refuses(tmp_path):
+    record = walker.points()
+    record.xyz[0, 4] = np.nan  # a frame without any marker, and one without the last
+    record.xyz[0, 7, -1] = np.nan
+    trc.write(tmp_path / "walk.trc", record, 0)
+    rows = (tmp_path / "walk.trc").read_text().splitlines()[6:]
+    assert {len(row.rstrip("\t").split("\t")) for row in rows} == {2 + 3 * 33}
+    np.testing.assert_allclose(trc.read(tmp_path / "walk.trc")[3], record.xyz[0], atol=1e-6)
+    np.testing.assert_array_equal(np.isnan(by_pandas(tmp_path / "walk.trc")[4, 2:]), True)
+
+
 def test_the_round_trip_keeps_micrometres(written):
     record, path = written
     joints, rate_hz, time_s, xyz = trc.read(path)

@@ -44,7 +44,9 @@ def test_skeletons_of_every_stage_are_exported(study):
         for stage in stages
         for suffix in ("trc", "c3d", "csv", "bvh", "glb")
     ]
-    motion = [f"{REAL}/pose3d_ik/file/all-robust/blazepose-full.p1.mot"]
+    motion = [
+        f"{REAL}/pose3d_ik/file/all-robust/blazepose-full.p1.{end}" for end in ("mot", "osim")
+    ]
     motion += [f"{REAL}/motion/file/all-robust/blazepose-full.p1.{end}" for end in ("bvh", "glb")]
     assert takes.every_export(study) == [*exported, *motion]
 

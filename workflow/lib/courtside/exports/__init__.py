@@ -6,6 +6,7 @@ trees: joints as trees of bones; GLB.
 measures: `frames`, `summary`, `angles`: tables of kinematics.
 pose2sim, opensim, markers: `write_project`, `read_takes`, `write_markers`, `write_motion`: for
     Pose2Sim and OpenSim, with their joint names.
+opensim_model: `write`, `coordinates`: a subject's skeletal model for OpenSim.
 camera_files: `write`: cameras for EasyMocap and COLMAP.
 overlay_video: `track`, `pictures`: a take's video with skeletons drawn in.
 """

@@ -1,8 +1,9 @@
 """TRC: marker trajectories as OpenSim and Pose2Sim read them.
 
 Axes: TRC's X, Y, Z are the world's y, z, x, so that Y points up and the system stays right-handed.
-Metres; Frame# counts from 1; a missing marker is blank. The format has no place for standard
-deviations: those of every marker and frame are in the CSV of `exports.tidy` beside it.
+Metres; Frame# counts from 1; a missing marker is blank, but at the end of a line `nan`: OpenSim 4.6
+refuses a line whose last value is blank, as one value too short. The format has no place for
+standard deviations: those of every marker and frame are in the CSV of `exports.tidy` beside it.
 """
 
 from pathlib import Path
@@ -45,6 +46,7 @@ def write(path: StrPath, keypoints: Keypoints3D, person: int) -> None:
         zip(keypoints.time_s, xyz.reshape(n_frames, -1), strict=True)
     ):
         cells = ["" if np.isnan(value) else f"{value:.6f}" for value in row]
+        cells[-1] = cells[-1] or "nan"
         lines.append(f"{at + 1}\t{time_s:.6f}\t" + "\t".join(cells))
     with atomic(path) as temporary:
         temporary.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")

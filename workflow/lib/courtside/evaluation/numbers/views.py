@@ -233,6 +233,15 @@ VIEWS = {
             "angles": "{model_rmse.n}",
         },
     ),
+    "opensim": View(
+        "opensim",
+        {
+            "measure": "{row}",
+            "this project: median take, worst": "{model_median}, {model_worst}",
+            "OpenSim: median take, worst": "{opensim_median}, {opensim_worst}",
+            "takes": "{model_median.n}",
+        },
+    ),
     "opensim-angles": View(
         "opensim-angles",
         {

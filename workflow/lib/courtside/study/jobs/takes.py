@@ -111,6 +111,11 @@ def heights(job: Job) -> dict[str, float | None]:
     return {name: job.session.subjects[name].height_m for name in job.take.subjects}
 
 
+def masses(job: Job) -> dict[str, float | None]:
+    """Return {person: mass in kilograms} of a take, None where the session does not state it."""
+    return {name: job.session.subjects[name].mass_kg for name in job.take.subjects}
+
+
 def exported_motion(job: Job) -> str:
     """Return the skeletal motion that a person's file is made from, where that is agreed to."""
     job.demand("export")

@@ -56,7 +56,7 @@ def every_export(study: Study) -> list[str]:
             kinds = {"stage": there, "suffix": ("trc", "c3d", "csv", "bvh", "glb")}
             found += files(paths.EXPORT, session, take, **known, **kinds)
             if paths.MODELLED in there:
-                found += files(paths.OPENSIM_MOTION, session, take, **known)
+                found += files(paths.OPENSIM, session, take, **known, suffix=("mot", "osim"))
                 kinds = {"suffix": ("bvh", "glb")}
                 found += files(paths.MOTION_EXPORT, session, take, **known, **kinds)
     return found

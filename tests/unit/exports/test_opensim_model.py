@@ -1,0 +1,192 @@
+"""The `.osim` model: its motion file plays on it, by forward kinematics of the format itself."""
+
+from dataclasses import replace
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from courtside.body_model import segments, take
+from courtside.exports import opensim, opensim_model
+from courtside.records.devices import hierarchy
+from fixtures.people import moving_model
+
+HINGES = {"clavicle": "XY", "forearm": "ZY", "hand": "ZX", "tibia": "ZY", "foot": "ZX"}
+
+
+@pytest.fixture(scope="module")
+def walking():
+    """Return the fitted motion of a body that walks on the spot."""
+    points = moving_model.points(moving_model.moving(30))
+    hz = dict.fromkeys(moving_model.JOINTS, 8.0)
+    return take.motion(points, {0: take.person(points, 0, hz, 1.75)})
+
+
+def anyhow(motion, n_frames=40, seed=3):
+    """Return the motion with random places and turns of all joints."""
+    rng = np.random.default_rng(seed)
+    turned = np.empty((1, n_frames, len(motion.segments), 3, 3))
+    for at, name in enumerate(motion.segments):
+        part = name.split("_")[-1]
+        if part in HINGES:
+            angles = rng.uniform(-179, 179, (n_frames, 2))
+            turned[0, :, at] = Rotation.from_euler(HINGES[part], angles, degrees=True).as_matrix()
+        else:
+            turned[0, :, at] = Rotation.random(n_frames, rng=rng).as_matrix()
+    return replace(
+        motion,
+        time_s=motion.time_s[0] + np.arange(n_frames) / 30,
+        root=rng.uniform(-5, 5, (1, n_frames, 3)),
+        parent_from_segment=turned,
+        angle_deg=np.zeros((1, n_frames, len(motion.angles))),
+        angle_sigma_deg=np.zeros((1, n_frames, len(motion.angles))),
+    )
+
+
+def numbers(element, tag):
+    return np.array(element.findtext(tag).split(), dtype=float)
+
+
+def columns(path):
+    """Return the columns of a motion file by name."""
+    names, *rows = path.read_text().split("endheader\n")[1].splitlines()
+    table = np.array([row.split("\t") for row in rows], dtype=float)
+    return dict(zip(names.split("\t"), table.T, strict=True))
+
+
+def played(osim, mot):
+    """Return the markers (T, 3) in the ground by name: OpenSim's CustomJoint, frame by frame."""
+    model, values = ElementTree.parse(osim).getroot().find("Model"), columns(mot)
+    n_frames = len(values["time"])
+    poses = {"/ground": (Rotation.identity(n_frames), np.zeros((n_frames, 3)))}
+    for joint in model.iterfind("JointSet/objects/CustomJoint"):
+        frames = {one.get("name"): one for one in joint.iterfind("frames/PhysicalOffsetFrame")}
+        above, below = (
+            frames[joint.findtext(f"socket_{end}_frame")] for end in ("parent", "child")
+        )
+        turned, place = poses[above.findtext("socket_parent")]
+        place = place + turned.apply(numbers(above, "translation"))
+        assert not numbers(below, "translation").any()
+        for frame in (above, below):
+            assert not numbers(frame, "orientation").any()
+        own, moved = turned, np.zeros((n_frames, 3))
+        for axis in joint.iterfind("SpatialTransform/TransformAxis"):
+            by, along = axis.findtext("coordinates"), numbers(axis, "axis")
+            if not by:
+                assert axis.findtext("Constant/value") == "0"
+            elif axis.get("name").startswith("rotation"):
+                slope, offset = numbers(axis, "LinearFunction/coefficients")
+                angle = np.radians(slope * values[by] + offset)
+                own = own * Rotation.from_rotvec(angle[:, None] * along)
+            else:
+                moved = moved + values[by][:, None] * along
+        poses[below.findtext("socket_parent")] = own, place + turned.apply(moved)
+    found = {}
+    for marker in model.iterfind("MarkerSet/objects/Marker"):
+        turned, place = poses[marker.findtext("socket_parent_frame")]
+        found[marker.get("name")] = place + turned.apply(numbers(marker, "location"))
+    return found
+
+
+@pytest.mark.parametrize("poses", ["walking", "anyhow"])
+def test_the_motion_file_plays_on_the_model(tmp_path, walking, poses):
+    motion = walking if poses == "walking" else anyhow(walking)
+    opensim.write_motion(tmp_path / "a.mot", motion, 0)
+    opensim_model.write(tmp_path / "a.osim", motion, 0)
+    found = played(tmp_path / "a.osim", tmp_path / "a.mot")
+    assert list(found) == motion.joints.tolist()
+    origin, turned = hierarchy.forward(motion.posed(0)[0])
+    for joint, segment, place in zip(
+        motion.joints, motion.segment_of, motion.places[0], strict=True
+    ):
+        true = origin[:, segment] + turned[:, segment] @ place
+        np.testing.assert_allclose(found[joint], true[:, [1, 2, 0]], atol=5e-6)
+
+
+def test_angles_of_the_model_are_those_of_the_table(tmp_path, walking):
+    opensim.write_motion(tmp_path / "a.mot", walking, 0)
+    found = columns(tmp_path / "a.mot")
+    degrees = dict(zip(walking.angles.tolist(), walking.angle_deg[0].T, strict=True))
+    for name, angle in (
+        ("hip_flexion_l", "left_hip_flexion"),
+        ("hip_adduction_l", "left_hip_adduction"),
+        ("hip_rotation_l", "left_hip_internal_rotation"),
+        ("knee_angle_l", "left_knee_flexion"),
+        ("knee_internal_rotation_l", "left_knee_internal_rotation"),
+        ("ankle_inversion_r", "right_ankle_inversion"),
+        ("ankle_inversion_l", "left_ankle_inversion"),
+        ("elbow_flex_l", "left_elbow_flexion"),
+        ("forearm_pronation_l", "left_forearm_pronation"),
+        ("wrist_ulnar_deviation_l", "left_wrist_ulnar_deviation"),
+    ):
+        np.testing.assert_allclose(found[name], degrees[angle], atol=1e-5, err_msg=name)
+    np.testing.assert_allclose(found["lumbar_extension"], -degrees["trunk_flexion"], atol=1e-5)
+    np.testing.assert_allclose(found["pelvis_tilt"], -degrees["pelvis_tilt"], atol=1e-5)
+
+
+def test_the_model_is_whole_as_opensim_4_reads_it(tmp_path, walking):
+    opensim_model.write(tmp_path / "a.osim", walking, 0, mass_kg=70)
+    root = ElementTree.parse(tmp_path / "a.osim").getroot()
+    assert (root.tag, root.get("Version")) == ("OpenSimDocument", "40000")
+    model = root.find("Model")
+    bodies = [f"/bodyset/{one.get('name')}" for one in model.iterfind("BodySet/objects/Body")]
+    joints = model.findall("JointSet/objects/CustomJoint")
+    ends = [[f.findtext("socket_parent") for f in one.iterfind("frames/*")] for one in joints]
+    assert [below for _, below in ends] == bodies
+    for number, (above, _) in enumerate(ends):
+        assert above in ["/ground", *bodies[:number]]
+    names = [one.get("name") for one in model.iter("Coordinate")]
+    assert len(set(names)) == len(names) == len(segments.model().sigma)
+    for joint in joints:  # each coordinate drives one axis, as `CustomJoint` demands
+        axes = joint.findall("SpatialTransform/TransformAxis")
+        kinds = [f"{kind}{n}" for kind in ("rotation", "translation") for n in (1, 2, 3)]
+        assert [one.get("name") for one in axes] == kinds
+        used = [one.findtext("coordinates") for one in axes if one.findtext("coordinates")]
+        assert used == [one.get("name") for one in joint.iter("Coordinate")]
+        turns = np.array([numbers(one, "axis") for one in axes[:3]])
+        assert abs(np.linalg.det(turns)) == 1
+    assert "femur_l to tibia_l 0.4" in model.findtext("credits")
+
+
+def weights(path):
+    root = ElementTree.parse(path).getroot()
+    return {one.get("name"): one for one in root.iter("Body")}
+
+
+def test_masses_are_the_subjects_with_the_inertia_of_solid_bodies(tmp_path, walking):
+    total = {}
+    for sex, mass in (("m", 80), ("f", 60), (None, None)):
+        opensim_model.write(tmp_path / "a.osim", walking, 0, mass_kg=mass, sex=sex)
+        bodies = weights(tmp_path / "a.osim")
+        kg = {name: float(one.findtext("mass")) for name, one in bodies.items()}
+        total[sex] = sum(kg.values())
+        for one in bodies.values():
+            x, y, z, *products = numbers(one, "inertia")
+            assert min(x + y - z, y + z - x, z + x - y) > 0
+            assert not any(products)
+        assert kg["femur_l"] == kg["femur_r"]
+        share = {"m": 0.1416, "f": 0.1478, None: 0.1447}[sex]  # de Leva 1996, table 4
+        assert kg["femur_l"] / total[sex] == pytest.approx(share, abs=1e-4)
+    assert total["m"] == pytest.approx(80)
+    assert total["f"] == pytest.approx(60)
+    assert total[None] == pytest.approx(22 * 1.75**2, rel=0.02)
+
+
+def test_a_thighs_centre_and_inertia_are_near_those_of_anatomy(tmp_path, walking):
+    opensim_model.write(tmp_path / "a.osim", walking, 0, mass_kg=73, sex="m")
+    thigh = weights(tmp_path / "a.osim")["femur_r"]
+    length = abs(walking.offsets[0, walking.segments.tolist().index("right_tibia"), 1])
+    _, y, _ = numbers(thigh, "mass_center")
+    assert -y / length == pytest.approx(0.41, abs=0.03)  # de Leva 1996, table 4: 40.95 % of men
+    across = numbers(thigh, "inertia")[0]
+    gyration = np.sqrt(across / float(thigh.findtext("mass"))) / length
+    assert gyration == pytest.approx(0.329, abs=0.04)  # the same table
+
+
+def test_angles_go_on_over_the_pole_and_beyond_half_a_turn():
+    flexion = np.linspace(0, 400, 82)
+    adduction = np.linspace(0, -150, 82)  # an arm raised sideways
+    angles = np.stack([flexion, adduction, np.linspace(10, 60, 82)], axis=1)
+    turned = Rotation.from_euler("ZXY", angles, degrees=True).as_matrix()
+    np.testing.assert_allclose(opensim_model.euler_deg(turned), angles, atol=1e-6)

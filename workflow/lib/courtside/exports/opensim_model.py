@@ -1,0 +1,286 @@
+"""For OpenSim: a subject's skeletal model as `.osim`, and its coordinates as in the `.mot` file.
+
+Joints turn as in the fit: no joint has more degrees of freedom, no muscle or limit is added. The
+format is that of OpenSim 4 (`OpenSimDocument`).
+"""
+
+from collections.abc import Sequence
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element, SubElement
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from courtside.exports.trc import WORLD_AXES
+from courtside.kinematics import centre_of_mass
+from courtside.records.keypoints.skeletal_motion import SkeletalMotion
+from courtside.study.errors import StrPath
+from courtside.study.execution.files import atomic
+
+VERSION = "40000"
+# Each segment's turns in its parent, one after the other about its own axes, by the coordinates'
+# names and signs on the right side; the left one is mirrored. Names and signs are those of the
+# models of Rajagopal et al. 2016 and of Pose2Sim (neck), where these have such a coordinate.
+TURNS = {
+    "pelvis": ("ZXY", (("pelvis_tilt", 1), ("pelvis_list", 1), ("pelvis_rotation", 1))),
+    "thorax": ("ZXY", (("lumbar_extension", 1), ("lumbar_bending", 1), ("lumbar_rotation", 1))),
+    "head": ("ZXY", (("neck_flexion", 1), ("neck_bending", 1), ("neck_rotation", 1))),
+    "clavicle": ("XY", (("clavicle_elevation", -1), ("clavicle_protraction", 1))),
+    "humerus": (
+        "ZXY",
+        (("glenohumeral_flexion", 1), ("glenohumeral_adduction", 1), ("glenohumeral_rotation", 1)),
+    ),
+    "forearm": ("ZY", (("elbow_flex", 1), ("forearm_pronation", 1))),
+    "hand": ("ZX", (("wrist_flexion", 1), ("wrist_ulnar_deviation", 1))),
+    "femur": ("ZXY", (("hip_flexion", 1), ("hip_adduction", 1), ("hip_rotation", 1))),
+    "tibia": ("ZY", (("knee_angle", -1), ("knee_internal_rotation", 1))),
+    "foot": ("ZX", (("ankle_angle", 1), ("ankle_inversion", 1))),
+}
+LETTERS = {"left": "l", "right": "r"}
+# Middle of the hip joints in the pelvis of Model_Pose2Sim_simple.osim of Pose2Sim 0.10.49, metres.
+# ASSUME: unscaled. The pelvis has its origin there in our model too: one `.mot` serves both.
+MID_HIP_M = np.array([-0.0707, -0.0661, 0.0])
+PARTS = {  # names of segments in the table of masses
+    "femur": "thigh", "tibia": "shank", "humerus": "upper_arm", "forearm": "forearm",
+    "head": "head", "hand": "hand", "foot": "foot",
+}  # fmt: skip
+LOWER_TRUNK = {"m": 11.17, "f": 12.47}  # percent of the body's mass: the pelvis (de Leva 1996)
+CLAVICLE = 0.5  # ASSUME: percent of the body's mass on each, which the thorax has less
+DENSITY = 1050.0  # ASSUME: kg/m3 of every segment; Winter 2009, table 4.1 has 1040 to 1190
+BODY_MASS_INDEX = 22.0  # ASSUME: kg/m2 of a subject whose mass is not stated
+LEG = 0.491  # length of thigh and shank, share of the height (Winter 2009, fig. 4.1)
+
+
+def body(segment: str) -> str:
+    """Return the name of a segment's body: `femur_l` for `left_femur`."""
+    side, _, part = segment.partition("_")
+    return f"{part}_{LETTERS[side]}" if side in LETTERS else segment
+
+
+def turns(segment: str) -> list[tuple[int, str, int]]:
+    """Return axis, coordinate and sign of each of a segment's turns in its parent."""
+    side, _, part = segment.partition("_")
+    letters, named = TURNS[part if side in LETTERS else segment]
+    ending = f"_{LETTERS[side]}" if side in LETTERS else ""
+    axes = ["XYZ".index(letter) for letter in letters]
+    return [
+        (axis, name + ending, -sign if side == "left" and axis != 2 else sign)
+        for axis, (name, sign) in zip(axes, named, strict=True)
+    ]
+
+
+def coordinates(motion: SkeletalMotion, person: int) -> dict[str, NDArray]:
+    """Return the coordinates of one person's fitted frames by name, degrees and metres, (T,) each.
+
+    The ground's axes are those of the TRC files. Angles go on beyond 180 degrees without a jump.
+    """
+    fitted = np.isfinite(motion.root[person]).all(axis=1)
+    found: dict[str, NDArray] = {}
+    for at, segment in enumerate(motion.segments.tolist()):
+        turned = motion.parent_from_segment[person, fitted, at]
+        if motion.parents[at] < 0:
+            turned = turned[:, WORLD_AXES]
+            place = motion.root[person, fitted][:, WORLD_AXES] - turned @ MID_HIP_M
+            found |= {f"pelvis_t{axis}": place[:, k] for k, axis in enumerate("xyz")}
+        own = turns(segment)
+        split = euler_deg(turned) if len(own) == 3 else _hinges_deg(turned, own[0][0], own[1][0])
+        found |= {name: sign * split[:, k] for k, (_, name, sign) in enumerate(own)}
+    return found
+
+
+def euler_deg(turned: NDArray) -> NDArray:
+    """Return the angles (T, 3) degrees of rotations (T, 3, 3) about Z, then X, then Y.
+
+    Of the two sets that make a rotation, each frame has the one nearer to the frame before.
+    """
+    first = scipy.spatial.transform.Rotation.from_matrix(turned).as_euler("ZXY", degrees=True)
+    both = np.stack([first, first * [1, -1, 1] + 180])
+    for at in range(1, len(first)):
+        last = first[at - 1]
+        near = last + (both[:, at] - last + 180) % 360 - 180
+        first[at] = near[np.argmin(np.abs(near - last).sum(axis=1))]
+    return np.asarray(first)
+
+
+def _hinges_deg(turned: NDArray, one: int, other: int) -> NDArray:
+    """Return the angles (T, 2) degrees of rotations about one axis and then about another."""
+    third, sign = 3 - one - other, 1 if (other - one) % 3 == 1 else -1
+    first = np.arctan2(sign * turned[:, third, other], turned[:, other, other])
+    second = np.arctan2(sign * turned[:, one, third], turned[:, one, one])
+    return np.unwrap(np.degrees(np.stack([first, second], axis=1)), axis=0, period=360)
+
+
+def write(
+    path: StrPath,
+    motion: SkeletalMotion,
+    person: int,
+    *,
+    mass_kg: float | None = None,
+    sex: str | None = None,
+) -> None:
+    """Write one person's model (`.osim`): bodies, joints, and the network's joints as markers.
+
+    Markers are named as in the TRC files, coordinates as in `coordinates`; all lengths are those of
+    the fit, their standard deviations stand in the credits. Shares of mass are those of de Leva
+    (1996); each body is a cylinder along Y, from joint to joint where the segment has a next one,
+    else as wide as long.
+    """
+    places = _places(motion, person)
+    masses = _masses(motion, person, mass_kg, sex)
+    root = Element("OpenSimDocument", Version=VERSION)
+    model = SubElement(root, "Model", name=str(motion.person_id[person]))
+    _text(model, "credits", _credits(motion, person))
+    _text(model, "length_units", "meters")
+    _text(model, "force_units", "N")
+    _text(model, "gravity", (0, -9.80665, 0))
+    SubElement(model, "Ground", name="ground")
+    bodies, joints, markers = (
+        SubElement(SubElement(model, kind, name=kind.lower()), "objects")
+        for kind in ("BodySet", "JointSet", "MarkerSet")
+    )
+    for at, segment in enumerate(motion.segments.tolist()):
+        _add_body(bodies, body(segment), masses[at], *_cylinder(motion, person, at, masses[at]))
+        parent = motion.parents[at]
+        above = "/ground" if parent < 0 else f"/bodyset/{body(motion.segments[parent])}"
+        _add_joint(joints, segment, above, motion.offsets[person, at] + _origin(parent))
+    for joint, at, place in zip(motion.joints, motion.segment_of, places, strict=True):
+        entry = SubElement(markers, "Marker", name=str(joint))
+        _text(entry, "socket_parent_frame", f"/bodyset/{body(motion.segments[at])}")
+        _text(entry, "location", place)
+        _text(entry, "fixed", "true")
+    ElementTree.indent(root)
+    with atomic(path) as temporary:
+        ElementTree.ElementTree(root).write(temporary, encoding="UTF-8", xml_declaration=True)
+
+
+def _origin(segment: int) -> NDArray:
+    """Return where a segment's own origin lies in its body, metres; of the ground the ground's."""
+    return MID_HIP_M if segment == 0 else np.zeros(3)
+
+
+def _places(motion: SkeletalMotion, person: int) -> NDArray:
+    """Return the places (J, 3) m of the network's joints in their bodies."""
+    return motion.places[person] + np.array([_origin(at) for at in motion.segment_of.tolist()])
+
+
+def _masses(motion: SkeletalMotion, person: int, mass_kg: float | None, sex: str | None) -> NDArray:
+    """Return the mass of each segment (S,) kg; without a sex the mean of men and women."""
+    if mass_kg is None:
+        names = motion.segments.tolist()
+        bones = [names.index(name) for name in ("left_tibia", "left_foot")]
+        leg = np.linalg.norm(motion.offsets[person, bones], axis=1).sum()
+        mass_kg = BODY_MASS_INDEX * float(leg / LEG) ** 2
+    shares = [_shares(motion, one) for one in ((sex,) if sex in ("m", "f") else ("m", "f"))]
+    mean = np.mean(shares, axis=0)
+    return mass_kg * mean / mean.sum()
+
+
+def _shares(motion: SkeletalMotion, sex: str) -> NDArray:
+    table = {name: one.mass[sex] for name, one in centre_of_mass.SEGMENTS.items()}
+    found = {segment: table[part] for segment, part in PARTS.items()}
+    found |= {"pelvis": LOWER_TRUNK[sex], "clavicle": CLAVICLE}
+    found["thorax"] = table["trunk"] - LOWER_TRUNK[sex] - 2 * CLAVICLE
+    parts = [name.removeprefix("left_").removeprefix("right_") for name in motion.segments.tolist()]
+    return np.array([found[part] for part in parts])
+
+
+def _cylinder(
+    motion: SkeletalMotion, person: int, at: int, mass_kg: float
+) -> tuple[NDArray, float, float]:
+    """Return centre (3,) in its body, half height and radius, metres, of a segment."""
+    below = np.flatnonzero(motion.parents == at)
+    next_one = motion.offsets[person, below[0]] if len(below) else np.zeros(3)
+    if len(below):
+        part = PARTS.get(motion.segments[at].split("_")[-1])
+        shares = list(centre_of_mass.SEGMENTS[part].place.values()) if part else [50]
+        centre = np.mean(shares) / 100 * next_one
+    else:
+        points = motion.places[person, motion.segment_of == at]
+        points = points[points.any(axis=1)]
+        centre = points.mean(axis=0) if len(points) else np.zeros(3)
+    half = abs(next_one[1]) / 2 or (mass_kg / (2 * np.pi * DENSITY)) ** (1 / 3)
+    radius = np.sqrt(mass_kg / (2 * np.pi * DENSITY * half))
+    return centre + _origin(at), float(half), float(radius)
+
+
+def _credits(motion: SkeletalMotion, person: int) -> str:
+    """Return the lengths with their standard deviations in words."""
+    apart = np.linalg.norm(motion.offsets[person], axis=1)
+    lines = [
+        f"{body(motion.segments[parent])} to {body(segment)} {length:.4f} ({sigma:.4f})"
+        for segment, parent, length, sigma in zip(
+            motion.segments, motion.parents, apart, motion.offset_sigma_m[person], strict=True
+        )
+        if parent >= 0
+    ]
+    return "Distances of joints (standard deviation), m: " + ", ".join(lines)
+
+
+def _text(parent: Element, tag: str, value: object) -> None:
+    """Add an element with a text, or with numbers."""
+    one = SubElement(parent, tag)
+    if isinstance(value, str):
+        one.text = value
+    else:
+        one.text = " ".join(f"{number:.9g}" for number in np.atleast_1d(np.asarray(value)))
+
+
+def _add_body(
+    parent: Element, name: str, mass_kg: float, centre: NDArray, half: float, radius: float
+) -> None:
+    entry = SubElement(parent, "Body", name=name)
+    frame = SubElement(SubElement(entry, "components"), "PhysicalOffsetFrame", name="middle")
+    shown = SubElement(SubElement(frame, "attached_geometry"), "Cylinder", name="shown")
+    _text(shown, "socket_frame", "..")
+    _text(shown, "radius", radius)
+    _text(shown, "half_height", half)
+    _text(frame, "socket_parent", "..")
+    _text(frame, "translation", centre)
+    _text(frame, "orientation", (0, 0, 0))
+    across = mass_kg * (3 * radius**2 + 4 * half**2) / 12
+    _text(entry, "mass", mass_kg)
+    _text(entry, "mass_center", centre)
+    _text(entry, "inertia", (across, mass_kg * radius**2 / 2, across, 0, 0, 0))
+
+
+def _add_joint(parent: Element, segment: str, above: str, place: NDArray) -> None:
+    """Add the joint by which a segment hangs on the body `above`, at a place in it."""
+    own = turns(segment)
+    joint = SubElement(parent, "CustomJoint", name=f"{body(segment)}_joint")
+    _text(joint, "socket_parent_frame", "above")
+    _text(joint, "socket_child_frame", "below")
+    moves = [f"pelvis_t{axis}" for axis in "xyz"] if above == "/ground" else []
+    listed = SubElement(joint, "coordinates")
+    for name in [*(name for _, name, _ in own), *moves]:
+        entry = SubElement(listed, "Coordinate", name=name)
+        _text(entry, "range", (-100, 100) if name in moves else (-2 * np.pi, 2 * np.pi))
+        _text(entry, "clamped", "false")
+    frames = SubElement(joint, "frames")
+    child = (0, 0, 0)
+    for name, path, where in (
+        ("above", above, place),
+        ("below", f"/bodyset/{body(segment)}", child),
+    ):
+        frame = SubElement(frames, "PhysicalOffsetFrame", name=name)
+        _text(frame, "socket_parent", path)
+        _text(frame, "translation", where)
+        _text(frame, "orientation", (0, 0, 0))
+    how = SubElement(joint, "SpatialTransform")
+    axes = [(axis, sign, name) for axis, name, sign in own]
+    axes += [(axis, 1, "") for axis in range(3) if axis not in [one[0] for one in own]]
+    for number, (axis, sign, name) in enumerate(axes, start=1):
+        _add_axis(how, f"rotation{number}", sign * np.eye(3)[axis], name)
+    for axis in range(3):
+        _add_axis(how, f"translation{axis + 1}", np.eye(3)[axis], moves[axis] if moves else "")
+
+
+def _add_axis(parent: Element, name: str, axis: Sequence[float] | NDArray, by: str) -> None:
+    """Add one axis of a joint that turns or moves by a coordinate, or not at all."""
+    entry = SubElement(parent, "TransformAxis", name=name)
+    _text(entry, "coordinates", by)
+    _text(entry, "axis", axis)
+    if by:
+        _text(SubElement(entry, "LinearFunction", name="function"), "coefficients", (1, 0))
+    else:
+        _text(SubElement(entry, "Constant", name="function"), "value", 0)
