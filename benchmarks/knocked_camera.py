@@ -17,18 +17,15 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
+from people_seen import LIMITS, ROOT, STATED, of_takes
+
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.people import knocks, prior, views
-from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.records import covariance
 from courtside.geometry import camera as camera_models
 from courtside.geometry import interpolation, rotations
-from courtside.reconstruction import common_views
 from courtside.records.keypoints import skeleton
 from courtside.records.truth import session_truth, take_truth
-from courtside.study.configuration import yaml_files
-
-ROOT = Path(__file__).parents[1]
 
 
 def apart(camera, other):
@@ -45,9 +42,9 @@ def knocked(camera, seen, at, time_s, turn):
     return replace(seen, xy=xy)
 
 
-def error_mm(cameras, seen, limits, truth):
+def error_mm(cameras, seen, truth):
     """Return the median error of limb joints placed by the cameras, mm."""
-    xyz = views.placed(cameras, seen, limits.score, limits.limit, limits.fade).xyz
+    xyz = views.placed(cameras, seen, LIMITS.score, LIMITS.limit, LIMITS.fade).xyz
     named = [list(truth.joints).index(name) for name in skeleton.JOINTS]
     true = interpolation.linear(truth.time_s, truth.xyz[0][:, named], seen.time_s)
     off = np.linalg.norm(xyz.reshape(true.shape) - true, axis=-1)
@@ -64,36 +61,27 @@ def main():
     parser.add_argument("--deg", type=float, default=0.4)
     parser.add_argument("--seeds", type=int, default=2)
     given = parser.parse_args()
-    config = yaml_files.read(ROOT / "config" / "config.yaml")
     folder = given.results / given.session
     virtual, of_base = (
         given.results / "virtual" / given.session,
         folder / "calibration" / given.base,
     )
-    cameras, take = camera_models.read_toml(of_base / "cameras.toml"), folder / "takes" / given.take
+    cameras = camera_models.read_toml(of_base / "cameras.toml")
     names = [camera.name for camera in cameras]
-    files = {
-        "pose2d": [take / "pose2d" / given.model / f"{name}.npz" for name in names],
-        "people": take / "people" / given.base / f"{given.model}.found.npz",
-        "sync": take / "sync" / given.base / f"cameras.{given.model}.json",
-    }
-    seen = common_views.of_take(of_base / "cameras.toml", names, files)
+    seen = of_takes(folder, [given.take], given.base, given.model, names)[0]
     real = {camera.name: camera for camera in session_truth.read(virtual / "truth.npz").cameras}
     truth = take_truth.read(virtual / "takes" / given.take / "truth.npz")
-    sigma = {key: value for key, value in config["refine_cameras"].items() if key != "takes"}
-    known = prior.stated(cameras, **sigma)
+    known = prior.stated(cameras, **STATED)
     if (of_base / "covariance.npz").is_file():
         known = covariance.read(of_base / "covariance.npz").of(names)
-    step = config["triangulate"]
-    limits = Limits(step["min_score"], step["max_error_share"], step["fade_share"])
-    whole, rows = error_mm(cameras, seen, limits, truth), []
+    whole, rows = error_mm(cameras, seen, truth), []
     for seed in range(given.seeds):
         rng = np.random.default_rng(seed)
         middle = float(seen.time_s.mean())
         for at, camera in enumerate(cameras):
             turn = np.radians(given.deg) * rotations.unit(rng.normal(size=3))
             bumped = knocked(camera, seen, at, middle, turn)
-            found = [one for one in knocks.find(cameras, known, bumped, limits) if one.taken]
+            found = [one for one in knocks.find(cameras, known, bumped, LIMITS) if one.taken]
             right = next((one for one in found if one.camera == at), None)
             row = {"camera": camera.name, "seed": seed, "knocks": len(found)}
             row |= dict(
@@ -108,10 +96,10 @@ def main():
                 row["turn_deg"] = float(np.linalg.norm(off))
                 row |= {"late_s": right.time_s - middle}
             undone = knocks.undone(cameras, bumped, found)
-            row |= {"mm": whole, "mm_knocked": error_mm(cameras, bumped, limits, truth)}
-            rows.append(row | {"mm_repaired": error_mm(cameras, undone, limits, truth)})
+            row |= {"mm": whole, "mm_knocked": error_mm(cameras, bumped, truth)}
+            rows.append(row | {"mm_repaired": error_mm(cameras, undone, truth)})
             print(rows[-1], flush=True)
-    false = [one for one in knocks.find(cameras, known, seen, limits) if one.taken]
+    false = [one for one in knocks.find(cameras, known, seen, LIMITS) if one.taken]
     table = pd.DataFrame(rows)
     print(table.drop(columns=["camera", "seed"]).median().round(3).to_string())
     found = int(table["late_s"].notna().sum())

@@ -22,38 +22,28 @@ import numpy as np
 import pandas as pd
 from scipy.spatial.transform import Rotation
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
+from people_seen import LIMITS, ROOT, STATED, of_takes
+
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.court import court as court_files
-from courtside.calibration.court import quality
 from courtside.calibration.file_check import residuals
 from courtside.calibration.people import adjustment, prior, views
-from courtside.calibration.people.adjustment import Limits
+from courtside.evaluation.tables import ways
 from courtside.geometry import camera as camera_models
-from courtside.geometry.similarity import umeyama
-from courtside.geometry.triangulation import triangulate_all
-from courtside.reconstruction import common_views
 from courtside.records.keypoints import skeleton
 from courtside.records.truth import session_truth
 from courtside.study.configuration import yaml_files
-from refined_by_people import ROOT, disturbed
+from refined_by_people import disturbed
 
 AT = {name: list(skeleton.JOINTS).index(name) for name in skeleton.JOINTS}
-CHAINS = ("shoulder", "elbow", "wrist"), ("hip", "knee", "ankle")
 LIMBS = [
     (AT[f"{side}_{a}"], AT[f"{side}_{b}"])
     for side in ("left", "right")
-    for chain in CHAINS
+    for chain in skeleton.CHAINS
     for a, b in pairwise(chain)
 ]
 ANKLES = [AT["left_ankle"], AT["right_ankle"]]
 LOW = 0.15  # share of the lowest ankles that the floor passes above: those in stance
-
-
-def volume_cm(cameras, real, grid):
-    """Return the error of cameras over the volume, cm, and what the best similarity leaves."""
-    xyz = triangulate_all(cameras, np.stack([camera_models.project(c, grid) for c in real]))
-    left = xyz - grid, umeyama(xyz, grid).points(xyz) - grid
-    return [100 * float(np.sqrt((off**2).sum(axis=1).mean())) for off in left]
 
 
 def variation(xyz, track):
@@ -122,37 +112,27 @@ def main():
     parser.add_argument("--model", default="blazepose-full")
     parser.add_argument("--seeds", type=int, default=3)
     given = parser.parse_args()
-    config = yaml_files.read(ROOT / "config" / "config.yaml")
     session = yaml_files.read(ROOT / "config" / "sessions" / f"{given.session}.yaml")
-    grid = quality.volume(court_files.read(ROOT / "config" / "courts" / f"{session['court']}.yaml"))
-    sigma = {key: value for key, value in config["refine_cameras"].items() if key != "takes"}
-    step = config["triangulate"]
-    limits = Limits(step["min_score"], step["max_error_share"], step["fade_share"])
+    court = court_files.read(ROOT / "config" / "courts" / f"{session['court']}.yaml")
     folder = given.results / given.session
-    path = folder / "calibration" / given.base / "cameras.toml"
-    base = camera_models.read_toml(path)
+    base = camera_models.read_toml(folder / "calibration" / given.base / "cameras.toml")
     names = [camera.name for camera in base]
     truth = session_truth.read(given.results / "virtual" / given.session / "truth.npz").cameras
     real = [{camera.name: camera for camera in truth}[name] for name in names]
-    takes = [
-        {
-            "pose2d": [take / "pose2d" / given.model / f"{name}.npz" for name in names],
-            "people": take / "people" / given.base / f"{given.model}.npz",
-            "sync": take / "sync" / given.base / f"cameras.{given.model}.json",
-        }
-        for take in (folder / "takes" / name for name in given.takes)
-    ]
-    parts = [common_views.of_take(path, names, take) for take in takes]
+    parts = of_takes(folder, given.takes, given.base, given.model, names, people="npz")
     seen, rows = views.joined(parts), []
 
+    def errors_cm(cameras):
+        return list(ways.against_truth(cameras, real, court).values())
+
     def measure(of, cameras, height_m):
-        placed = views.placed(cameras, seen, limits.score, limits.limit, limits.fade)
+        placed = views.placed(cameras, seen, LIMITS.score, LIMITS.limit, LIMITS.fade)
         xyz = placed.xyz.reshape(len(seen.track), -1, 3)
         plane = floor(xyz)
-        numbers = [*volume_cm(cameras, real, grid), *variation(xyz, seen.track)]
+        numbers = [*errors_cm(cameras), *variation(xyz, seen.track)]
         height_m = plane[2] if height_m is None else height_m
         level = levelled(cameras, plane, height_m)
-        numbers += [1000 * np.hypot(*plane[:2]), 1000 * plane[2], volume_cm(level, real, grid)[0]]
+        numbers += [1000 * np.hypot(*plane[:2]), 1000 * plane[2], errors_cm(level)[0]]
         rows.append((of, *numbers))
         print(rows[-1], flush=True)
         return plane[2]
@@ -160,10 +140,10 @@ def main():
     height_m = measure("true", real, None)
     measure("base", base, height_m)
     for seed in range(given.seeds):
-        cameras = disturbed(base, sigma, np.random.default_rng(seed))
+        cameras = disturbed(base, STATED, np.random.default_rng(seed))
         measure("disturbed", cameras, height_m)
-        known = prior.knowledge(cameras, prior.stated(cameras, **sigma))
-        measure("refined", adjustment.refine(cameras, seen, known, limits).cameras, height_m)
+        known = prior.knowledge(cameras, prior.stated(cameras, **STATED))
+        measure("refined", adjustment.refine(cameras, seen, known, LIMITS).cameras, height_m)
     columns = ["of", "volume_cm", "shape_cm", "limbs_percent", "limbs_parts_percent"]
     columns += ["floor_mrad", "ankles_mm", "levelled_cm"]
     table = pd.DataFrame(rows, columns=columns).groupby("of", sort=False)

@@ -18,26 +18,23 @@ import numpy as np
 import pandas as pd
 from scipy.spatial.transform import Rotation
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
+from people_seen import LIMITS, ROOT, STATED, WEIGHTS, of_takes
+
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
 from courtside.calibration.court import court as court_files
-from courtside.calibration.court import quality
 from courtside.calibration.people import adjustment, prior, refinement
-from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.held_out import Points
+from courtside.calibration.people.views import joined
 from courtside.calibration.records import covariance
 from courtside.evaluation import calibration
+from courtside.evaluation.tables import ways
 from courtside.geometry import camera as camera_models
-from courtside.geometry.similarity import umeyama
-from courtside.geometry.triangulation import triangulate_all
-from courtside.reconstruction import common_views
 from courtside.records.cameras import clicks
 from courtside.records.truth import session_truth
 from courtside.study.configuration import yaml_files
 from virtualgym.session import clicks as clicking
-
-ROOT = Path(__file__).parents[1]
 
 
 def disturbed(cameras, sigma, rng):
@@ -61,11 +58,8 @@ def errors(cameras, spread, real, court, marked):
         return point_covariance.point_covariance(network, columns, xyz)
 
     found = calibration.score(cameras, real.cameras, court, marked, stated)
-    grid = quality.volume(court)
-    xyz = triangulate_all(cameras, np.stack([camera_models.project(c, grid) for c in real.cameras]))
-    left = umeyama(xyz, grid).points(xyz) - grid
-    shape_cm = 100 * np.sqrt((left**2).sum(axis=1).mean())
-    return {**{k: found[k] for k in ("volume_rms_cm", "coverage90")}, "shape_cm": shape_cm}
+    left = ways.against_truth(cameras, real.cameras, court)
+    return {"coverage90": found["coverage90"], **left}
 
 
 def main():
@@ -77,37 +71,18 @@ def main():
     parser.add_argument("--model", default="blazepose-heavy")
     parser.add_argument("--seeds", type=int, default=6)
     given = parser.parse_args()
-    config = yaml_files.read(ROOT / "config" / "config.yaml")
     session = yaml_files.read(ROOT / "config" / "sessions" / f"{given.session}.yaml")
     court_yaml = ROOT / "config" / "courts" / f"{session['court']}.yaml"
-    court, step, views = (
-        court_files.read(court_yaml),
-        config["refine_cameras"],
-        config["triangulate"],
-    )
-    sigma = {key: value for key, value in step.items() if key != "takes"}
+    court = court_files.read(court_yaml)
     virtual, folder = given.results / "virtual" / given.session, given.results / given.session
     real = session_truth.read(virtual / "truth.npz")
     names = [camera.name for camera in real.cameras]
     marked = clicks.read(virtual / "court_points.csv", names, list(court.points))
     of_base = folder / "calibration" / given.base
-    seen = common_views.of_takes(
-        of_base / "cameras.toml",
-        names,
-        [
-            {
-                "pose2d": [take / "pose2d" / given.model / f"{name}.npz" for name in names],
-                "people": take / "people" / given.base / f"{given.model}.found.npz",
-                "sync": take / "sync" / given.base / f"cameras.{given.model}.json",
-            }
-            for take in (folder / "takes" / name for name in given.takes)
-        ],
-    )
-    limits = Limits(views["min_score"], views["max_error_share"], views["fade_share"])
-    rows = []
+    seen, rows = joined(of_takes(folder, given.takes, given.base, given.model, names)), []
 
     def measure(way, seed, base, known, points):
-        found = refinement.refine(base, known, seen, limits, points)
+        found = refinement.refine(base, known, seen, LIMITS, points)
         before = errors(base, known, real, court, marked)
         for what, one in (
             ("base", before),
@@ -116,20 +91,18 @@ def main():
             rows.append({"way": way, "seed": seed, "of": what, "taken": found.taken, **one})
         print(rows[-2:], found.line, flush=True)
 
-    keys = ("click_sigma_px", "click_bias_px", "click_loss")
-    weights = {key: config["adjust_network"][key] for key in keys}
     cameras = {camera.name: camera for camera in camera_models.read_toml(of_base / "cameras.toml")}
     cameras = [cameras[name] for name in names]
     known = covariance.read(of_base / "covariance.npz").of(names)
-    clicked = adjustment.court_clicks(court, marked, cameras, **weights)
+    clicked = adjustment.court_clicks(court, marked, cameras, **WEIGHTS)
     measure(given.base, 0, cameras, known, Points(court=clicked))
     drawn = {"n_draws": given.seeds, "seed": 0, "session": given.session}
     drawn["preset"] = session["virtual"]["preset"]
     persons = clicking.clicks_of_persons(real.cameras, court, real.court_xyz, **drawn)
     for seed, by_camera in enumerate(persons):
-        base = disturbed(real.cameras, sigma, np.random.default_rng(seed))
-        clicked = adjustment.court_clicks(court, by_camera, base, **weights)
-        known = prior.stated(base, **sigma)
+        base = disturbed(real.cameras, STATED, np.random.default_rng(seed))
+        clicked = adjustment.court_clicks(court, by_camera, base, **WEIGHTS)
+        known = prior.stated(base, **STATED)
         measure("disturbed, clicks", seed, base, known, Points(court=clicked, fitted=True))
         measure("disturbed", seed, base, known, Points())
     table = pd.DataFrame(rows).groupby(["way", "of"], sort=False)

@@ -25,7 +25,9 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
+from people_seen import CONFIG, LIMITS, ROOT, STATED, WEIGHTS, of_takes
+
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
 from courtside.calibration import file_formats
 from courtside.calibration.boards import adjustment as board_adjustment
@@ -37,14 +39,12 @@ from courtside.calibration.court_lines import search, verdict
 from courtside.calibration.file_check import residuals
 from courtside.calibration.people import adjustment, held_out, prior, refinement
 from courtside.calibration.people import views as people_views
-from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.held_out import Points
 from courtside.calibration.records import covariance, tie_points
 from courtside.evaluation import calibration
 from courtside.evaluation.numbers import stated
 from courtside.geometry import camera as camera_models
 from courtside.geometry import similarity
-from courtside.reconstruction import common_views
 from courtside.records.cameras import clicks
 from courtside.records.keypoints import skeleton
 from courtside.records.truth import session_truth
@@ -52,7 +52,6 @@ from courtside.study.configuration import yaml_files
 from refined_by_people import disturbed, errors
 from virtualgym.session import clicks as clicking
 
-ROOT = Path(__file__).resolve().parents[1]
 SESSION, TAKE, BASE, MODEL = "players-b", "footwork", "sfm-n40", "blazepose-heavy"
 LOOKS = ("plain", "rich")
 LINES = ("plain-a", "rich-a", "plain-b", "players-a", "players-b")
@@ -70,11 +69,6 @@ WAYS = {
     "file": "file, off by 0.3 degrees, 3 cm, 0.5 %",
     "file-clicks": "the same file; refined with 18 clicks, too",
 }
-CONFIG = yaml_files.read(ROOT / "config" / "config.yaml")
-WEIGHTS = {key: CONFIG["adjust_network"][key] for key in ("click_sigma_px", "click_bias_px")}
-WEIGHTS["click_loss"] = CONFIG["adjust_network"]["click_loss"]
-STATED = {key: value for key, value in CONFIG["refine_cameras"].items() if key != "takes"}
-LIMITS = Limits(*(CONFIG["triangulate"][k] for k in ("min_score", "max_error_share", "fade_share")))
 
 
 @dataclass(frozen=True, eq=False)
@@ -231,21 +225,9 @@ def accepted(cameras, seen):
     return 100 * found.accepted[np.nan_to_num(seen.flat()[1]) >= LIMITS.score].mean()
 
 
-def people_of(results, session, way, take, names):
-    """Return what cameras see of the people in a take."""
-    at = results / session
-    files = at / "takes" / take
-    told = {
-        "pose2d": [files / "pose2d" / MODEL / f"{name}.npz" for name in names],
-        "people": files / "people" / way / f"{MODEL}.found.npz",
-        "sync": files / "sync" / way / f"cameras.{MODEL}.json",
-    }
-    return common_views.of_takes(at / "calibration" / way / "cameras.toml", names, [told])
-
-
 def measured(one, way, n_draws, lines):
     """Return of each draw the errors before and after refinement by people, and whether taken."""
-    seen = people_of(one.results, one.name, BASE, TAKE, one.names)
+    seen = of_takes(one.results / one.name, [TAKE], BASE, MODEL, one.names)[0]
     record = tie_points.read(one.results / one.name / "sfm" / "global-n40-o0" / "ties.npz")
     rows = []
     alike = way == "lines" and not any(xy is None for xy in lines.values())
@@ -296,7 +278,7 @@ def walk_rows(results):
     theirs = file_formats.rename(theirs, {name: name for name in names})
     crops = {name: (one or {}).get("crop_px") for name, one in session["cameras"].items()}
     base = [camera_models.crop(c, crops[c.name]) if crops[c.name] else c for c in theirs]
-    seen = people_of(results, "walk-4cams", "file", "balancing", names)
+    seen = of_takes(results / "walk-4cams", ["balancing"], "file", MODEL, names)[0]
     half = np.arange(len(seen.track)) < len(seen.track) / 2
     half, other = seen.of(half), seen.of(~half)
     _, static = clicks.read_static(ROOT / "config" / "static_points" / "walk-4cams.csv", names)
