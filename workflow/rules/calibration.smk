@@ -210,7 +210,7 @@ rule refine_cameras:
         takes=of_job(calibration.refining),
         weights=of_job(calibration.clicks),
         views=step("triangulate"),
-        step=step("refine_cameras"),
+        stated=of_job(calibration.stated),
     script:
         "../scripts/refine_cameras.py"
 

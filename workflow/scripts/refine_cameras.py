@@ -23,10 +23,10 @@ from courtside.study.execution.script import run
 
 def main(
     paths, cameras_toml, covariance_npz, quality_json, table_csv, knocks_csv, *,
-    calibration, names, override, takes, weights, views, step, unit=None,
+    calibration, names, override, takes, weights, views, stated, unit=None,
 ):  # fmt: skip
     base = camera_models.read_toml(paths.cameras)
-    known = prior.stated(base, **{key: value for key, value in step.items() if key != "takes"})
+    known = prior.stated(base, **stated)
     if paths.covariance:
         known = camera_covariance.read(paths.covariance).of([camera.name for camera in base])
     report = {"calibration": calibration, "takes": [take["sync"] for take in takes]}

@@ -169,8 +169,9 @@ def test_cameras_refined_by_people_rest_on_their_base_and_its_people(job, study)
 
 def test_maps_of_refined_cameras_show_their_base_too(job):
     one = job(session="walk-4cams-tiny", calibration="file-people")
-    assert calibration.error_map(one)["stated"]["rotation_deg"] == 0.3
-    assert "takes" not in calibration.error_map(one)["stated"]
+    stated = {"rotation_deg": 0.3, "position_m": 0.03, "focal_percent": 0.5}
+    stated |= {"principal_point_percent": 0.3, "k1": 0.01}
+    assert calibration.error_map(one)["stated"] == calibration.stated(one) == stated
     alone = job(session="players-tiny", calibration="known")
     assert calibration.of_base(alone, paths.CAMERAS) == calibration.base_covariance(alone) == []
 

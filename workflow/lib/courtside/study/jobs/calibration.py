@@ -84,8 +84,12 @@ def base_covariance(job: Job) -> str | list:
 
 def error_map(job: Job) -> dict[str, Any]:
     """Return the heights of a map of expected errors, and what is stated of a base's cameras."""
-    stated = {key: value for key, value in job.step("refine_cameras").items() if key != "takes"}
-    return {**job.step("draw_error_map"), "stated": stated}
+    return {**job.step("draw_error_map"), "stated": stated(job)}
+
+
+def stated(job: Job) -> dict[str, float]:
+    """Return the standard deviations stated of cameras whose calibration has no covariance."""
+    return {key: value for key, value in job.step("refine_cameras").items() if key != "takes"}
 
 
 def base_file(job: Job) -> str | list:
