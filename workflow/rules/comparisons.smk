@@ -1,10 +1,10 @@
 """What takes say together: sets of cameras, networks side by side, clocks, a subject over sessions.
 
-Inputs: 3D keypoints, kinematics, errors, truth of virtual takes. Outputs: results/{session}/takes/{take}/views/,
-results/figures/.
+Inputs: 3D keypoints, kinematics, errors, truth of virtual takes. Outputs:
+results/{session}/takes/{take}/views/, results/figures/.
 Steps: compare_views (real takes), tabulate_players, tabulate_angles, draw_clock_errors,
-draw_reliability, compare_networks, draw_agreement, evaluate_networks, draw_networks,
-tabulate_study (every measure of every take), compare_sessions.
+draw_reliability, compare_networks, draw_agreement, evaluate_networks, draw_networks, tabulate_study
+(every measure of every take), compare_sessions.
 """
 
 

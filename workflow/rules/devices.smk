@@ -1,9 +1,9 @@
 """Devices beside the fixed cameras, or alone: mocopi, depth cameras, single videos, Nuitrack.
 
 Inputs: recordings of devices. Outputs: results/{session}/takes/{take}/ devices, sync.
-Steps: import_device, export_device (of inertial suits), export_source
-(of others), extract_colour, convert_landmarks, lift_depth, select_person (of the fixed
-cameras), detect_events (whatever happens to the clocks), synchronise_devices.
+Steps: import_device, export_device (of inertial suits), export_source (of others), extract_colour,
+convert_landmarks, lift_depth, select_person (of the fixed cameras), detect_events (whatever happens
+to the clocks), synchronise_devices.
 """
 
 

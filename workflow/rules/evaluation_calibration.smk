@@ -2,7 +2,8 @@
 
 Only this file and evaluation_takes.smk read truth.
 
-Inputs: ties, truth. Outputs: results/{session}/evaluation/, results/figures/calibration.csv and ways.csv.
+Inputs: ties, truth. Outputs: results/{session}/evaluation/, results/figures/calibration.csv and
+ways.csv.
 Steps: evaluate_calibration (one structure from motion), evaluate_known (calibration from known
 points alone), evaluate_racket (the length of a racket), evaluate_ways (all ways side by side, for
 the report), tabulate_calibration.

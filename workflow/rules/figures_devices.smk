@@ -2,8 +2,8 @@
 
 Inputs: body motions, events, errors. Outputs: results/{session}/takes/{take}/figures/,
 results/figures/.
-Steps: draw_wrist_distance, draw_wrist_arcs, draw_skeleton_plates,
-draw_source_errors, draw_thesis_fig3, draw_smoothness.
+Steps: draw_wrist_distance, draw_wrist_arcs, draw_skeleton_plates, draw_source_errors,
+draw_thesis_fig3, draw_smoothness.
 """
 
 

@@ -1,7 +1,7 @@
-"""Pages and videos to look around in: people to be named, verdicts, viewers, videos, Pose2Sim projects.
+"""Pages and videos to look around in: people to be named, verdicts, viewers, Pose2Sim projects.
 
-Inputs: 3D keypoints of all stages, devices, cameras, videos. Outputs:
-results/{session}/pages/, results/{session}/takes/{take}/pages/, videos/, pose2sim/.
+Inputs: 3D keypoints of all stages, devices, cameras, videos. Outputs: results/{session}/pages/,
+results/{session}/takes/{take}/pages/, videos/, pose2sim/.
 Steps: build_people_page, build_quality_page, build_viewer, export_overlay_video, export_pose2sim.
 """
 

@@ -1,8 +1,8 @@
 """Metric skeletons and the files that other programs open.
 
-Inputs: 2D keypoints, shake, cameras. Outputs: results/{session}/takes/{take}/ pose2d_steadied, sync,
-people, pose3d, pose3d_filtered, pose3d_corrected, pose3d_ik, motion, kinematics,
-footwork, strokes, quality.csv.
+Inputs: 2D keypoints, shake, cameras. Outputs: results/{session}/takes/{take}/ pose2d_steadied,
+sync, people, pose3d, pose3d_filtered, pose3d_corrected, pose3d_ik, motion, kinematics, footwork,
+strokes, quality.csv.
 Steps: steady_keypoints (of cameras that shake or were knocked), synchronise_cameras,
 associate_people (everybody), name_people (the subjects among them), triangulate (raw, always kept),
 filter_motion, correct_joints, fit_skeleton, export_take, export_motion, measure_kinematics,

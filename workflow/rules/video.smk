@@ -1,10 +1,10 @@
 """Pictures of the fixed cameras without people, and the frames of walks.
 
-Inputs: videos of a session. Outputs: results/{session}/static/, frames/, takes/{take}/movement/,
-background/.
+Inputs: videos of a session. Outputs: results/{session}/static/, frames/, takes/{take}/ movement,
+shake, background.
 Steps: extract_static (of a camera's `static` recording), extract_frames (of a walk), check_movement
-(of a camera between its static recording and a take), estimate_background (of a take whose camera
-has no static recording).
+(of a camera between its static recording and a take), measure_shake (within a take),
+estimate_background (of a take whose camera has no static recording).
 """
 
 
