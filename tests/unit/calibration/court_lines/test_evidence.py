@@ -7,17 +7,6 @@ from courtside.calibration.court_lines import evidence, ridges, views
 from fixtures.cameras import court_pictures
 
 
-@pytest.fixture(scope="module")
-def court():
-    return court_pictures.badminton()
-
-
-@pytest.fixture(scope="module")
-def seen(court):
-    camera = court_pictures.pair()[1]
-    return evidence.fields(ridges.find(court_pictures.draw(camera, court, noise=3), "light"))
-
-
 def test_the_right_camera_explains_most(court, seen):
     view = court_pictures.view_of(court_pictures.pair()[1])
     shift = np.array([[0, 0, 0], [0.3, 0, 0], [0, 1.0, 0], [0, 0, 0.4], [0, 300.0, 0]])

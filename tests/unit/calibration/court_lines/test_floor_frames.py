@@ -18,8 +18,7 @@ def pieces(camera, court):
 
 @pytest.mark.parametrize("dist", [(0, 0, 0, 0, 0)])
 @pytest.mark.parametrize("centre", [(3.4, -9.0, 3.2), (-5.5, -4.0, 3.0)])
-def test_the_floor_is_found_at_the_focal_length_that_is_right(centre, dist):
-    court = court_pictures.badminton()
+def test_the_floor_is_found_at_the_focal_length_that_is_right(court, centre, dist):
     camera = court_pictures.looking("one", centre, (3.1, 6.0, 0.1), dist=dist)
     ends = pieces(camera, court)
     far = np.random.default_rng(0).uniform(-400, 400, (15, 4))  # other things

@@ -13,8 +13,7 @@ CENTRES = [(3.4, -9.0, 3.2), (-5.5, -4.0, 3.0)]
 
 
 @pytest.mark.parametrize("centre", CENTRES)
-def test_the_right_place_is_among_those_found(centre):
-    court = court_pictures.badminton()
+def test_the_right_place_is_among_those_found(court, centre):
     camera = court_pictures.looking("one", centre, (3.1, 6.0, 0.1), dist=(0, 0, 0, 0, 0))
     _, ends = line_edges.stretches(court, 20.0)
     pieces = (cameras.project(camera, ends) - camera.K[:2, 2]).reshape(-1, 4)
@@ -25,8 +24,7 @@ def test_the_right_place_is_among_those_found(centre):
     assert (found.centre[:, 2] > 0.5).all()
 
 
-def test_without_lines_there_is_no_place():
-    court = court_pictures.badminton()
+def test_without_lines_there_is_no_place(court):
     camera = court_pictures.pair()[0]
     frame = FloorFrame(900.0, camera.cam_from_world[:, :3].T)
     assert placements.find(frame, np.zeros((0, 4)), court, 960, 0.0, np.zeros(2)) == []

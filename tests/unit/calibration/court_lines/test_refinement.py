@@ -8,17 +8,6 @@ from courtside.geometry import camera as cameras
 from fixtures.cameras import court_pictures
 
 
-@pytest.fixture(scope="module")
-def court():
-    return court_pictures.badminton()
-
-
-@pytest.fixture(scope="module")
-def seen(court):
-    camera = court_pictures.pair()[1]
-    return evidence.fields(ridges.find(court_pictures.draw(camera, court, noise=3), "light"))
-
-
 @pytest.mark.parametrize("seed", range(2))
 def test_lines_bring_the_camera_back(court, seen, seed):
     camera, along = court_pictures.pair()[1], views.samples(court, 0.3)

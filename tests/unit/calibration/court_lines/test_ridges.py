@@ -9,11 +9,6 @@ from fixtures.cameras import court_pictures
 
 
 @pytest.fixture(scope="module")
-def court():
-    return court_pictures.badminton()
-
-
-@pytest.fixture(scope="module")
 def camera():
     return court_pictures.pair()[0]
 

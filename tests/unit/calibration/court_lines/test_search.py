@@ -17,8 +17,8 @@ def few(monkeypatch):
 
 
 @pytest.mark.parametrize("view", [0, 1])
-def test_the_camera_is_found_without_a_click(few, view):
-    court, camera = court_pictures.badminton(), court_pictures.pair()[view]
+def test_the_camera_is_found_without_a_click(few, court, view):
+    camera = court_pictures.pair()[view]
     found = search.find(court_pictures.draw(camera, court, noise=3, seed=view), court)
     best = found.candidates[0]
     floor = court.xyz[court.xyz[:, 2] == 0]
@@ -31,11 +31,11 @@ def test_the_camera_is_found_without_a_click(few, view):
     assert abs(best.view.centre[0, 2] - camera.centre_in_world[2]) < 0.15
 
 
-def test_a_picture_without_lines_has_no_candidates(few):
+def test_a_picture_without_lines_has_no_candidates(few, court):
     image = np.full((540, 960, 3), 120, np.uint8)
-    assert search.find(image, court_pictures.badminton()).candidates == []
+    assert search.find(image, court).candidates == []
 
 
-def test_large_pictures_are_made_smaller(few):
-    found = search.find(np.full((300, 2400, 3), 120, np.uint8), court_pictures.badminton())
+def test_large_pictures_are_made_smaller(few, court):
+    found = search.find(np.full((300, 2400, 3), 120, np.uint8), court)
     assert found.image.shape[1] == search.WIDEST_PX and found.scale == 1.5

@@ -14,11 +14,6 @@ from fixtures.cameras import court_pictures
 CAMERA = court_pictures.pair()[1]
 
 
-@pytest.fixture(scope="module")
-def court():
-    return court_pictures.badminton()
-
-
 @pytest.fixture(scope="module", autouse=True)
 def _few():
     """Search less widely, to be quick."""

@@ -3,17 +3,11 @@
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court_lines import views
 from courtside.geometry import camera as cameras
 from fixtures.cameras import court_pictures
-
-
-@pytest.fixture
-def court():
-    return court_pictures.badminton()
 
 
 def both():
