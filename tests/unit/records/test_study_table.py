@@ -5,6 +5,7 @@ import hashlib
 import pandas as pd
 import pytest
 
+from courtside.footwork import measures
 from courtside.records import study_table, tables
 from courtside.study.errors import InputError
 from fixtures.study import report_made
@@ -48,6 +49,20 @@ def test_what_nobody_judged_has_no_verdict_and_is_read_back_as_it_was(take, tmp_
     assert set(back["quality"]) == {""}
     assert set(back["take"]) == {"007"}
     pd.testing.assert_frame_equal(back, rows.assign(quality=""), check_dtype=False)
+
+
+def test_measures_of_the_feet_stand_beside_those_of_the_motion(take, tmp_path):
+    stance = ("p1", "stance_time", 0.43, 0.005, "s", 65, "stance of a foot")
+    tables.write(tmp_path / "feet.csv", pd.DataFrame([stance], columns=list(measures.COLUMNS)))
+    both = {"labels": LABELS, "provenance": "run/b.json", "quality_csv": take["quality_csv"]}
+    rows = study_table.of_take(tmp_path / "feet.csv", **both, camera_errors=False)
+    tables.write(tmp_path / "study.csv", pd.concat([study_table.of_take(**{**both, **take}), rows]))
+    (row,) = study_table.read(tmp_path / "study.csv").query("measure == 'stance_time'").itertuples()
+    assert (row.value, row.sigma, row.unit, row.n) == (0.43, 0.005, "s", 65)
+    assert (row.quality, row.provenance) == ("doubtful", "run/b.json")
+    assert pd.isna(row.sigma_camera)
+    with pytest.raises(InputError, match=r"feet\.csv: .* found no column sigma_camera"):
+        study_table.of_take(tmp_path / "feet.csv", **both)
 
 
 def test_another_table_is_refused(take):

@@ -1,6 +1,6 @@
 """What the study makes of several takes: written out for the tiny study."""
 
-from courtside.study.targets import together
+from courtside.study.targets import takes, together
 
 SHOT = "results/players-tiny/takes/shot"
 
@@ -49,6 +49,21 @@ def test_takes_of_one_subject_are_compared_over_sessions(study, studies):
     assert "model" not in found[0].joint_labels
     other = {**study.parameters["compare_sessions"], "subject": "p2"}
     assert together.archived_takes(studies(compare_sessions=other)) == []
+
+
+def test_the_table_of_the_study_has_measures_of_motion_and_of_feet(study):
+    way = "known18/all-robust/blazepose-full"
+    rows = [one for one in together.tabulated_takes(study) if one["labels"]["take"] == "shot"]
+    measured = [f"{SHOT}/{kind}/{way}.summary.csv" for kind in ("kinematics", "footwork")]
+    assert [one["measures_csv"] for one in rows] == measured
+    assert [one["camera_errors"] for one in rows] == [True, False]
+    assert {one["quality_csv"] for one in rows} == {f"{SHOT}/quality.csv"}
+    assert rows[1]["provenance"] == f"run/provenance/{measured[1].removeprefix('results/')}.json"
+    assert set(measured) < set(together.tabulated_files(study))
+    feet = {one["measures_csv"] for one in together.tabulated_takes(study)} & set(
+        takes.every_footwork(study)
+    )
+    assert len(feet) == 3
 
 
 def test_networks_are_compared_take_by_take(study, studies):

@@ -24,13 +24,17 @@ def of_take(
     labels: Mapping[str, str],
     quality_csv: StrPath | None,
     provenance: str,
+    *,
+    camera_errors: bool = True,
 ) -> pd.DataFrame:
     """Return the measures of a take, measured in one way, in `COLUMNS`.
 
     `labels` are `KEY`; `quality_csv` has the verdicts on the take, None where nobody judged it;
-    `provenance` is the record of what `measures_csv` rests on. An `InputError` if a file is none.
+    `provenance` is the record of what `measures_csv` rests on. Measures of the feet state no
+    `sigma_camera`: without `camera_errors` it is empty. An `InputError` if a file is none.
     """
-    rows = _read(measures_csv, "a summary of measures", MEASURED)
+    stated = tuple(name for name in MEASURED if camera_errors or name != "sigma_camera")
+    rows = _read(measures_csv, "a summary of measures", stated).reindex(columns=MEASURED)
     judged = _of_persons(quality_csv, labels) if quality_csv else {}
     digest = files.sha256(Path(measures_csv))[:DIGITS]
     more = {"quality": rows["person"].map(judged), "provenance": provenance, "sha256": digest}

@@ -98,8 +98,9 @@ def every_study_table(study: Study) -> list[str]:
 def tabulated_takes(study: Study) -> list[dict[str, Any]]:
     """Return what the table of the study has of each take and way of measuring it.
 
-    `labels` are session, take and way; `measures_csv`, `quality_csv` (None of other programs'
-    skeletons) and `provenance`, the record of the measures below the folder of results.
+    `labels` are session, take and way; `measures_csv` are of the motion and, with
+    `camera_errors` False, of the feet; `quality_csv` is None of other programs' skeletons, whose
+    feet are not looked at; `provenance` is the record of the measures below the folder of results.
     """
     found = []
     for session, take in study.takes():
@@ -108,17 +109,22 @@ def tabulated_takes(study: Study) -> list[dict[str, Any]]:
         for way in [*ways, *product(*methods)]:
             labels = {"session": session.name, "take": take.name}
             labels |= dict(zip(WAY, way, strict=True))
-            measures = paths.MEASURES.format(**labels)
-            below = measures.removeprefix(f"{paths.RESULTS}/")
             judged = takes.verdicts(session, take) if way not in ways else []
-            found.append(
-                {
-                    "labels": labels,
-                    "measures_csv": measures,
-                    "quality_csv": next(iter(judged), None),
-                    "provenance": paths.SIDECAR.format(file=below),
-                }
+            kinds = [(paths.MEASURES, True)] + [(paths.FOOTWORK_MEASURES, False)] * (
+                way not in ways
             )
+            for pattern, camera_errors in kinds:
+                measures = pattern.format(**labels)
+                below = measures.removeprefix(f"{paths.RESULTS}/")
+                found.append(
+                    {
+                        "labels": labels,
+                        "measures_csv": measures,
+                        "camera_errors": camera_errors,
+                        "quality_csv": next(iter(judged), None),
+                        "provenance": paths.SIDECAR.format(file=below),
+                    }
+                )
     return found
 
 
