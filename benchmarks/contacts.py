@@ -2,7 +2,7 @@
 
     python benchmarks/contacts.py results
 
-Reads the filtered skeletons of the takes named below (the last stage, the first calibration and
+Reads the corrected skeletons (the last stage) of the takes named below (the first calibration and
 network of each session, all cameras), finds contacts as `find_contacts` does, and compares them
 with the true feet. A step is counted right where true and found landings of a foot in a take are
 equally many.
