@@ -32,7 +32,7 @@ def test_files_for_other_programs_wait_for_consent(gym):
     jobs = planned(root=gym(None))
     assert "export_take" not in jobs
     assert {name: jobs[name] for name in PICTURED} == PICTURED
-    assert planned(root=gym(["analysis", "export"]))["export_take"] == 4  # one for each stage
+    assert planned(root=gym(["analysis", "export"]))["export_take"] == 3  # one for each stage
 
 
 def test_pictures_are_not_drawn_of_whom_they_may_not_show(gym):

@@ -52,7 +52,7 @@ DOWNSTREAM_OF_FILTER = {
 DOWNSTREAM_OF_3D = {
     **DOWNSTREAM_OF_FILTER,
     "filter_motion": FILTERED,
-    "export_take": 4,
+    "export_take": 3,
     "judge_take": 3,
     "build_quality_page": 2,
     "evaluate_fusions": 4,
@@ -93,7 +93,7 @@ def test_a_parameter_reruns_its_step_and_what_follows(kept):
 
 
 def test_a_filter_parameter_spares_the_triangulation(kept):
-    after = {"filter_motion": FILTERED, "export_take": 3, "evaluate_fusions": 2}
+    after = {"filter_motion": FILTERED, "export_take": 2, "evaluate_fusions": 2}
     with edited(kept / "config/config.yaml", FILTER, FILTER.replace("0.2", "0.1")):
         assert planned(root=kept) == {**after, **DOWNSTREAM_OF_FILTER}
 

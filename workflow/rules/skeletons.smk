@@ -179,9 +179,13 @@ rule fit_skeleton:
 rule export_motion:
     input:
         motion_npz=of_job(takes.exported_motion),
+        pose3d_npz=paths.POSE3D_IK,
     output:
-        mot_path=paths.part(paths.OPENSIM, suffix="mot"),
-        osim_path=paths.part(paths.OPENSIM, suffix="osim"),
+        mot_path=paths.part(paths.MODELLED_EXPORT, suffix="mot"),
+        osim_path=paths.part(paths.MODELLED_EXPORT, suffix="osim"),
+        trc_path=paths.part(paths.MODELLED_EXPORT, suffix="trc"),
+        c3d_path=paths.part(paths.MODELLED_EXPORT, suffix="c3d"),
+        csv_path=paths.part(paths.MODELLED_EXPORT, suffix="csv"),
         bvh_path=paths.part(paths.MOTION_EXPORT, suffix="bvh"),
         glb_path=paths.part(paths.MOTION_EXPORT, suffix="glb"),
     log:
@@ -206,6 +210,8 @@ rule export_take:
         glb_path=paths.part(paths.EXPORT, suffix="glb"),
     log:
         "results/{session}/logs/export_take/{take}.{stage}.{calibration}.{fusion}.{model}.{person}.log",
+    wildcard_constraints:
+        stage="|".join(paths.STAGES),
     params:
         code=code("export_take.py"),
     script:

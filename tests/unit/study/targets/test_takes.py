@@ -38,15 +38,14 @@ def test_every_take_that_fixed_cameras_measure_is_judged(study):
 
 
 def test_skeletons_of_every_stage_are_exported(study):
-    stages = ("pose3d", "pose3d_filtered", "pose3d_corrected", "pose3d_ik")
+    stages = ("pose3d", "pose3d_filtered", "pose3d_corrected")
     exported = [
         f"{REAL}/{stage}/file/all-robust/blazepose-full.p1.{suffix}"
         for stage in stages
         for suffix in ("trc", "c3d", "csv", "bvh", "glb")
     ]
-    motion = [
-        f"{REAL}/pose3d_ik/file/all-robust/blazepose-full.p1.{end}" for end in ("mot", "osim")
-    ]
+    joints = f"{REAL}/pose3d_ik/file/all-robust/blazepose-full.p1"
+    motion = [f"{joints}.{end}" for end in ("trc", "c3d", "csv", "mot", "osim")]
     motion += [f"{REAL}/motion/file/all-robust/blazepose-full.p1.{end}" for end in ("bvh", "glb")]
     assert takes.every_export(study) == [*exported, *motion]
 

@@ -53,12 +53,14 @@ def every_export(study: Study) -> list[str]:
         for person, way, fusion, model in product(persons, *methods):
             known = {"person": person, "calibration": way, "fusion": fusion, "model": model}
             there = [stage for stage in stages if stage in study.written_stages(model)]
-            kinds = {"stage": there, "suffix": ("trc", "c3d", "csv", "bvh", "glb")}
-            found += files(paths.EXPORT, session, take, **known, **kinds)
+            joints, trees = ("trc", "c3d", "csv"), ("bvh", "glb")
+            measured = [stage for stage in there if stage != paths.MODELLED]
+            every = joints + trees
+            found += files(paths.EXPORT, session, take, **known, stage=measured, suffix=every)
             if paths.MODELLED in there:
-                found += files(paths.OPENSIM, session, take, **known, suffix=("mot", "osim"))
-                kinds = {"suffix": ("bvh", "glb")}
-                found += files(paths.MOTION_EXPORT, session, take, **known, **kinds)
+                modelled = (*joints, "mot", "osim")
+                found += files(paths.MODELLED_EXPORT, session, take, **known, suffix=modelled)
+                found += files(paths.MOTION_EXPORT, session, take, **known, suffix=trees)
     return found
 
 
