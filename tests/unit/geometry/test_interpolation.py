@@ -26,4 +26,5 @@ def test_the_nearest_sample_is_found_within_and_beyond_the_samples():
     wanted_s = np.array([-1.0, 0.04, 0.06, 0.19, 0.3, 0.36, 9.0])
     assert interpolation.nearest(TIME_S, wanted_s).tolist() == [0, 0, 1, 1, 2, 3, 3]
     assert interpolation.nearest(np.array([0.0, 1.0]), np.array([0.5])).tolist() == [1]
+    assert interpolation.nearest(np.array([0.0, 1.0]), np.array([0.5]), "left").tolist() == [0]
     assert interpolation.nearest(np.array([2.0]), np.array([0.0, 5.0])).tolist() == [0, 0]

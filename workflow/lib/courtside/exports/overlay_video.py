@@ -97,11 +97,7 @@ def bridged(time_s: NDArray, xy: NDArray) -> NDArray:
         known = np.flatnonzero(np.isfinite(xy[:, joint]).all(axis=1))
         if not len(known):
             continue
-        after = np.searchsorted(time_s[known], time_s).clip(0, len(known) - 1)
-        before = (np.searchsorted(time_s[known], time_s, side="right") - 1).clip(0)
-        away_s = np.minimum(
-            np.abs(time_s[known[after]] - time_s), np.abs(time_s[known[before]] - time_s)
-        )
+        away_s = np.abs(time_s[known[interpolation.nearest(time_s[known], time_s)]] - time_s)
         for axis in range(2):
             filled = np.interp(time_s, time_s[known], xy[known, joint, axis])
             result[:, joint, axis] = np.where(away_s <= BRIDGED_S, filled, np.nan)

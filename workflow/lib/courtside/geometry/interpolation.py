@@ -1,5 +1,7 @@
 """Interpolation of samples in time: linear, and the cubic's deviation from the line."""
 
+from typing import Literal
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,11 +23,14 @@ def linear(time_s: NDArray, values: NDArray, wanted_s: NDArray) -> NDArray:
     return values[before] * (1 - share) + values[before + 1] * share
 
 
-def nearest(time_s: NDArray, wanted_s: NDArray) -> NDArray:
-    """Return the index of the sample nearest to each wanted time, the later of two equally near."""
-    right = np.clip(np.searchsorted(time_s, wanted_s), 0, len(time_s) - 1)
-    left = np.maximum(right - 1, 0)
-    return np.where(wanted_s - time_s[left] < time_s[right] - wanted_s, left, right)
+def nearest(
+    time_s: NDArray, wanted_s: NDArray, equal: Literal["left", "right"] = "right"
+) -> NDArray:
+    """Return the index of the sample nearest to each wanted time, the later of two equally near.
+
+    With `equal` "left" the earlier of two equally near.
+    """
+    return np.searchsorted((time_s[:-1] + time_s[1:]) / 2, wanted_s, equal)
 
 
 def cubic_bend(

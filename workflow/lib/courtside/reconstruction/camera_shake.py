@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from pandas import DataFrame
 
 from courtside.geometry import camera as camera_models
-from courtside.geometry import rotations
+from courtside.geometry import interpolation, rotations
 from courtside.geometry.camera import Camera
 from courtside.records.cameras import footage, shake_table
 from courtside.records.cameras.footage import Footage
@@ -189,7 +189,7 @@ def _rows(camera: str, wanted_s: NDArray, table: DataFrame) -> NDArray:
     """Return the row of the table of each frame of a camera, (T,) int."""
     time_s = table.time_s.to_numpy(float)
     wanted = np.asarray(wanted_s, float)
-    rows = np.searchsorted((time_s[:-1] + time_s[1:]) / 2, wanted)
+    rows = interpolation.nearest(time_s, wanted, "left")
     step_s = np.median(np.diff(time_s)) if len(time_s) > 1 else 0.01
     off_s = np.abs(time_s[rows] - wanted)
     if len(wanted) and off_s.max() > SAME_FRAME * step_s:

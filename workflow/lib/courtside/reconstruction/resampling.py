@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.geometry.interpolation import cubic_bend
+from courtside.geometry import interpolation
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints.keypoints import Keypoints2D
 
@@ -76,10 +76,7 @@ def nearest(view: Keypoints2D, time_s: NDArray, clock: Clock) -> tuple[Keypoints
     camera's own clock: to find them in its video.
     """
     own = np.asarray(clock.from_reference(time_s))
-    right = np.clip(np.searchsorted(view.time_s, own), 0, len(view.time_s) - 1)
-    left = np.maximum(right - 1, 0)
-    farther = np.abs(view.time_s[left] - own) > np.abs(view.time_s[right] - own)
-    at = np.where(farther, right, left)
+    at = interpolation.nearest(view.time_s, own, "left")
     fields = ("xy", "score", "reason", "xyz_in_body", "clothing")
     per_frame = {key: getattr(view, key)[:, at] for key in fields}
     return replace(view, time_s=np.asarray(time_s, dtype=float), **per_frame), view.time_s[at]
@@ -96,6 +93,6 @@ def _cubic(values, known, left, right, share, longest_s) -> NDArray:
         known[outer_right] - known[right] <= longest_s
     )
     first, last = values[:, outer_left], values[:, outer_right]
-    bent = cubic_bend(first, before, after, last, share)
+    bent = interpolation.cubic_bend(first, before, after, last, share)
     fine = np.isfinite(bent) & whole[:, None, None]
     return straight + np.where(fine & (left != right)[:, None, None], bent, 0.0)

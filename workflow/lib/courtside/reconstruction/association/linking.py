@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.geometry import camera as camera_models
+from courtside.geometry import interpolation
 from courtside.geometry.camera import Camera
 from courtside.reconstruction.association.appearance import Looks
 from courtside.reconstruction.association.candidates import Candidates
@@ -283,9 +284,7 @@ def along(time_s: NDArray, at_s: NDArray, xyz: NDArray) -> tuple[NDArray, NDArra
     (T,) is 0 at an instant, inf where too far from any.
     """
     path = np.stack([np.interp(time_s, at_s, column) for column in xyz.T], axis=1)
-    right = np.clip(np.searchsorted(at_s, time_s), 0, len(at_s) - 1)
-    left = np.maximum(right - 1, 0)
-    away = np.minimum(np.abs(time_s - at_s[left]), np.abs(time_s - at_s[right]))
+    away = np.abs(time_s - at_s[interpolation.nearest(at_s, time_s)])
     return path, np.where(away <= BELIEVED_S, DRIFT_MS2 * away**2, np.inf)
 
 
