@@ -1,5 +1,6 @@
 """BlazePose run here against MediaPipe's own Python solution; its geometry against mathematics."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -8,10 +9,13 @@ import pandas as pd
 import pytest
 
 from courtside.pose import blazepose, detector
-from fixtures.recordings import networks
+from courtside.records.keypoints import skeleton
+from fixtures.recordings import networks, onnx_files
 from fixtures.recordings.real_data import REAL, needs_real
 
 RECORDED = Path(__file__).with_name("mediapipe_landmarks.csv")
+SHAPE = Path(__file__).parents[3] / "config" / "skeletons" / "blazepose33.yaml"
+JOINTS = skeleton.read(SHAPE).joints
 
 
 @pytest.fixture(scope="module")
@@ -145,3 +149,45 @@ def test_a_turned_picture_gives_turned_joints(blazepose_pair):
     turned = place.estimate(cv2.rotate(image, cv2.ROTATE_90_CLOCKWISE), turned_region)
     expected = np.stack([image.shape[0] - same.xy[:, 1], same.xy[:, 0]], axis=1)
     assert np.median(np.linalg.norm(turned.xy - expected, axis=1)) < 3
+
+
+def test_with_a_flip_test_the_mirror_image_gives_the_mirrored_joints(tmp_path):
+    path, joints = onnx_files.blazepose_landmarks(tmp_path / "n.onnx"), skeleton.mirror(JOINTS)
+    flip_test = blazepose.BlazePoseLandmarks(path, pairs=joints)
+    image = np.random.default_rng(1).integers(0, 255, (300, 320, 3), dtype=np.uint8)
+    image = cv2.GaussianBlur(image, (0, 0), 9)
+    region = detector.Region(150, 140, 256)
+    pose = flip_test.estimate(image, region)
+    other = flip_test.estimate(np.ascontiguousarray(image[:, ::-1]), replace(region, x=320 - 150))
+    expected = np.column_stack([319 - pose.xy[joints, 0], pose.xy[joints, 1]])
+    np.testing.assert_allclose(other.xy, expected, atol=1e-4)
+    np.testing.assert_allclose(other.score, pose.score[joints], atol=1e-6)
+    np.testing.assert_allclose(other.xyz_in_body, pose.xyz_in_body[joints] * [-1, 1, 1], atol=1e-6)
+    assert other.presence == pytest.approx(pose.presence)
+    np.testing.assert_allclose(other.region.x, 319 - pose.region.x, atol=1e-4)
+    assert np.sin(other.region.angle_rad + pose.region.angle_rad) == pytest.approx(0, abs=1e-4)
+
+
+def look(x):
+    fraction = np.column_stack([np.full(39, x), np.full(39, 0.25)])
+    return fraction, np.full(33, 0.8), 0.9, np.zeros((33, 3))
+
+
+def test_joints_that_the_mirror_places_elsewhere_count_less():
+    same = blazepose.both(look(0.5), look(0.5))
+    np.testing.assert_array_equal(same[1], 0.8)
+    apart = blazepose.both(look(0.5), look(0.5 + blazepose.DOUBTED))
+    np.testing.assert_allclose(apart[0][:, 0], 0.5 + blazepose.DOUBTED / 2)
+    np.testing.assert_allclose(apart[1], 0.4)
+
+
+def test_the_mirror_of_the_mirror_is_what_was_seen():
+    values = np.random.default_rng(2).uniform(size=(39, 7))
+    seen = values[:, :2], values[:33, 2], 0.5, values[:33, 3:6]
+    pairs = skeleton.mirror(JOINTS)
+    again = blazepose.mirrored(blazepose.mirrored(seen, pairs), pairs)
+    for one, other in zip(seen, again, strict=True):
+        np.testing.assert_allclose(one, other)
+    left, right = (JOINTS.index(f"{side}_wrist") for side in ("left", "right"))
+    once = blazepose.mirrored(seen, pairs)
+    assert once[0][left, 0] == pytest.approx(255 / 256 - seen[0][right, 0])

@@ -62,6 +62,10 @@ def test_a_flip_test_knows_the_sides(tmp_path):
     given = {"decoder": "simcc", "input": GIVEN | {"padding": 1.25}}
     assert decoders.landmark_network(path, JOINTS, **given).pairs is None
     assert decoders.landmark_network(path, JOINTS, **given, flip_test=True).pairs == [0, 2, 1]
+    many, path = JOINTS * 11, onnx_files.blazepose_landmarks(tmp_path / "b.onnx")
+    blaze = decoders.landmark_network(path, many, decoder="blazepose", flip_test=True)
+    assert blaze.pairs[:3] == [0, 2, 1]
+    decoders.try_out(blaze)
 
 
 def test_a_skeleton_of_another_length_is_one_line(tmp_path):

@@ -26,6 +26,12 @@ OVERLAP_MERGED = 0.3  # detections that overlap more (intersection over union) a
 REGION_MARGIN = 1.25
 HEAT_MAP_REACH = 3  # a 7 x 7 window
 HEAT_MAP_MIN = 0.5
+# Chosen on players-dev: a joint that the picture and its mirror image place so far apart, in sides
+# of the region, counts half.
+DOUBTED = 0.02
+
+# Landmarks (39, 2) as fractions of the crop; score (33,), presence, and metric joints (33, 3), m.
+Seen = tuple[NDArray, NDArray, NDArray, NDArray]
 
 
 def sigmoid(value: NDArray) -> NDArray:
@@ -140,30 +146,55 @@ class BlazePoseLandmarks:
         *,
         outputs: Sequence[str] | None = None,
         providers: Sequence[str] = CPU,
+        pairs: Sequence[int] | None = None,
     ) -> None:
         shape = (1, LANDMARK_SIDE, LANDMARK_SIDE, 3)
         names = outputs or ("Identity", "Identity_1", "Identity_3", "Identity_4")
         self.network = Network(onnx_path, shape, outputs=names, providers=providers)
+        self.pairs = pairs
 
     def estimate(self, image: NDArray, region: Region) -> Pose:
         """Return the `Pose` of the person in one `Region` of a (H, W, 3) uint8 BGR picture."""
         patch = detector.cut_out(image, region, LANDMARK_SIDE, cv2.BORDER_REPLICATE)
         patch = cv2.cvtColor(patch, cv2.COLOR_BGR2RGB)
+        seen = self._look(patch)
+        if self.pairs is not None:
+            seen = both(seen, mirrored(self._look(cv2.flip(patch, 1)), self.pairs))
+        fraction, score, presence, xyz = seen
+        xy = detector.to_picture(fraction, region)
+        xyz[:, :2] = detector.rotate(xyz[:, :2], region.angle_rad)
+        return Pose(
+            xy=xy[:N_JOINTS],
+            score=score,
+            xyz_in_body=xyz,
+            presence=float(presence),
+            region=region_from_points(xy[N_JOINTS], xy[N_JOINTS + 1]),
+        )
+
+    def _look(self, patch: NDArray) -> Seen:
         tensor = np.divide(patch, np.float32(255), dtype=np.float32)[None]
         landmarks, presence, heat_maps, metric = self.network.run(tensor)
         landmarks = landmarks.reshape(39, 5).astype(float)
         fraction = refine(landmarks[:, :2] / LANDMARK_SIDE, heat_maps[0])
-        xy = detector.to_picture(fraction, region)
-        xyz = metric.reshape(39, 3)[:N_JOINTS].astype(float)
-        xyz[:, :2] = detector.rotate(xyz[:, :2], region.angle_rad)
         visible, present = sigmoid(landmarks[:N_JOINTS, 3]), sigmoid(landmarks[:N_JOINTS, 4])
-        return Pose(
-            xy=xy[:N_JOINTS],
-            score=visible * present,
-            xyz_in_body=xyz,
-            presence=float(presence.ravel()[0]),
-            region=region_from_points(xy[N_JOINTS], xy[N_JOINTS + 1]),
-        )
+        xyz = metric.reshape(39, 3)[:N_JOINTS].astype(float)
+        return fraction, visible * present, presence.ravel()[0], xyz
+
+
+def mirrored(seen: Seen, pairs: Sequence[int]) -> Seen:
+    """Return what was seen in a mirrored crop as it is in the crop; `pairs` as in the class."""
+    fraction, score, presence, xyz = seen
+    joints = np.asarray(pairs)
+    fraction = fraction[np.append(joints, np.arange(N_JOINTS, len(fraction)))]
+    across = (LANDMARK_SIDE - 1) / LANDMARK_SIDE - fraction[:, :1]  # pixels change places
+    return np.hstack([across, fraction[:, 1:]]), score[joints], presence, xyz[joints] * [-1, 1, 1]
+
+
+def both(one: Seen, other: Seen) -> Seen:
+    """Return the mean of two looks at a person, with lower scores where joints differ."""
+    fraction, score, presence, xyz = ((a + b) / 2 for a, b in zip(one, other, strict=True))
+    apart = np.linalg.norm(one[0] - other[0], axis=1)[:N_JOINTS]
+    return fraction, score / (1 + (apart / DOUBTED) ** 2), presence, xyz
 
 
 def refine(fraction: NDArray, heat_maps: NDArray) -> NDArray:

@@ -54,16 +54,16 @@ def landmark_network(
     `options` are those of its decoder. An `InputError` if the file is no such network, or has
     another number of joints than its skeleton.
     """
+    pairs = skeleton.mirror(joints) if options.pop("flip_test", False) else None
     if decoder == "blazepose":
         check_joints(onnx_path, N_JOINTS, len(joints))
-        return BlazePoseLandmarks(onnx_path, outputs=outputs, providers=providers)
+        return BlazePoseLandmarks(onnx_path, outputs=outputs, providers=providers, pairs=pairs)
     how = dict(input or {})
     padding = how.pop("padding", None)
     given = Input(**how)
     network = Network(onnx_path, given.shape, outputs=outputs, providers=providers)
     if decoder in ONE_STAGE:
         return OneStage(network, given, decoder=decoder, n_joints=len(joints), **options)
-    flip = options.pop("flip_test", False)
     trunk = [at for at, joint in enumerate(joints) if joint.endswith(("_shoulder", "_hip"))]
     return TopDown(
         network,
@@ -72,7 +72,7 @@ def landmark_network(
         n_joints=len(joints),
         presence_joints=trunk,
         padding=padding,
-        pairs=skeleton.mirror(joints) if flip else None,
+        pairs=pairs,
     )
 
 

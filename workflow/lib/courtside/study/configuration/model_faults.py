@@ -10,7 +10,7 @@ from courtside.study.configuration.yaml_files import Content
 from courtside.study.execution.artefacts import Artefact
 
 OPTIONS = {  # keys that mean something to a decoder of models.yaml
-    "blazepose": (),
+    "blazepose": ("flip_test",),
     "heatmaps": ("input", "flip_test", "cells", "refine"),
     "simcc": ("input", "flip_test", "split"),
     "rtmo": ("input", "min_score", "min_height"),
