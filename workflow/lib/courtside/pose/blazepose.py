@@ -28,7 +28,7 @@ HEAT_MAP_REACH = 3  # a 7 x 7 window
 HEAT_MAP_MIN = 0.5
 # Chosen on players-dev: a joint that the picture and its mirror image place so far apart, in sides
 # of the region, counts half.
-DOUBTED = 0.02
+DOUBTED = 0.03
 
 # Landmarks (39, 2) as fractions of the crop; score (33,), presence, and metric joints (33, 3), m.
 Seen = tuple[NDArray, NDArray, NDArray, NDArray]

@@ -89,6 +89,17 @@ VIEWS = {  # the columns that the documents show of their tables
             "with": "{after.command}",
         },
     ),
+    "looks": View(
+        "looks",
+        {
+            "`blazepose-heavy`: median / 90 %, mm; above 100 mm, %": "{row}",
+            "two bodies, 4 cameras": "{four}",
+            "one body, 3 cameras": "{three}",
+            "another body, 4 cameras": "{other}",
+            "by": "{four.origin}",
+            "with": "{four.command}",
+        },
+    ),
     "persons-found": View(
         "persons-found",
         {
