@@ -100,6 +100,16 @@ VIEWS = {  # the columns that the documents show of their tables
             "with": "{four.command}",
         },
     ),
+    "looks-reported": View(
+        "looks-reported",
+        {
+            "`blazepose-heavy`, mm": "{row}",
+            "one look (default)": "{before}",
+            "`flip_test`": "{after}",
+            "by": "{after.origin}",
+            "with": "{after.command}",
+        },
+    ),
     "persons-found": View(
         "persons-found",
         {
