@@ -6,10 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.body_model import angles, fit, pose, segments, shape, start
+from courtside.body_model import angles, fit, held, pose, segments, shape, start
 from courtside.body_model.fit import Spread
 from courtside.body_model.pose import Pose
 from courtside.body_model.shape import Shape
+from courtside.records.footwork import Contacts
 from courtside.records.keypoints import missing_reason, skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.keypoints.skeletal_motion import SkeletalMotion
@@ -46,9 +47,17 @@ def errors(points: Keypoints3D, person: int) -> tuple[NDArray, NDArray]:
 
 
 def person(
-    points: Keypoints3D, at: int, cutoff_hz: Mapping[str, float], height_m: float | None = None
+    points: Keypoints3D,
+    at: int,
+    cutoff_hz: Mapping[str, float],
+    height_m: float | None = None,
+    contacts: Contacts | None = None,
 ) -> Fitted | None:
-    """Fit one person's frames from the first to the last that is seen; None if none is."""
+    """Fit one person's frames from the first to the last that is seen; None if none is.
+
+    `contacts`, of the same persons and frames, hold heels and toes where they stand: in the last
+    round, once lengths and points have their places.
+    """
     names, limbs = points.joints.tolist(), list(skeleton.JOINTS)
     limb = points.xyz[at][:, [names.index(joint) for joint in limbs]]
     seen = np.flatnonzero(np.isfinite(limb).all(axis=2).sum(axis=1) >= LEAST)
@@ -70,10 +79,14 @@ def person(
     data = fit.Data(np.nan_to_num(xyz[:, body.index]), information, noise[:, body.index])
     weight = np.trace(information, axis1=2, axis2=3)
     hz = fit.cutoffs(model, cutoff_hz)
+    stand = contacts and held.of_contacts(
+        body.joints, contacts.held[at, frames], contacts.floor_m[at], points.rate_hz
+    )
     for number, steps in enumerate(ROUNDS, start=1):
         origin, turned = pose.forward(model, found, body.offsets)
         body = shape.with_points(body, origin, turned, data.xyz, weight)
-        found = fit.fit(model, body, data, found, hz, points.rate_hz, steps)
+        on = stand if number == len(ROUNDS) else None
+        found = fit.fit(model, body, data, found, hz, points.rate_hz, steps, on)
         if number < len(ROUNDS):
             body = fit.lengthened(model, body, data, found)
     return Fitted(frames, body, found, fit.spread(model, body, data, found))

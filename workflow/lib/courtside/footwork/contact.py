@@ -32,7 +32,7 @@ START = np.array([0.1, 0.1, 0.7, 0.1])
 
 
 def probability(track: Track) -> NDArray:
-    """Return the posterior probability (N,) that the foot stands, at the times of the track.
+    """Return posterior probabilities (N, 3): that the foot, its heel and its toe stand.
 
     Errors of filtered points last: of the grid's times, two per period of the cut-off count as
     independent.
@@ -41,7 +41,8 @@ def probability(track: Track) -> NDArray:
     weight = min(1.0, 2 * track.cutoff_hz * step_s)
     moves = RATES * step_s
     moves += np.diag(1 - moves.sum(axis=1))
-    return 1 - _smoothed(weight * _log_densities(track), moves)[:, 0]
+    swing, heel, flat, toe = _smoothed(weight * _log_densities(track), moves).T
+    return np.stack([1 - swing, heel + flat, flat + toe], axis=1)
 
 
 def _log_densities(track: Track) -> NDArray:
