@@ -106,7 +106,7 @@ def fit(
         normal, right, _ = _linearised(model, shape, data, pose)
         if weights is None:
             weights = stiffness(normal, cutoff_hz, rate_hz, model.sigma)
-        below = None
+        below = np.zeros_like(normal[1:])
         if held is not None:
             more, pull, below = feet.linearised(model, shape, held, pose)
             normal, right = normal + more, right + pull
@@ -243,7 +243,7 @@ def _solve(
     normal: NDArray,
     right: NDArray,
     weights: NDArray,
-    next_rows: NDArray | None = None,
+    next_rows: NDArray,
 ) -> NDArray:
     """Return the step (T, D): banded Cholesky, linear in the frames.
 
@@ -268,7 +268,7 @@ def _solve(
     for below in range(n_free):
         block = band[below].reshape(n_frames, n_free)
         block[:, : n_free - below] += normal[:, each[below:], each[: n_free - below]]
-    for lag in range(1 - n_free, n_free if next_rows is not None else 1 - n_free):
+    for lag in range(1 - n_free, n_free):
         own = each[max(0, -lag) : n_free - max(0, lag)]
         band[n_free + lag].reshape(n_frames, n_free)[:-1, own] += next_rows[:, own + lag, own]
     found = scipy.linalg.solveh_banded(

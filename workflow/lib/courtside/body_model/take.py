@@ -79,9 +79,10 @@ def person(
     data = fit.Data(np.nan_to_num(xyz[:, body.index]), information, noise[:, body.index])
     weight = np.trace(information, axis1=2, axis2=3)
     hz = fit.cutoffs(model, cutoff_hz)
-    stand = contacts and held.of_contacts(
-        body.joints, contacts.held[at, frames], contacts.floor_m[at], points.rate_hz
-    )
+    stand = None
+    if contacts is not None:
+        own, floor_m = contacts.held[at, frames], contacts.floor_m[at]
+        stand = held.of_contacts(body.joints, own, floor_m, points.rate_hz)
     for number, steps in enumerate(ROUNDS, start=1):
         origin, turned = pose.forward(model, found, body.offsets)
         body = shape.with_points(body, origin, turned, data.xyz, weight)
