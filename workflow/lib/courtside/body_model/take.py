@@ -16,6 +16,9 @@ from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.keypoints.skeletal_motion import SkeletalMotion
 
 UNKNOWN_M = 0.03  # ASSUME: standard deviation per axis that a joint without a network's has
+# And that points of the hand have: fingers bend, and the model's hand does not. Chosen on
+# `players-dev`: elbows gain, and the hand's direction does not lose.
+HAND_M = 0.1
 # Fits, with their steps, between which the lengths of segments are fitted, and the points of feet,
 # hands and head placed.
 ROUNDS = (3, 3, 6)
@@ -36,10 +39,12 @@ def errors(points: Keypoints3D, person: int) -> tuple[NDArray, NDArray]:
     """Return the covariance (T, J, 3, 3) m2 by which one person's joints count, and their noise.
 
     Filled gaps have no stated noise: they count with twice the joint's usual one. Joints that the
-    network's errors are unknown of get `UNKNOWN_M`.
+    network's errors are unknown of get `UNKNOWN_M`, or `HAND_M`.
     """
     network, own = points.covariance_network[person], points.covariance_2d[person]
-    variance = np.where(np.isfinite(network), network, UNKNOWN_M**2 * np.eye(3))
+    parts = [joint.partition("_")[2] for joint in points.joints.tolist()]
+    sigma = np.where(np.isin(parts, segments.POINTS["hand"]), HAND_M, UNKNOWN_M)
+    variance = np.where(np.isfinite(network), network, (sigma**2)[:, None, None] * np.eye(3))
     around = np.ma.median(np.ma.masked_invalid(np.trace(own, axis1=2, axis2=3)), axis=0) / 3
     unknown = 4 * np.ma.filled(around, UNKNOWN_M**2)[:, None, None] * np.eye(3)
     noise = np.where(np.isfinite(own), own, unknown)
