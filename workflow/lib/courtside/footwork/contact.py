@@ -14,7 +14,7 @@ from courtside.footwork.tracks import Track
 
 # Chosen on the takes of players-dev, and on hops that the virtual gym plans. Standard deviations
 # per axis and mean heights, beside what the stated errors add: m/s and m.
-STILL_M_S, STILL_M = 0.15, 0.012  # of a point that stands
+STILL_M_S, STILL_M = 0.15, 0.008  # of a point that stands
 ODD, ODD_TIMES = 0.01, 3.0  # share and widening of a standing point's gross errors
 SWING_M_S = (0.6, 1.5, 4.0)  # of a swinging point: shuffling, stepping and running alike
 SWING_M, SWING_SD_M = 0.05, 0.05  # its height

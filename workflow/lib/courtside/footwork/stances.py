@@ -12,7 +12,7 @@ from courtside.footwork.tracks import Track
 # Fitted on the takes of players-dev. A foot comes to rest smoothly, and its last millimetres are
 # as slow as a standing foot's noise: contact seems to begin early and to end late, the more so the
 # slower the swing: by these metres over its highest speed.
-LATE = {"onset": 0.10, "end": -0.05}
+LATE = {"onset": 0.075, "end": -0.05}
 SLOWEST_M_S = 1.2  # swings are taken for no slower
 # Standard deviation: of each boundary, s; metres over the swing's highest speed; and how many times
 # the spread of the posterior's own.
