@@ -61,7 +61,7 @@ def person(
     """Fit one person's frames from the first to the last that is seen; None if none is.
 
     `contacts`, of the same persons and frames, hold heels and toes where they stand: in the last
-    round, once lengths and points have their places.
+    round alone, for held earlier they cost time and change nothing.
     """
     names, limbs = points.joints.tolist(), list(skeleton.JOINTS)
     limb = points.xyz[at][:, [names.index(joint) for joint in limbs]]
