@@ -25,13 +25,16 @@ from many_sessions import ROOT
 
 sys.path[:0] = [str(ROOT / "workflow" / "lib"), str(ROOT / "workflow" / "scripts")]
 
+import find_contacts
 import fit_skeleton
 
 from courtside.body_model import take
 from courtside.evaluation import joints, kinematics, marker_system
+from courtside.evaluation.movement import contacts
 from courtside.evaluation.numbers import stated
+from courtside.footwork import feet
 from courtside.kinematics import joint_angles, shared_errors
-from courtside.records import npz
+from courtside.records import footwork, npz
 from courtside.records.keypoints import keypoints
 from courtside.records.truth import take_truth
 from courtside.statistics import moving_blocks
@@ -44,6 +47,7 @@ MODEL, FUSION = "blazepose-heavy", "all-robust"
 STAGES = ("corrected", "model")
 ANGLES = ("knee_flexion", "hip_flexion", "elbow_flexion", "shoulder_elevation", "trunk_lean")
 HALL = ("RHip", "RKnee", "RAnkle", "RShoulder", "RElbow", "RHand")
+CONTACTS = (footwork.read_contacts, "contacts.npz"), (footwork.read_steps, "steps.csv")
 BLOCK_S = 0.5
 COMMAND = "`python benchmarks/body_model.py results`"
 HALL_COMMAND = "`python benchmarks/body_model.py results --hall RESULTS DATA`"
@@ -63,6 +67,9 @@ def fitted(results, session, way, folder):
     )
     file = config / "sessions" / f"{session}.yaml"
     known = yaml_files.read(file).get("subjects", {}) if file.is_file() else {}
+    paths.contacts, paths.skeletons, paths.court = folder / "contacts.npz", paths.corrected, None
+    tables = [folder / f"{part}.csv" for part in ("steps", "events", "summary")]
+    find_contacts.main(paths, paths.contacts, *tables)
     before = time.process_time()
     fit_skeleton.main(
         paths,
@@ -92,8 +99,10 @@ def long_ms(results, session, way):
         if shape[:2] == ("P", "T")
     }
     points = replace(points, time_s=np.arange(n_frames) / points.rate_hz, **more)
+    hz = dict.fromkeys(points.joints.tolist(), 8.0)
+    known, _, _ = feet.find(points, list(hz.values()))
     before = time.process_time()
-    take.person(points, 0, dict.fromkeys(points.joints.tolist(), 8.0))
+    take.person(points, 0, hz, contacts=known)
     return n_frames, 1000 * (time.process_time() - before) / n_frames
 
 
@@ -103,13 +112,16 @@ def takes(results, session):
         yield path.parts[-4], path.parts[-2]
 
 
-def errors(points, truth):
-    """Return the numbers of one take and stage."""
+def errors(points, truth, folder):
+    """Return the numbers of one take and stage; the folder holds its contacts."""
+    known, steps = (read(folder / file) for read, file in CONTACTS)
+    stood = contacts.table(points, known, steps, truth)["moved_rms_mm"].median()
     points = points.between(truth.time_s[0], truth.time_s[-1])
     apart = joints.errors(points, truth.joints, joints.true_places(points, truth))
     rows = joints.table(points.person_id, *apart).set_index("joint").loc[["limbs"]].iloc[-1]
     found = {"joints, median, mm": rows["median_mm"], "joints, 95 %, mm": rows["p95_mm"]}
     found["joints, in 90 % ellipsoids, %"] = rows["coverage_90_percent"]
+    found["a standing foot moves, mm"] = stood
     angles = kinematics.angles(points, truth).set_index("angle")
     for angle in ANGLES:
         of, words = angles.loc[[angle]], angle.replace("_", " ")
@@ -126,7 +138,7 @@ def players(results, sessions, folder):
             points, seconds = fitted(results, session, way, folder)
             truth = take_truth.read(results / "virtual" / session / "takes" / way[0] / "truth.npz")
             for stage, one in points.items():
-                row = errors(one, truth) | {"time a frame and person, ms": 1000 * seconds}
+                row = errors(one, truth, folder) | {"time a frame and person, ms": 1000 * seconds}
                 found.append({"session": session, "take": way[0], "stage": stage, **row})
             print(session, way[0], f"{len(one.time_s)} frames", flush=True)
     return pd.DataFrame(found)

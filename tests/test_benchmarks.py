@@ -170,6 +170,8 @@ def test_real_footage_gives_its_script_what_it_takes(monkeypatch):
 def test_the_body_model_gives_its_script_what_it_takes(tmp_path, monkeypatch):
     main = mock.create_autospec(body_model.fit_skeleton.main)
     monkeypatch.setattr(body_model.fit_skeleton, "main", main)
+    contacts = mock.create_autospec(body_model.find_contacts.main)
+    monkeypatch.setattr(body_model.find_contacts, "main", contacts)
     stored = SimpleNamespace(xyz=np.zeros((1, 5, 2, 3)))
     monkeypatch.setattr(body_model.keypoints, "read_3d", lambda _: stored)
     found, seconds = body_model.fitted(tmp_path, "players-a", ("shot", "known18"), tmp_path)

@@ -142,7 +142,8 @@ def contacts(folder):
     """Write contacts of feet."""
     chance = np.array([[[1.0, 0.5], [0.25, np.nan]]])
     feet, floor = np.array(footwork.FEET), np.full((1, 2, 2), 0.05)
-    made = footwork.Contacts(np.array(["p1"]), feet, np.array([0.0, 0.1]), chance, floor)
+    points = np.stack([chance, chance], axis=-1)
+    made = footwork.Contacts(np.array(["p1"]), feet, np.array([0.0, 0.1]), chance, points, floor)
     footwork.write_contacts(folder / "contacts.npz", made)
 
 

@@ -156,6 +156,7 @@ rule fit_skeleton:
     input:
         raw=paths.POSE3D,
         corrected=paths.POSE3D_CORRECTED,
+        contacts=paths.CONTACTS,
         cutoffs=paths.CUTOFFS,
         skeleton=of_job(Job.skeleton_file),
         offsets=lambda w: CONFIG / paths.OFFSETS_CSV.format(model=w.model),

@@ -1,14 +1,15 @@
 """Fit the skeletal model to a take.
 
 Reads raw keypoints, which it corrects as `correct_joints` does but does not filter: the fit has the
-filter's cut-offs in its prior. Of the corrected skeletons it takes what the cameras' errors are.
+filter's cut-offs in its prior. Of the corrected skeletons it takes what the cameras' errors are; of
+their contacts, which heels and toes stand.
 """
 
 from courtside.body_model import take
 from courtside.exports import measures
 from courtside.kinematics import cutoffs, skeleton_filter
 from courtside.reconstruction import joint_correction
-from courtside.records import tables
+from courtside.records import footwork, tables
 from courtside.records.keypoints import keypoints, skeletal_motion, skeleton
 from courtside.study.execution import log
 from courtside.study.execution.script import run
@@ -19,8 +20,9 @@ def main(paths, joints_npz, motion_npz, angles_csv, *, max_gap_s, sex_of, height
     points = joint_correction.correct(raw, joint_correction.read(paths.offsets), sex_of)
     shape, (chosen, _) = skeleton.read(paths.skeleton), cutoffs.read(paths.cutoffs)
     cutoff_hz = dict(zip(shape.joints, shape.by_group(chosen), strict=True))
+    contacts = footwork.read_contacts(paths.contacts)
     found = {
-        at: take.person(points, at, cutoff_hz, height_m_of.get(person))
+        at: take.person(points, at, cutoff_hz, height_m_of.get(person), contacts)
         for at, person in enumerate(points.person_id.tolist())
     }
     fits = {at: one for at, one in found.items() if one is not None}

@@ -12,7 +12,7 @@ def test_feet_of_the_virtual_gym_stand_when_they_are_planted():
     points, feet = walking_feet.record(walking_feet.gait(), 5.0)
     for side, foot in feet.items():
         (track,), _ = tracks.tracks(points, 0, side, walking_feet.CUTOFFS)
-        stands = contact.probability(track) > 0.5
+        stands = contact.probability(track)[:, 0] > 0.5
         true = np.any(
             [(track.time_s >= p.land_s) & (track.time_s < p.off_s) for p in foot.plants], 0
         )
@@ -25,7 +25,7 @@ def test_a_foot_that_nothing_is_known_of_has_no_sharp_contact():
     spread = []
     for points in (sure, vague):
         (track,), _ = tracks.tracks(points, 0, "left", walking_feet.CUTOFFS)
-        p = contact.probability(track)
+        p = contact.probability(track)[:, 0]
         spread.append((p * (1 - p)).mean())
     assert spread[1] > 1.5 * spread[0]
 

@@ -45,7 +45,8 @@ def test_stances_that_the_take_cuts_have_no_onset_or_end_and_a_place():
     # The middle of heel and toe lies 6 cm before the ankle.
     places = np.array([p.place + np.array([0, 0.06]) for p in feet["left"].plants])
     np.testing.assert_allclose([s.xy for s in stood], places, atol=0.04)
-    assert probability[:5].min() > 0.9
+    assert probability[:5].min() > 0.9  # of foot, heel and toe
+    assert (probability[:, 1:] <= probability[:, :1] + 1e-9).all()
 
 
 def test_frames_that_are_not_known_have_no_probability():

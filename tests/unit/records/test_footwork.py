@@ -26,6 +26,7 @@ def test_what_is_written_is_read(tmp_path):
         np.array(footwork.FEET),
         np.arange(3) / 30,
         np.array([[[1.0, 0.5], [0.9, np.nan], [0.0, 1.0]]]),
+        np.full((1, 3, 2, 2), 0.5),
         np.full((1, 2, 2), 0.05),
     )
     footwork.write_contacts(tmp_path / "c.npz", made)

@@ -7,7 +7,9 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from courtside.body_model import held as feet
 from courtside.body_model import pose as poses
+from courtside.body_model.held import Held
 from courtside.body_model.pose import Pose
 from courtside.body_model.segments import BALL, Model
 from courtside.body_model.shape import Shape
@@ -91,19 +93,24 @@ def fit(
     cutoff_hz: NDArray,
     rate_hz: float,
     steps: int = 6,
+    held: Held | None = None,
 ) -> Pose:
     """Return the most probable poses, after at most so many steps.
 
     It minimises the squared Mahalanobis distances of the points, Huber beyond `FAR`, the squared
-    coordinates over their prior, what exceeds their ranges, and the second differences
-    (`stiffness`).
+    coordinates over their prior, what exceeds their ranges, the second differences (`stiffness`),
+    and what standing feet move.
     """
     pose, weights = start, None
     for _ in range(steps):
         normal, right, _ = _linearised(model, shape, data, pose)
         if weights is None:
             weights = stiffness(normal, cutoff_hz, rate_hz, model.sigma)
-        step = _solve(model, pose, normal, right, weights)
+        below = np.zeros_like(normal[1:])
+        if held is not None:
+            more, pull, below = feet.linearised(model, shape, held, pose)
+            normal, right = normal + more, right + pull
+        step = _solve(model, pose, normal, right, weights, below)
         pose = poses.moved(model, pose, np.clip(step, -LONGEST, LONGEST))
         if np.median(np.abs(step), axis=0).max() < SETTLED:
             break
@@ -230,8 +237,18 @@ def _second_differences(model: Model, pose: Pose) -> NDArray:
     return found
 
 
-def _solve(model: Model, pose: Pose, normal: NDArray, right: NDArray, weights: NDArray) -> NDArray:
-    """Return the step (T, D): banded Cholesky, linear in the frames."""
+def _solve(
+    model: Model,
+    pose: Pose,
+    normal: NDArray,
+    right: NDArray,
+    weights: NDArray,
+    next_rows: NDArray,
+) -> NDArray:
+    """Return the step (T, D): banded Cholesky, linear in the frames.
+
+    `next_rows` (T - 1, D, D) are what ties each frame to the next.
+    """
     n_frames, n_free = right.shape
     prior, slope = _prior(model, pose)
     normal, right = normal + prior, right + slope
@@ -251,6 +268,9 @@ def _solve(model: Model, pose: Pose, normal: NDArray, right: NDArray, weights: N
     for below in range(n_free):
         block = band[below].reshape(n_frames, n_free)
         block[:, : n_free - below] += normal[:, each[below:], each[: n_free - below]]
+    for lag in range(1 - n_free, n_free):
+        own = each[max(0, -lag) : n_free - max(0, lag)]
+        band[n_free + lag].reshape(n_frames, n_free)[:-1, own] += next_rows[:, own + lag, own]
     found = scipy.linalg.solveh_banded(
         band, right.ravel(), overwrite_ab=True, lower=True, check_finite=False
     )

@@ -6,15 +6,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.body_model import angles, fit, pose, segments, shape, start
+from courtside.body_model import angles, fit, held, pose, segments, shape, start
 from courtside.body_model.fit import Spread
 from courtside.body_model.pose import Pose
 from courtside.body_model.shape import Shape
+from courtside.records.footwork import Contacts
 from courtside.records.keypoints import missing_reason, skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.keypoints.skeletal_motion import SkeletalMotion
 
 UNKNOWN_M = 0.03  # ASSUME: standard deviation per axis that a joint without a network's has
+# And that points of the hand have: fingers bend, and the model's hand does not. Chosen on
+# `players-dev`: elbows gain, and the hand's direction does not lose.
+HAND_M = 0.1
 # Fits, with their steps, between which the lengths of segments are fitted, and the points of feet,
 # hands and head placed.
 ROUNDS = (3, 3, 6)
@@ -35,10 +39,12 @@ def errors(points: Keypoints3D, person: int) -> tuple[NDArray, NDArray]:
     """Return the covariance (T, J, 3, 3) m2 by which one person's joints count, and their noise.
 
     Filled gaps have no stated noise: they count with twice the joint's usual one. Joints that the
-    network's errors are unknown of get `UNKNOWN_M`.
+    network's errors are unknown of get `UNKNOWN_M`, or `HAND_M`.
     """
     network, own = points.covariance_network[person], points.covariance_2d[person]
-    variance = np.where(np.isfinite(network), network, UNKNOWN_M**2 * np.eye(3))
+    parts = [joint.partition("_")[2] for joint in points.joints.tolist()]
+    sigma = np.where(np.isin(parts, segments.POINTS["hand"]), HAND_M, UNKNOWN_M)
+    variance = np.where(np.isfinite(network), network, (sigma**2)[:, None, None] * np.eye(3))
     around = np.ma.median(np.ma.masked_invalid(np.trace(own, axis1=2, axis2=3)), axis=0) / 3
     unknown = 4 * np.ma.filled(around, UNKNOWN_M**2)[:, None, None] * np.eye(3)
     noise = np.where(np.isfinite(own), own, unknown)
@@ -46,9 +52,17 @@ def errors(points: Keypoints3D, person: int) -> tuple[NDArray, NDArray]:
 
 
 def person(
-    points: Keypoints3D, at: int, cutoff_hz: Mapping[str, float], height_m: float | None = None
+    points: Keypoints3D,
+    at: int,
+    cutoff_hz: Mapping[str, float],
+    height_m: float | None = None,
+    contacts: Contacts | None = None,
 ) -> Fitted | None:
-    """Fit one person's frames from the first to the last that is seen; None if none is."""
+    """Fit one person's frames from the first to the last that is seen; None if none is.
+
+    `contacts`, of the same persons and frames, hold heels and toes where they stand: in the last
+    round alone, for held earlier they cost time and change nothing.
+    """
     names, limbs = points.joints.tolist(), list(skeleton.JOINTS)
     limb = points.xyz[at][:, [names.index(joint) for joint in limbs]]
     seen = np.flatnonzero(np.isfinite(limb).all(axis=2).sum(axis=1) >= LEAST)
@@ -70,10 +84,15 @@ def person(
     data = fit.Data(np.nan_to_num(xyz[:, body.index]), information, noise[:, body.index])
     weight = np.trace(information, axis1=2, axis2=3)
     hz = fit.cutoffs(model, cutoff_hz)
+    stand = None
+    if contacts is not None:
+        own, floor_m = contacts.held[at, frames], contacts.floor_m[at]
+        stand = held.of_contacts(body.joints, own, floor_m, points.rate_hz)
     for number, steps in enumerate(ROUNDS, start=1):
         origin, turned = pose.forward(model, found, body.offsets)
         body = shape.with_points(body, origin, turned, data.xyz, weight)
-        found = fit.fit(model, body, data, found, hz, points.rate_hz, steps)
+        on = stand if number == len(ROUNDS) else None
+        found = fit.fit(model, body, data, found, hz, points.rate_hz, steps, on)
         if number < len(ROUNDS):
             body = fit.lengthened(model, body, data, found)
     return Fitted(frames, body, found, fit.spread(model, body, data, found))

@@ -14,7 +14,7 @@ from courtside.footwork.tracks import Track
 
 # Chosen on the takes of players-dev, and on hops that the virtual gym plans. Standard deviations
 # per axis and mean heights, beside what the stated errors add: m/s and m.
-STILL_M_S, STILL_M = 0.15, 0.012  # of a point that stands
+STILL_M_S, STILL_M = 0.15, 0.008  # of a point that stands
 ODD, ODD_TIMES = 0.01, 3.0  # share and widening of a standing point's gross errors
 SWING_M_S = (0.6, 1.5, 4.0)  # of a swinging point: shuffling, stepping and running alike
 SWING_M, SWING_SD_M = 0.05, 0.05  # its height
@@ -32,7 +32,7 @@ START = np.array([0.1, 0.1, 0.7, 0.1])
 
 
 def probability(track: Track) -> NDArray:
-    """Return the posterior probability (N,) that the foot stands, at the times of the track.
+    """Return posterior probabilities (N, 3): that the foot, its heel and its toe stand.
 
     Errors of filtered points last: of the grid's times, two per period of the cut-off count as
     independent.
@@ -41,7 +41,8 @@ def probability(track: Track) -> NDArray:
     weight = min(1.0, 2 * track.cutoff_hz * step_s)
     moves = RATES * step_s
     moves += np.diag(1 - moves.sum(axis=1))
-    return 1 - _smoothed(weight * _log_densities(track), moves)[:, 0]
+    swing, heel, flat, toe = _smoothed(weight * _log_densities(track), moves).T
+    return np.stack([1 - swing, heel + flat, flat + toe], axis=1)
 
 
 def _log_densities(track: Track) -> NDArray:

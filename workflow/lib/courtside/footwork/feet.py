@@ -19,7 +19,7 @@ def find(
     without heel and toe nothing is known.
     """
     n_people, n_frames = points.xyz.shape[:2]
-    probability = np.full((n_people, n_frames, 2), np.nan)
+    probability = np.full((n_people, n_frames, 2, 3), np.nan)
     floor = np.full((n_people, 2, 2), np.nan)
     people = {}
     for at, person in enumerate(points.person_id.tolist()):
@@ -29,7 +29,12 @@ def find(
             feet[side], probability[at, :, foot] = stances.of_tracks(found, n_frames)
         people[person] = feet, leg_length(points, at)
     contacts = footwork.Contacts(
-        points.person_id, np.array(footwork.FEET), points.time_s, probability, floor
+        points.person_id,
+        np.array(footwork.FEET),
+        points.time_s,
+        probability[..., 0],
+        probability[..., 1:],
+        floor,
     )
     return contacts, *kinds.tables(people)
 

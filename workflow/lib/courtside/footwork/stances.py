@@ -12,7 +12,7 @@ from courtside.footwork.tracks import Track
 # Fitted on the takes of players-dev. A foot comes to rest smoothly, and its last millimetres are
 # as slow as a standing foot's noise: contact seems to begin early and to end late, the more so the
 # slower the swing: by these metres over its highest speed.
-LATE = {"onset": 0.10, "end": -0.05}
+LATE = {"onset": 0.075, "end": -0.05}
 SLOWEST_M_S = 1.2  # swings are taken for no slower
 # Standard deviation: of each boundary, s; metres over the swing's highest speed; and how many times
 # the spread of the posterior's own.
@@ -34,19 +34,23 @@ class Stance:
 
 
 def of_tracks(tracks: Sequence[Track], n_frames: int) -> tuple[list[Stance], NDArray]:
-    """Return the stances of one foot in order of time, and its probability of contact (T,)."""
-    found, frames = [], np.full(n_frames, np.nan)
+    """Return the stances of one foot in order of time, and its probabilities (T, 3) of contact.
+
+    Of the foot, its heel and its toe.
+    """
+    found, frames = [], np.full((n_frames, 3), np.nan)
     for track in tracks:
         stances, frames[track.frames] = _of_track(track, contact.probability(track))
         found += stances
     return found, frames
 
 
-def _of_track(track: Track, probability: NDArray) -> tuple[list[Stance], NDArray]:
-    """Return the stances in a run of frames, and the probability of contact at its frames.
+def _of_track(track: Track, posterior: NDArray) -> tuple[list[Stance], NDArray]:
+    """Return the stances in a run of frames, and the probabilities of contact at its frames.
 
-    That is the posterior, its times moved as the onsets and ends are.
+    Those are the posterior (N, 3), its times moved as the onsets and ends are.
     """
+    probability = posterior[:, 0]
     time_s, stands = track.time_s, probability > 0.5
     at = np.flatnonzero(stands[1:] != stands[:-1])
     share = (0.5 - probability[at]) / (probability[at + 1] - probability[at])
@@ -64,7 +68,8 @@ def _of_track(track: Track, probability: NDArray) -> tuple[list[Stance], NDArray
     moved_s = np.maximum.accumulate(moved_s)  # a very short stance may vanish
     before, after = time_s[:1] - 1, time_s[-1:] + 1
     moved, raw = (np.concatenate([before, each, after]) for each in (moved_s, raw_s))
-    frames = np.interp(np.interp(time_s[:: track.step], moved, raw), time_s, probability)
+    at_s = np.interp(time_s[:: track.step], moved, raw)
+    frames = np.stack([np.interp(at_s, time_s, each) for each in posterior.T], axis=1)
     first = 0 if stands[0] else 1
     bounds = np.concatenate([[np.nan], moved_s, [np.nan]])
     sigmas = np.concatenate([[np.nan], sigma_s, [np.nan]])

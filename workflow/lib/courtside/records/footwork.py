@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from courtside.records import npz, tables
 from courtside.study.errors import StrPath
 
-FORM = "courtside contacts 1"
+FORM = "courtside contacts 2"
 FEET = ("left", "right")
 # Of a stance: how the foot came to it; `stand`: it stood when the person was first seen.
 KINDS = ("stand", "step", "lunge", "split_step", "jump")
@@ -41,6 +41,7 @@ class Contacts:
     time_s: Annotated[NDArray, "float T"]  # of the skeletons, on the reference clock
     # That the foot is in contact with the floor, 0 to 1; NaN where the foot is not known
     probability: Annotated[NDArray, "float P T S"]
+    held: Annotated[NDArray, "float P T S 2"]  # that its heel and its toe stand, likewise
     # How high heel and toe stand above z = 0 while the foot is flat, metres; NaN where unknown
     floor_m: Annotated[NDArray, "float P S 2"]
 

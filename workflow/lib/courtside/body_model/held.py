@@ -1,0 +1,76 @@
+"""Points of standing feet, which keep their places on the floor from frame to frame."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.body_model import pose as poses
+from courtside.body_model.pose import Pose
+from courtside.body_model.segments import SIDES, Model
+from courtside.body_model.shape import Shape
+from courtside.records.keypoints.skeleton import TOES
+
+# Chosen on `players-dev`: held by 0.005, ankles err more around landings; by 0.05, standing feet
+# move twice as far.
+DRIFT_M = 0.02  # per axis, of a standing point within one second
+FLOOR_M = 0.01  # of a standing point's height
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """Heels and toes that stand, by how much they count; 0 where they swing."""
+
+    points: NDArray  # (H,) int: of the shape's
+    between: NDArray  # (T - 1, H) 1/m2: of the squared way to the next frame
+    floor: NDArray  # (T, H) 1/m2: of the squared height above `height`
+    height: NDArray  # (H,) m
+
+
+def of_contacts(
+    joints: Sequence[str], stands: NDArray, floor_m: NDArray, rate_hz: float
+) -> Held | None:
+    """Return what contacts hold; None if the shape has no heels and toes.
+
+    `stands` (T, 2, 2) are the probabilities that heel and toe of each foot stand, `floor_m` (2, 2)
+    their heights of the flat foot: of `records.footwork.Contacts`, NaN where unknown. What two
+    frames say counts with the probability that the point stands in both.
+    """
+    toe = next((name for name in TOES if f"left_{name}" in joints), None)
+    if toe is None or "left_heel" not in joints:
+        return None
+    points = [list(joints).index(f"{side}_{part}") for side in SIDES for part in ("heel", toe)]
+    chance = np.nan_to_num(stands).reshape(len(stands), -1)
+    return Held(
+        np.array(points),
+        chance[1:] * chance[:-1] * rate_hz / DRIFT_M**2,
+        chance * np.isfinite(floor_m).ravel() / FLOOR_M**2,
+        np.nan_to_num(floor_m).ravel(),
+    )
+
+
+def linearised(
+    model: Model, shape: Shape, held: Held, pose: Pose
+) -> tuple[NDArray, NDArray, NDArray]:
+    """Return normal matrix (T, D, D) and right side (T, D), and blocks (T - 1, D, D) below it.
+
+    A block is of the next frame's rows and the frame's own columns.
+    """
+    origin, turned = poses.forward(model, pose, shape.offsets)
+    segment = shape.segment_of[held.points]
+    points = poses.placed(origin, turned, segment, shape.places[held.points])
+    by = poses.derivatives(model, origin, turned, points, segment)
+    flat = by.reshape(len(by), -1, by.shape[3])
+    before, after = flat[:-1], flat[1:]
+    weight = np.repeat(held.between, 3, axis=1)
+    pull = weight * np.diff(points, axis=0).reshape(weight.shape)
+    weighted = weight[..., None] * after
+    up, away = by[:, :, 2], held.height - points[..., 2]
+    normal = np.swapaxes(up, 1, 2) @ (held.floor[..., None] * up)
+    normal[1:] += np.swapaxes(after, 1, 2) @ weighted
+    normal[:-1] += np.swapaxes(before, 1, 2) @ (weight[..., None] * before)
+    right = np.einsum("thd,th->td", up, held.floor * away)
+    right[1:] -= np.einsum("tnd,tn->td", after, pull)
+    right[:-1] += np.einsum("tnd,tn->td", before, pull)
+    return normal, right, -np.swapaxes(weighted, 1, 2) @ before
