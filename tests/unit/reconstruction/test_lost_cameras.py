@@ -50,7 +50,7 @@ def test_a_camera_moved_between_takes_is_named_with_them():
     takes = {"a": take(TRUE, TRUE), "b": take(TRUE, [*TRUE[:3], wrong(TRUE[3])], ["c3"])}
     found = lost_cameras.recover(TRUE, takes, LIMITS, SKELETON, None)
     (line,) = found.lines
-    assert line.startswith("camera c3: ") and "none in b, others in a: it was moved" in line
+    assert line.startswith("camera c3: ") and "none in b, others in a: was it moved?" in line
     assert found.cameras is None
 
 

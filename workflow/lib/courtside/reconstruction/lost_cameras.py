@@ -38,21 +38,9 @@ def recover(
     """Find cameras again that agree with nobody in any take, and associate people with them."""
     names = [camera.name for camera in cameras]
     parts = {take: common_views.of_footage(names, seen) for take, seen in takes.items()}
-    filming = {take: {one.camera.name for one in seen} for take, seen in takes.items()}
-    lost = {take: resection.lost(cameras, part, limits) for take, part in parts.items()}
-    which, lines = [], []
-    for at, name in enumerate(names):
-        of = [take for take in takes if name in filming[take]]
-        gone = [take for take in of if at in lost[take]]
-        if gone and len(gone) == len(of):
-            which.append(at)
-        elif gone:
-            lines.append(
-                f"camera {name}: expected people where the other cameras see them, found next to "
-                f"none in {', '.join(gone)}, others in {', '.join(set(of) - set(gone))}: it was "
-                "moved between takes; put those takes in a session with a calibration of its own"
-            )
+    which, lines = _lost(cameras, takes, parts, limits)
     found = found_again(cameras, which, takes, parts, limits)
+    lines = [] if which else lines  # a wrong camera disturbs the others, too
     lines += [
         f"camera {names[at]}: expected people in its pictures where the others see them, found "
         "next to none, and people do not tell where it stands: check its calibration"
@@ -69,6 +57,31 @@ def recover(
             continue
         parts[take] = common_views.of_footage(names, again)
     return Recovered(parts, found, which, lines)
+
+
+def _lost(
+    cameras: Sequence[Camera],
+    takes: Mapping[str, Sequence[Footage]],
+    parts: Mapping[str, Seen],
+    limits: Limits,
+) -> tuple[list[int], list[str]]:
+    """Return the cameras that agree with nobody in all takes, and lines on those lost in some."""
+    filming = {take: {one.camera.name for one in seen} for take, seen in takes.items()}
+    lost = {take: resection.lost(cameras, part, limits) for take, part in parts.items()}
+    which, lines = [], []
+    for at, camera in enumerate(cameras):
+        of = [take for take in takes if camera.name in filming[take]]
+        gone = [take for take in of if at in lost[take]]
+        if gone and len(gone) == len(of):
+            which.append(at)
+        elif gone:
+            others = ", ".join(take for take in of if take not in gone)
+            lines.append(
+                f"camera {camera.name}: expected people where the other cameras see them, found "
+                f"next to none in {', '.join(gone)}, others in {others}: was it moved? Put those "
+                "takes in a session with a calibration of its own"
+            )
+    return which, lines
 
 
 def found_again(

@@ -100,5 +100,5 @@ def line(before: Camera, after: Camera) -> str:
     return (
         f"camera {before.name}: expected people in its pictures where the others see them, found "
         f"next to none; by them it stands {100 * moved_m:.0f} cm away, turned by "
-        f"{np.degrees(rotations.angles(turn)):.1f} degrees: check its calibration"
+        f"{np.degrees(rotations.angles(turn)):.1f} degrees: check its calibration, and theirs"
     )
