@@ -110,8 +110,8 @@ def unchanged(cameras: Sequence[Camera], known: CameraCovariance, why: str) -> F
 def _mended(cameras, calibrated, seen: Seen, found_again) -> tuple[list[str], list[Camera]]:
     """Return the faults that explain how people's joints disagree, and the cameras without them."""
     if found_again is not None:
-        pairs = zip(cameras, found_again, strict=True)
-        return [resection.line(old, new) for old, new in pairs if old is not new], found_again
+        both = zip(cameras, found_again, strict=True)
+        return [resection.line(old, new) for old, new in both if old is not new], found_again
     if calibrated is None:
         return [], list(cameras)
     pairs = list(zip(calibrated, cameras, strict=True))
