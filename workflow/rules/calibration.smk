@@ -191,6 +191,7 @@ rule refine_cameras:
         clicks=lambda w: session_of(w).placed and [] or session_of(w).court_points or [],
         court=of_job(Job.court_file),
         static=lambda w: session_of(w).static_points or [],
+        skeleton=of_job(calibration.first_skeleton),
         seen=of_job(calibration.refining_files),
     output:
         cameras_toml=paths.CAMERAS,

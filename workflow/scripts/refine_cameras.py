@@ -5,16 +5,16 @@ import numpy as np
 from courtside.calibration import file_formats
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court import quality
-from courtside.calibration.people import adjustment, knocks, prior, refinement
+from courtside.calibration.people import adjustment, knocks, prior, refinement, resection
 from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.held_out import Points
-from courtside.calibration.people.views import joined
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.geometry import camera as camera_models
-from courtside.reconstruction import common_views
+from courtside.reconstruction import lost_cameras
 from courtside.records import tables
-from courtside.records.cameras import clicks, knock_table
+from courtside.records.cameras import clicks, footage, knock_table
 from courtside.records.devices import clocks
+from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json
@@ -30,15 +30,19 @@ def main(
     if paths.covariance:
         known = camera_covariance.read(paths.covariance).of([camera.name for camera in base])
     report = {"calibration": calibration, "takes": [take["sync"] for take in takes]}
-    rows = []
+    rows, lost, limits = [], [], Limits.of(views)
     try:
-        parts = [seen_of(paths, base, known, take, limits(views), rows) for take in takes]
-        told = joined(parts), limits(views), points(paths, base, weights)
+        again = people_of(paths, base, takes, limits)
+        known, lost = resection.widened(known, base, again.which), again.lines
+        read = {take["take"]: clocks.read(take["sync"])[1] for take in takes}
+        seen, rows = knocks.in_all(again.cameras or base, known, again.parts, read, limits)
+        told = seen, limits, points(paths, base, weights)
         theirs = in_file(paths.calibration, names, override, unit)
-        found = refinement.refine(base, known, *told, calibrated=theirs)
+        kept = {"calibrated": theirs, "found_again": again.cameras}
+        found = refinement.refine(base, known, *told, **kept)
     except InputError as error:
         found = refinement.unchanged(base, known, str(error))
-    said = [found.line, *found.wrong, *knocks.lines(rows)]
+    said = [found.line, *found.wrong, *lost, *knocks.lines(rows)]
     for line in said:
         log.logger.warning("%s", line)
     report |= {"taken": found.taken, "verdicts": found.verdicts, "wrong": found.wrong}
@@ -51,17 +55,14 @@ def main(
     write_json(quality_json, {**report, "warnings": said})
 
 
-def seen_of(paths, base, known, take, limits, rows):
-    """Return what cameras see in a take, knocks that are taken undone; add all found to `rows`."""
-    seen = common_views.of_take(paths.cameras, [camera.name for camera in base], take)
-    found, clock = knocks.find(base, known, seen, limits), clocks.read(take["sync"])[1]
-    rows += [{"take": take["take"]} | knocks.row(one, base, clock) for one in found]
-    return knocks.undone(base, seen, found)
-
-
-def limits(views):
-    """Return which views count, as for the triangulation."""
-    return Limits(views["min_score"], views["max_error_share"], views["fade_share"])
+def people_of(paths, base, takes, limits):
+    """Return what cameras see in each take; cameras that agree with nobody are found again."""
+    filmed = {
+        take["take"]: footage.read(paths.cameras, take["pose2d"], take["people"], take["sync"])
+        for take in takes
+    }
+    court = court_files.read(paths.court) if paths.court else None
+    return lost_cameras.recover(base, filmed, limits, skeleton.read(paths.skeleton), court)
 
 
 def expected_cm(court_yaml, cameras, covariance):

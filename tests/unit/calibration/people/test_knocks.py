@@ -78,3 +78,19 @@ def test_a_camera_that_sees_nobody_of_the_others_hinders_no_search(monkeypatch):
     blind[3] = np.nan
     found = knocks.find(TRUE, KNOWN, replace(SEEN, xy=blind), LIMITS)
     assert all(one.camera != 3 for one in found)
+
+
+def test_a_camera_turned_between_takes_has_a_pose_in_each(knocked, monkeypatch):
+    monkeypatch.setattr(knocks, "MOST", 1)
+    after = knocked.time_s >= AT_S
+    takes = {"a": knocked.of(~after), "b": knocked.of(after)}
+    seen, rows = knocks.between(TRUE, KNOWN, takes, LIMITS)
+    (row,) = rows
+    assert (row["take"], row["after"], row["camera"], row["time_s"]) == ("b", "a", "c2", 0.0)
+    turn = [row[f"turn_{axis}_deg"] for axis in "xyz"]
+    assert row["taken"] == 1 and np.abs(turn - np.degrees(TURN)).max() < 0.04
+    (line,) = knocks.lines([row, {**row, "take": "c"}])
+    assert line.startswith("camera c2 was turned between takes a and b by 0.4")
+    assert np.median(np.abs(seen.xy - SEEN.xy)) < 0.5 < np.abs(knocked.xy - SEEN.xy).max()
+    one, none = knocks.between(TRUE, KNOWN, {"a": SEEN}, LIMITS)
+    assert none == [] and len(one.track) == len(SEEN.track)

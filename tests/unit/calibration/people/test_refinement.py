@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from courtside.calibration.file_check import faults
-from courtside.calibration.people import prior, refinement
+from courtside.calibration.people import prior, refinement, resection
 from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.held_out import Points
 from courtside.study.errors import InputError
@@ -68,3 +68,23 @@ def test_joints_that_err_alike_all_the_time_are_no_proof_by_themselves():
     found = refinement.refine(base, KNOWN, biased, LIMITS, Points())
     assert found.taken == "base" and found.verdicts["refined"]["joints"] == "better"
     assert "click points at rest" in found.line
+
+
+def test_a_small_gain_of_joints_alone_is_how_the_network_errs():
+    found = refinement.refine(TRUE, KNOWN, SEEN, LIMITS, Points())
+    assert found.taken == "base" and found.cameras == TRUE
+    assert "%, expected 5 %; click points" in found.verdicts["refined"]["size of the change"]
+
+
+def test_a_camera_found_again_is_told_adjusted_and_taken():
+    shift = np.array([[0, 0, 0, 0.5], [0, 0, 0, 0], [0, 0, 0, 0]])
+    lost, near = (
+        replace(TRUE[2], cam_from_world=TRUE[2].cam_from_world + part * shift) for part in (1, 0.1)
+    )
+    base, again = [*TRUE[:2], lost, TRUE[3]], [*TRUE[:2], near, TRUE[3]]
+    known = resection.widened(KNOWN, base, [2])
+    found = refinement.refine(base, known, SEEN, LIMITS, Points(), found_again=again)
+    assert found.taken == "refined" and found.verdicts["mended"] == {"joints": "better"}
+    assert found.wrong[0].startswith("camera c2: expected people in its pictures")
+    off_m = np.linalg.norm(found.cameras[2].centre_in_world - TRUE[2].centre_in_world)
+    assert off_m < 0.03

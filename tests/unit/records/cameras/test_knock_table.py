@@ -17,6 +17,7 @@ ROW = {
     "joints_percent": -31.0,
     "joints": "better",
     "taken": 1,
+    "after": "",
 }
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from courtside.calibration.people.views import Seen, joined
 from courtside.reconstruction import person_height, resampling
 from courtside.records.cameras import footage
+from courtside.records.cameras.footage import Footage
 from courtside.records.keypoints import skeleton
 from courtside.study.errors import StrPath
 
@@ -26,7 +27,13 @@ def of_takes(
 
 def of_take(cameras_toml: StrPath, names: Sequence[str], take: Mapping[str, Any]) -> Seen:
     """Return what they saw in one take, of the files above."""
-    seen = footage.read(cameras_toml, take["pose2d"], take["people"], take["sync"])
+    return of_footage(
+        names, footage.read(cameras_toml, take["pose2d"], take["people"], take["sync"])
+    )
+
+
+def of_footage(names: Sequence[str], seen: Sequence[Footage]) -> Seen:
+    """Return what they saw in one take, whose people are associated."""
     each, clocks = [one.view for one in seen], [one.clock for one in seen]
     time_s = resampling.common_times(each, clocks)
     joints = [list(each[0].joints).index(name) for name in skeleton.JOINTS]

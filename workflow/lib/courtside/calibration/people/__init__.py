@@ -4,6 +4,7 @@ views: `Seen`, `joined`, `placed`, `check`: joints at common times, blocks of ti
 prior: `stated`, `knowledge`: what is known of cameras before
 adjustment: `refine`, `Clicks`, `court_clicks`, `Limits`: cameras and joints adjusted together
 held_out: `score`, `verdicts`, `better`: whether cameras are better, by what the fit did not see
-knocks: `find`, `undone`, `row`, `lines`: cameras knocked during a take have two poses
+knocks: `find`, `in_all`, `between`, `undone`, `row`, `lines`: cameras knocked have two poses
+resection: `lost`, `find`, `widened`, `line`: cameras that agree with nobody, found again
 refinement: `refine`, `unchanged`: which cameras are taken, what was wrong, the table
 """

@@ -5,8 +5,9 @@ linear in frames. People do not tell where the world begins, how it is turned an
 what is known of the cameras before, or court points, hold that.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,6 +71,11 @@ class Limits:
     score: float
     limit: float
     fade: float
+
+    @classmethod
+    def of(cls, views: Mapping[str, Any]) -> "Limits":
+        """Return those of the step `triangulate` of the configuration."""
+        return cls(views["min_score"], views["max_error_share"], views["fade_share"])
 
 
 @dataclass(frozen=True, eq=False)

@@ -97,16 +97,21 @@ def _people(found: Score, cameras, seen: Seen, block: NDArray, limits: Limits) -
     found.accepted.append(np.where(np.nan_to_num(score) >= limits.score, accepted, np.nan))
 
 
-def verdicts(before: Score, after: Score) -> dict[str, str]:
-    """Return by `joints`, `court`, `static`: whether the second is better, worse or neither.
-
-    Joints by the mean over blocks of the logarithm of the ratio, which must be 2 standard errors
-    from 0. What nothing is known of is left out.
-    """
+def change(before: Score, after: Score) -> tuple[float, float]:
+    """Return the mean over blocks of the logarithm of the ratio of joints, and how sure it is."""
     blocks = [b for b in before.share if np.isfinite([before.share[b], after.share[b]]).all()]
     ratio = np.log([after.share[b] / before.share[b] for b in blocks])
     sure = SURE * ratio.std(ddof=1) / np.sqrt(len(ratio)) if len(ratio) > 1 else np.inf
-    found = {"joints": _word(float(ratio.mean()) if len(ratio) else 0.0, float(sure))}
+    return float(ratio.mean()) if len(ratio) else 0.0, float(sure)
+
+
+def verdicts(before: Score, after: Score) -> dict[str, str]:
+    """Return by `joints`, `court`, `static`: whether the second is better, worse or neither.
+
+    Joints by their `change`, which must be 2 standard errors from 0. What nothing is known of is
+    left out.
+    """
+    found = {"joints": _word(*change(before, after))}
     for kind in ("court", "static"):
         old, new = before.rms_px(kind), after.rms_px(kind)
         if np.isfinite([old, new]).all():

@@ -1,9 +1,10 @@
-"""Cameras knocked during a take: found, measured and judged by the people that they film.
+"""Cameras knocked during a take or between takes: found, measured and judged by people.
 
 A knocked camera turned in place: it has one pose before and another after. In each row, the joints
 seen by two cameras give epipolar residuals, linear in the turn of either camera. Their normal
 equations, summed over time, tell for each camera and each time how much better a step fits than
-none: the cost is linear in rows. No video is needed.
+none: the cost is linear in rows. No video is needed. Takes in a row are one take whose knocks, if
+any, are where takes meet.
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 from courtside.calibration.file_check import residuals
 from courtside.calibration.people import adjustment, held_out, prior
 from courtside.calibration.people.adjustment import LOSS, MEDIAN_TO_SIGMA, Limits
-from courtside.calibration.people.views import Seen, check
+from courtside.calibration.people.views import Seen, check, joined
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance
 from courtside.geometry import camera as camera_models
@@ -71,9 +72,15 @@ Equations = tuple[NDArray, NDArray]
 
 
 def find(
-    cameras: Sequence[Camera], known: CameraCovariance, seen: Seen, limits: Limits
+    cameras: Sequence[Camera],
+    known: CameraCovariance,
+    seen: Seen,
+    limits: Limits,
+    at_s: Sequence[float] | None = None,
 ) -> list[Knock]:
     """Find the knocks of a take, the clearest first, each in keypoints without those before it.
+
+    They can be at any time, or at the times `at_s`.
 
     Steps are looked for with the cameras as they are and as people refine them: errors of cameras
     change with the place of people. Those that stand out are adjusted with all cameras, and taken
@@ -86,7 +93,7 @@ def find(
     except InputError:  # told where all takes are checked together
         return found
     while len(found) < MOST:
-        tried = _candidates(cameras, known, seen, limits)
+        tried = _candidates(cameras, known, seen, limits, at_s)
         if not tried:
             break
         one_pose = _halves(cameras, known, seen, limits, None)
@@ -102,13 +109,60 @@ def find(
     return found
 
 
+def in_all(
+    cameras: Sequence[Camera],
+    known: CameraCovariance,
+    takes: Mapping[str, Seen],
+    read: Mapping[str, Mapping[str, Clock]],
+    limits: Limits,
+) -> tuple[Seen, list[dict[str, Any]]]:
+    """Return what was seen in all takes without knocks, and rows of all found; `read` has clocks.
+
+    Takes are in the order of time.
+    """
+    rows, still = [], {}
+    for take, seen in takes.items():
+        found = find(cameras, known, seen, limits)
+        rows += [{"take": take, **row(one, cameras, read[take])} for one in found]
+        still[take] = undone(cameras, seen, found)
+    seen, moves = between(cameras, known, still, limits)
+    return seen, rows + moves
+
+
+def between(
+    cameras: Sequence[Camera],
+    known: CameraCovariance,
+    takes: Mapping[str, Seen],
+    limits: Limits,
+) -> tuple[Seen, list[dict[str, Any]]]:
+    """Return what was seen in all takes, in their order, without knocks between them, and these.
+
+    A row for each take from the knock on: its camera was turned before the take began.
+    """
+    names, parts, start_s = list(takes), [], [0.0]
+    for part in takes.values():
+        first, last = part.time_s.min(initial=np.inf), part.time_s.max(initial=-np.inf)
+        parts.append(replace(part, time_s=part.time_s - first + start_s[-1]))
+        start_s.append(start_s[-1] + max(last - first, 0.0) + BLOCK_S)
+    seen, at_s, rows = joined(parts), start_s[1:-1], []
+    found = find(cameras, known, seen, limits, at_s) if at_s else []
+    for knock in found:
+        after = at_s.index(knock.time_s)
+        told = row(knock, cameras, {}) | {"after": names[after]}
+        rows += [{"take": name, **told} for name in names[after + 1 :]]
+    return undone(cameras, seen, found), rows
+
+
 def row(knock: Knock, cameras: Sequence[Camera], clocks: Mapping[str, Clock]) -> dict[str, Any]:
-    """Return a knock as a row of `records.cameras.knock_table`, but for its take."""
+    """Return a knock as a row of `records.cameras.knock_table`, but for its take.
+
+    Without the camera's clock it was before the take: its time is 0.
+    """
     camera = cameras[knock.camera].name
     turn, sigma = np.degrees(knock.turn), np.degrees(knock.sigma)
     return {
         "camera": camera,
-        "time_s": float(clocks[camera].from_reference(knock.time_s)),
+        "time_s": float(clocks[camera].from_reference(knock.time_s)) if clocks else 0.0,
         **{f"turn_{axis}_deg": float(size) for axis, size in zip("xyz", turn, strict=True)},
         **{f"sigma_{axis}_deg": float(size) for axis, size in zip("xyz", sigma, strict=True)},
         "joints_percent": 100 * knock.change,
@@ -118,17 +172,24 @@ def row(knock: Knock, cameras: Sequence[Camera], clocks: Mapping[str, Clock]) ->
 
 
 def lines(rows: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Return what rows of knocks that are taken say, a line each."""
-    found = []
+    """Return what rows of knocks that are taken say, a line each, of takes in a row the first."""
+    found, told = [], set()
     for row in (row for row in rows if row["taken"]):
+        if row.get("after"):
+            if (row["camera"], row["after"]) in told:
+                continue
+            told.add((row["camera"], row["after"]))
         turn, sigma = (
             np.linalg.norm([row[f"{what}_{axis}_deg"] for axis in "xyz"])
             for what in ("turn", "sigma")
         )
+        where = f"knocked at {row['time_s']:.2f} s of take {row['take']}"
+        if row.get("after"):
+            where = f"turned between takes {row['after']} and {row['take']}"
         found.append(
-            f"camera {row['camera']} was knocked at {row['time_s']:.2f} s of take {row['take']} by "
-            f"{turn:.2f} +- {sigma:.2f} deg: two poses, before and after, with which held-out "
-            f"joints disagree by {-row['joints_percent']:.0f} % less"
+            f"camera {row['camera']} was {where} by {turn:.2f} +- {sigma:.2f} deg: two poses, "
+            "before and after, with which held-out joints disagree by "
+            f"{-row['joints_percent']:.0f} % less"
         )
     return found
 
@@ -145,18 +206,20 @@ def undone(cameras: Sequence[Camera], seen: Seen, knocks: Sequence[Knock]) -> Se
     return replace(seen, xy=xy)
 
 
-def _candidates(cameras, known, seen: Seen, limits: Limits) -> list[_Step]:
+def _candidates(cameras, known, seen: Seen, limits: Limits, at_s) -> list[_Step]:
     """Return the clearest steps, each of another camera."""
     refined = _adjusted(cameras, known, seen.thinned(2 * ROWS_TO_JUDGE), limits, None).cameras
-    steps = [*_steps(cameras, seen, limits.score), *_steps(refined, seen, limits.score)]
+    steps = [step for some in (cameras, refined) for step in _steps(some, seen, limits.score, at_s)]
     best: dict[int, _Step] = {}
     for step in sorted(steps, key=lambda one: one.gain):
         best[step.camera] = step
     return list(best.values())[-MOST_TRIED:]
 
 
-def _steps(cameras: Sequence[Camera], seen: Seen, min_score: float) -> list[_Step]:
-    """Return the clearest step of each camera, where it stands out."""
+def _steps(
+    cameras: Sequence[Camera], seen: Seen, min_score: float, at_s: Sequence[float] | None
+) -> list[_Step]:
+    """Return each camera's clearest step, or those at given times, where they stand out."""
     equations = _equations(cameras, seen, min_score)
     times, row = np.unique(seen.time_s, return_inverse=True)
     order = np.argsort(row, kind="stable")
@@ -164,8 +227,9 @@ def _steps(cameras: Sequence[Camera], seen: Seen, min_score: float) -> list[_Ste
     matrix, right = (np.add.reduceat(part[:, order], first, axis=1) for part in equations)
     found = []
     for camera, gain in enumerate(_gains(matrix, right, times)):
-        if gain.max() > 0:
-            step = _step(equations, seen, camera, float(times[gain.argmax()]))
+        when = [float(times[gain.argmax()])] * bool(gain.max() > 0) if at_s is None else at_s
+        for time_s in when:
+            step = _step(equations, seen, camera, time_s)
             if step and step.gain >= LEAST_GAIN and np.linalg.norm(step.turn) >= LEAST_RAD:
                 found.append(step)
     return found

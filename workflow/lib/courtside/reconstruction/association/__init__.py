@@ -8,6 +8,7 @@ linking: `link`, `costs`, `follow`: candidates over time to persons, frames of r
 identity: `doubts`, `confidence`: where somebody could have been exchanged, and how likely
 lengths: `of_people`, `bones`: lengths of bones, by which people of different size differ
 associate: `associate`: everybody found; `on_frames`: rows on a camera's own frames
+everybody: `find`: everybody in the footage of a take
 marks: `locate`, `timelines`: sightings of subjects, found again among the persons
 naming: `name`: the subjects among the persons found; `lines`, `others`: what the log says
 """

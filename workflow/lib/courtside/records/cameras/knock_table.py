@@ -11,7 +11,7 @@ from courtside.study.errors import StrPath
 
 TURN = ("turn_x_deg", "turn_y_deg", "turn_z_deg")
 SIGMA = ("sigma_x_deg", "sigma_y_deg", "sigma_z_deg")
-COLUMNS = ("take", "camera", "time_s", *TURN, *SIGMA, "joints_percent", "joints", "taken")
+COLUMNS = ("take", "camera", "time_s", *TURN, *SIGMA, "joints_percent", "joints", "taken", "after")
 
 
 def write(path: StrPath, rows: Sequence[Mapping[str, Any]]) -> None:
@@ -20,7 +20,8 @@ def write(path: StrPath, rows: Sequence[Mapping[str, Any]]) -> None:
     `take`, `camera`, `time_s` (on the camera's own clock, of the first instant after it), a
     rotation vector from its axes before to those after (x right, y down, z forward) with standard
     deviations, `joints_percent` (change of how far held-out joints disagree), `joints` (better or
-    not better by it), `taken` (1: the camera has two poses).
+    not better by it), `taken` (1: the camera has two poses), `after` (the take after which the
+    camera was turned, before this one began; empty for a knock during this take).
     """
     tables.write(path, pd.DataFrame(rows, columns=list(COLUMNS)), float_format="%.6f")
 

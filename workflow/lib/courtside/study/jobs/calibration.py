@@ -128,6 +128,11 @@ def refining_files(job: Job) -> list[str]:
     return files_of(refining(job))
 
 
+def first_skeleton(job: Job) -> Path:
+    """Return the skeleton of the network whose people refine cameras."""
+    return job.study.skeleton_file(job.session.parameters["models"][0])
+
+
 def ties(job: Job) -> str:
     """Return the ties of the structure from motion that a calibration rests on."""
     return job.fill(paths.TIES, **vars(_way(job).variant))

@@ -1,0 +1,69 @@
+"""A camera in which nobody is associated is found again, and sees everybody afterwards."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from courtside.calibration.people.adjustment import Limits
+from courtside.reconstruction import lost_cameras
+from courtside.records.cameras.footage import Footage
+from courtside.records.devices.clocks import Clock
+from fixtures.cameras import scene
+from fixtures.people import found as people_found
+from fixtures.people import walker
+
+TRUE = scene.ring(4)
+LIMITS = Limits(score=0.05, limit=0.05, fade=0.067)
+SKELETON = walker.SKELETON
+
+
+def wrong(camera):
+    shift = camera.cam_from_world + np.array([[0, 0, 0, 0.8], [0, 0, 0, 0.1], [0, 0, 0, 0.3]])
+    return replace(camera, cam_from_world=shift)
+
+
+def take(cameras, shown, lost=()):
+    """Return the footage of a take whose pictures `shown` saw; nobody is associated in `lost`."""
+    record = walker.points(n_frames=60)
+    views = walker.views(record, shown)
+    index = {c.name: np.full((1, 60), -1 if c.name in lost else 0) for c in cameras}
+    people = people_found.people(index, ("p1",), model=record.model)
+    return [Footage(c, v, Clock(), None, people) for c, v in zip(cameras, views, strict=True)]
+
+
+def test_a_lost_camera_is_found_again_and_its_people_are_associated():
+    base = [*TRUE[:3], wrong(TRUE[3])]
+    found = lost_cameras.recover(base, {"a": take(base, TRUE, ["c3"])}, LIMITS, SKELETON, None)
+    assert found.which == [3] and found.lines == [] and found.cameras[:3] == base[:3]
+    off_m = np.linalg.norm(found.cameras[3].centre_in_world - TRUE[3].centre_in_world)
+    assert off_m < 0.02
+    assert np.isfinite(found.parts["a"].score[3]).mean() > 0.9
+
+
+def test_good_cameras_are_left_alone():
+    found = lost_cameras.recover(TRUE, {"a": take(TRUE, TRUE)}, LIMITS, SKELETON, None)
+    assert found.cameras is None and found.which == [] and found.lines == []
+
+
+def test_a_camera_moved_between_takes_is_named_with_them():
+    takes = {"a": take(TRUE, TRUE), "b": take(TRUE, [*TRUE[:3], wrong(TRUE[3])], ["c3"])}
+    found = lost_cameras.recover(TRUE, takes, LIMITS, SKELETON, None)
+    (line,) = found.lines
+    assert line.startswith("camera c3: ") and "none in b, others in a: was it moved?" in line
+    assert found.cameras is None
+
+
+def test_a_camera_that_people_do_not_find_is_named():
+    base = [*TRUE[:3], wrong(TRUE[3])]
+    seen = take(base, TRUE, ["c3"])
+    blind = replace(seen[3].tracklets, xy=np.full_like(seen[3].tracklets.xy, np.nan))
+    seen = [*seen[:3], replace(seen[3], tracklets=blind)]
+    found = lost_cameras.recover(base, {"a": seen}, LIMITS, SKELETON, None)
+    assert found.cameras is None and "people do not tell where it stands" in found.lines[0]
+
+
+@pytest.fixture(autouse=True)
+def _quiet():
+    with np.errstate(all="ignore"):
+        yield

@@ -1,0 +1,104 @@
+"""A camera that nobody's views agree with, found again by joints that the other cameras place."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.calibration.people.adjustment import Limits
+from courtside.calibration.people.views import Seen, placed
+from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance
+from courtside.geometry import rotations
+from courtside.geometry.camera import Camera, project
+
+# ASSUME: a share of a camera's views that agree with the others, below which its pose is wrong:
+# poses off by 0.3 degrees and 3 cm leave a half or more.
+LOST = 0.2
+FEWEST = 60  # joints seen, from some five rows
+MOST = 400  # more points say no more about a pose that is then adjusted
+WIDENED = 2.0  # times the limit of views: the other cameras, too, may be a little wrong
+AGREE = 0.5  # ASSUME: of the joints of the right person, with a wrong lens, too
+ITERATIONS = 300
+# ASSUME: standard deviations of a camera found again: its lens, too, may be that of another zoom.
+WIDE = {"rotation": np.radians(5), "place": 1.0, "focal": 0.1}
+
+
+def lost(cameras: Sequence[Camera], seen: Seen, limits: Limits) -> list[int]:
+    """Return the cameras of whose views next to none agree with those of the others."""
+    accepted = placed(cameras, seen, limits.score, limits.limit, limits.fade).accepted
+    usable = np.nan_to_num(seen.flat()[1]) >= limits.score
+    share = (accepted & usable).sum(axis=1) / np.maximum(usable.sum(axis=1), 1)
+    return [int(at) for at in np.flatnonzero(share < LOST)]
+
+
+def find(
+    camera: Camera, xyz: NDArray, tracklets: NDArray, limits: Limits
+) -> tuple[Camera, int] | None:
+    """Find a camera's pose by who is who; None where nobody fits.
+
+    `xyz` (K, T, J, 3) m has persons, `tracklets` (P, T, J, 2) px rows of the camera at the same
+    times, NaN where missing. The pair of most agreeing joints counts; also return how many.
+    """
+    best: tuple[Camera, int] | None = None
+    for row in tracklets:
+        extent_px = np.nanmax(row, axis=1, initial=-np.inf) - np.nanmin(row, axis=1, initial=np.inf)
+        extent_px = extent_px[np.isfinite(extent_px).all(axis=1)]
+        if not len(extent_px):
+            continue
+        limit_px = WIDENED * limits.limit * float(np.median(extent_px.max(axis=1)))
+        for person in xyz:
+            known = np.isfinite(person).all(axis=-1) & np.isfinite(row).all(axis=-1)
+            if known.sum() < FEWEST:
+                continue
+            found = _pose(camera, person[known], row[known], limit_px)
+            if found and found[1] >= AGREE * known.sum() and (not best or found[1] > best[1]):
+                best = found
+    return best
+
+
+def _pose(camera: Camera, xyz: NDArray, xy: NDArray, limit_px: float) -> tuple[Camera, int] | None:
+    """Return the camera by most of the joints (N, 3) m and (N, 2) px, and how many agree."""
+    some = np.linspace(0, len(xyz) - 1, min(len(xyz), MOST)).round().astype(int)
+    done, turn, shift, _ = cv2.solvePnPRansac(
+        xyz[some],
+        xy[some],
+        camera.K,
+        camera.dist,
+        iterationsCount=ITERATIONS,
+        reprojectionError=limit_px,
+        flags=cv2.SOLVEPNP_EPNP,
+    )
+    if not done:
+        return None
+    pose = np.column_stack([rotations.rotation_from_rodrigues(turn.ravel()), shift.ravel()])
+    found = replace(camera, cam_from_world=pose)
+    off_px = np.linalg.norm(project(found, xyz) - xy, axis=1)
+    return found, int((off_px <= limit_px).sum())
+
+
+def widened(
+    known: CameraCovariance, cameras: Sequence[Camera], which: Sequence[int]
+) -> CameraCovariance:
+    """Return what is known of cameras, where next to nothing is known of some."""
+    size, covariance = len(PARAMETERS), known.of([c.name for c in cameras]).covariance.copy()
+    for at in which:
+        own = slice(size * at, size * (at + 1))
+        variance = np.diag(covariance)[own].copy()
+        variance[:3], variance[3:6] = WIDE["rotation"] ** 2, WIDE["place"] ** 2
+        variance[PARAMETERS.index("f_px")] = (WIDE["focal"] * cameras[at].K[1, 1]) ** 2
+        covariance[own], covariance[:, own] = 0.0, 0.0
+        covariance[own, own] = np.diag(variance)
+    return CameraCovariance([c.name for c in cameras], covariance)
+
+
+def line(before: Camera, after: Camera) -> str:
+    """Return what is wrong with a camera that was found again."""
+    turn = after.cam_from_world[:, :3] @ before.cam_from_world[:, :3].T
+    moved_m = np.linalg.norm(after.centre_in_world - before.centre_in_world)
+    return (
+        f"camera {before.name}: expected people in its pictures where the others see them, found "
+        f"next to none; by them it stands {100 * moved_m:.0f} cm away, turned by "
+        f"{np.degrees(rotations.angles(turn)):.1f} degrees: check its calibration, and theirs"
+    )

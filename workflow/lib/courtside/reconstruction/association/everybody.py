@@ -1,0 +1,49 @@
+"""Everybody whom the cameras of a take see: its footage -> people."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from courtside.calibration.court.court import Court
+from courtside.reconstruction import resampling
+from courtside.reconstruction.association import associate, identity, lengths, scale
+from courtside.records.cameras.footage import Footage
+from courtside.records.keypoints.people import People
+from courtside.records.keypoints.skeleton import Skeleton
+
+
+def find(seen: Sequence[Footage], joints: Skeleton, court: Court | None) -> tuple[People, str]:
+    """Associate the tracklets of all cameras of a take; also return what the log says.
+
+    Raises `InputError` where people have not the size of people, or nobody can be placed.
+    """
+    views, clocks = [one.tracklets for one in seen], [one.clock for one in seen]
+    names = joints.groups["limbs"]
+    chosen = [joints.index(name) for name in names]
+    limbs = [replace(v, xy=v.xy[:, :, chosen], score=v.score[:, :, chosen]) for v in views]
+    time_s = resampling.common_times(views, clocks)
+    xy = [resampling.resample(v, time_s, c)[0] for v, c in zip(limbs, clocks, strict=True)]
+    trunk = [at for at, name in enumerate(names) if name.endswith(("hip", "shoulder"))]
+    scale.check([one.camera for one in seen], xy, names)
+    found = associate.associate(
+        [one.camera for one in seen],
+        xy,
+        time_s,
+        trunk=trunk,
+        mirror=[chosen.index(joints.mirror()[joint]) for joint in chosen],
+        court=court,
+        bones=lengths.bones(names),
+        clothing=[
+            resampling.nearest(v, time_s, c)[0].clothing for v, c in zip(views, clocks, strict=True)
+        ],
+    )
+    frames_s = [c.to_reference(v.time_s) for c, v in zip(clocks, views, strict=True)]
+    index = {
+        view.camera: associate.on_frames(rows, time_s, frame_s)
+        for view, rows, frame_s in zip(views, found.index, frames_s, strict=True)
+    }
+    ids = np.array([f"person-{at + 1}" for at in range(len(found.placed))])
+    sure = identity.confidence(found.doubts, len(ids))
+    kept = {key: getattr(found, key) for key in ("placed", "time_s", "path", "doubts")}
+    return People(views[0].model, ids, index=index, confidence=sure, **kept), found.line()

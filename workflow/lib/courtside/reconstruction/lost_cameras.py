@@ -1,0 +1,132 @@
+"""Cameras in which nobody is associated: found again by people, and people associated again."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from courtside.calibration.court.court import Court
+from courtside.calibration.people import resection
+from courtside.calibration.people.adjustment import Limits
+from courtside.calibration.people.views import Seen, placed
+from courtside.geometry.camera import Camera
+from courtside.reconstruction import common_views, resampling
+from courtside.reconstruction.association import everybody
+from courtside.records.cameras.footage import Footage
+from courtside.records.keypoints import skeleton
+from courtside.records.keypoints.skeleton import Skeleton
+from courtside.study.errors import InputError
+
+
+@dataclass(frozen=True, eq=False)
+class Recovered:
+    """What cameras see of people in each take, lost cameras found again."""
+
+    parts: dict[str, Seen]
+    cameras: list[Camera] | None  # None where none was lost, or found again
+    which: list[int]
+    lines: list[str]  # of cameras that are lost in some takes: these are not found again
+
+
+def recover(
+    cameras: Sequence[Camera],
+    takes: Mapping[str, Sequence[Footage]],
+    limits: Limits,
+    joints: Skeleton,
+    court: Court | None,
+) -> Recovered:
+    """Find cameras again that agree with nobody in any take, and associate people with them."""
+    names = [camera.name for camera in cameras]
+    parts = {take: common_views.of_footage(names, seen) for take, seen in takes.items()}
+    which, lines = _lost(cameras, takes, parts, limits)
+    found = found_again(cameras, which, takes, parts, limits)
+    lines = [] if which else lines  # a wrong camera disturbs the others, too
+    lines += [
+        f"camera {names[at]}: expected people in its pictures where the others see them, found "
+        "next to none, and people do not tell where it stands: check its calibration"
+        for at in which
+        if found[at] is cameras[at]
+    ]
+    which = [at for at in which if found[at] is not cameras[at]]
+    if not which:
+        return Recovered(parts, None, [], lines)
+    for take, seen in takes.items():
+        try:
+            again = associated(found, seen, joints, court)
+        except InputError:  # nobody is placed: told where all takes are checked together
+            continue
+        parts[take] = common_views.of_footage(names, again)
+    return Recovered(parts, found, which, lines)
+
+
+def _lost(
+    cameras: Sequence[Camera],
+    takes: Mapping[str, Sequence[Footage]],
+    parts: Mapping[str, Seen],
+    limits: Limits,
+) -> tuple[list[int], list[str]]:
+    """Return the cameras that agree with nobody in all takes, and lines on those lost in some."""
+    filming = {take: {one.camera.name for one in seen} for take, seen in takes.items()}
+    lost = {take: resection.lost(cameras, part, limits) for take, part in parts.items()}
+    which, lines = [], []
+    for at, camera in enumerate(cameras):
+        of = [take for take in takes if camera.name in filming[take]]
+        gone = [take for take in of if at in lost[take]]
+        if gone and len(gone) == len(of):
+            which.append(at)
+        elif gone:
+            others = ", ".join(take for take in of if take not in gone)
+            lines.append(
+                f"camera {camera.name}: expected people where the other cameras see them, found "
+                f"next to none in {', '.join(gone)}, others in {others}: was it moved? Put those "
+                "takes in a session with a calibration of its own"
+            )
+    return which, lines
+
+
+def found_again(
+    cameras: Sequence[Camera],
+    which: Sequence[int],
+    takes: Mapping[str, Sequence[Footage]],
+    parts: Mapping[str, Seen],
+    limits: Limits,
+) -> list[Camera]:
+    """Return the cameras, lost ones where people say that they stand; others as they were.
+
+    `parts` are what cameras see of the people in each take, by the others.
+    """
+    found = list(cameras)
+    for at in which:
+        tried = [_of_take(cameras, at, seen, parts[take], limits) for take, seen in takes.items()]
+        known = [one for one in tried if one]
+        if known:
+            found[at] = max(known, key=lambda one: one[1])[0]
+    return found
+
+
+def _of_take(cameras, at: int, seen: Sequence[Footage], part: Seen, limits: Limits):
+    """Return the camera by one take's people, and how many joints agree; None where it cannot."""
+    views = [one for one in seen if one.camera.name == cameras[at].name]
+    if not views:
+        return None
+    without = part.xy.copy()
+    without[at] = np.nan
+    wide = (resection.WIDENED * share for share in (limits.limit, limits.fade))
+    xyz = placed(cameras, replace(part, xy=without), limits.score, *wide).xyz
+    people, time_s = np.unique(part.track), np.unique(part.time_s)
+    tracklets = views[0].tracklets
+    joints = [list(tracklets.joints).index(name) for name in skeleton.JOINTS]
+    xy, score = resampling.resample(tracklets, time_s, views[0].clock)
+    xy = np.where((np.nan_to_num(score) >= limits.score)[..., None], xy, np.nan)[:, :, joints]
+    persons = xyz.reshape(len(people), len(time_s), len(joints), 3)
+    return resection.find(cameras[at], persons, xy, limits)
+
+
+def associated(
+    cameras: Sequence[Camera], seen: Sequence[Footage], joints: Skeleton, court: Court | None
+) -> list[Footage]:
+    """Return the footage of a take by these cameras, people associated again."""
+    known = {camera.name: camera for camera in cameras}
+    other = [replace(one, camera=known[one.camera.name], people=None) for one in seen]
+    people, _ = everybody.find(other, joints, court)
+    return [replace(one, people=people) for one in other]
