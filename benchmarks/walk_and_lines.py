@@ -148,11 +148,13 @@ def main():
     parser.add_argument("--seeds", type=int, default=12)
     parser.add_argument("--only", nargs="+", default=[])
     given = parser.parse_args()
-    rows = list(hall_rows(given.results, given.halls, given.seeds, given.only))
-    made = [["walk-lines", *row, 0, *MADE] for row in rows]
+    path, made = ROOT / stated.FOLDER / "walk_and_lines.csv", []
+    for row in hall_rows(given.results, given.halls, given.seeds, given.only):
+        made.append(["walk-lines", *row, 0, *MADE])
     if not given.only:
+        stated.write(path, made)
         made += [["walk-lines-player", *row, 0, *MADE] for row in player_rows(given.results)]
-        stated.write(ROOT / stated.FOLDER / "walk_and_lines.csv", made)
+        stated.write(path, made)
 
 
 if __name__ == "__main__":
