@@ -24,21 +24,20 @@ from courtside.calibration.court.joint_adjustment import Solution, Ties
 from courtside.calibration.court_lines import edges
 from courtside.calibration.court_lines.edges import Edges
 
-# Of an edge, standard deviation: chosen on development sessions. A line of 0.2 px is off by 0.35
-# px, one of 0.6 px by 0.1, one of 1.5 px or more by 0.05.
-FINE_PX = 0.03  # of a stretch of a wide line
-THIN_PX = 0.07  # of a line of 1 px, alike along it; more in proportion as the line is thinner
+# Of an edge, standard deviation. Chosen on development halls, so that the ellipsoids of the cameras
+# hold what they state: with two thirds of these the cameras are a tenth better, and too sure.
+FINE_PX = 0.05  # of a stretch of a wide line
+THIN_PX = 0.1  # of a line of 1 px, alike along it; more in proportion as the line is thinner
 ALIKE_M = 4.0  # ASSUME: of line, over which these errors become different
 LOSS = 3.0  # ASSUME: sigmas; scale of the Cauchy loss of a stretch
-# Chosen on development halls, whose lines are 3 to 10 mm off: how far, standard
-# deviation, in those that the court's file states of its points on the floor.
-PAINTING = 1.4
+# How far lines are off, in standard deviations that the court's file states of its points on the
+# floor: chosen as those above, on halls whose lines are 3 to 10 mm off.
+PAINTING = 2.0
 PAINTING_PRIOR = 6.0  # ASSUME: lines that the court's file counts for, on how far lines are off
 MAX_ITERATIONS = 30  # of each adjustment
 ROUNDS = 4  # of adjusting, weighing again, and estimating how far lines are off
 # ASSUME: sigmas, root mean square over a camera's edges, by which they may be off where the walk
-# has them; 0.5 to 1.4 in development sessions. Those of another court or of other lines are farther
-# off.
+# has them; 0.4 to 1 in development sessions. Those of another court or of other lines are farther.
 CONTRADICTED = 4.0
 
 
