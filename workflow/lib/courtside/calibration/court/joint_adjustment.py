@@ -284,11 +284,9 @@ def solve(
     network = selection.add_control_points(
         network, court.xyz, court.sigma_m, images, sigma_px=sigmas, loss_scale=click_loss
     )
-    knowledge = solver.scaled(ties.knowledge, 1 / factors.ties)
-    if lines is not None:
-        knowledge = solver.total([knowledge, lines])
+    known = [solver.scaled(ties.knowledge, 1 / factors.ties), *([lines] if lines else [])]
     network, normal = solver.adjust(
-        network, quadratic=knowledge, max_iterations=max_iterations, tolerance=1e-7
+        network, quadratic=solver.total(known), max_iterations=max_iterations, tolerance=1e-7
     )
     _check_placed(ties, normal)
     cameras = selection.cameras(network, ties.cameras, ties.sizes)

@@ -116,8 +116,9 @@ def of_edges(
     solved, trust = base, np.ones(sum(n_edges.values()))
     known = _linearised(base, found, court).knowledge(painting_m, trust)
     for _ in range(ROUNDS):
-        start = {"factors": base.factors, "start": solved.network}
-        solved = joint_adjustment.solve(ties, clicks, court, lines=known, **start, **weights)
+        solved = joint_adjustment.solve(
+            ties, clicks, court, lines=known, factors=base.factors, start=solved.network, **weights
+        )
         seen = _linearised(solved, found, court)
         trust = 1 / (1 + (seen.noise(painting_m, trust) / LOSS) ** 2)
         squares = seen.painted_squares(painting_m, trust, solved.covariance)
