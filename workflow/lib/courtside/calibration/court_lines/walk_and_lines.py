@@ -77,8 +77,8 @@ def of_pictures(
     base = joint_adjustment.solve_with_factors(ties, clicks, court, **weights)
     found, warnings = {}, []
     for camera in base.cameras:
-        search = {"search_px": search_share * camera.size[0], "lines": lines}
-        seen, reason = edges.measure(camera, images[camera.name], court, **search)
+        image, search_px = images[camera.name], search_share * camera.size[0]
+        seen, reason = edges.measure(camera, image, court, search_px=search_px, lines=lines)
         if seen is None:
             warnings.append(f"camera {camera.name}: court lines not used: {reason}")
         else:
