@@ -50,23 +50,34 @@ class Take:
         self.take = {"pose2d": views, "sex_of": self.sex_of}
 
 
-def corrected(raw, table, sex_of, step):
-    """Return the corrected, filtered skeletons of raw ones."""
+def stages(raw, table, sex_of, step):
+    """Return raw, filtered, and corrected and filtered skeletons."""
     how = step["filter_motion"]
     points = skeleton_filter.prepare(raw, how["max_gap_s"])
     choices = cutoffs.by_group(points, SHAPE, how["cutoff_hz"], how["order"], path="made again")
     per_joint = SHAPE.by_group({group: one.cutoff_hz for group, one in choices.items()})
     filtered = skeleton_filter.smooth(points, per_joint, how["order"])
-    return joint_correction.correct_then_filter(
+    corrected = joint_correction.correct_then_filter(
         points, filtered, table, sex_of, per_joint, how["order"]
     )
+    return {"raw": raw, "filtered": filtered, "corrected": corrected}
+
+
+def limb_errors(points, truth):
+    """Return the errors (persons, frames, joints, 3) of the limbs' joints, mm."""
+    points = points.between(truth.time_s[0], truth.time_s[-1])
+    names, error, _ = joints.errors(points, truth.joints, joints.true_places(points, truth))
+    return 1000 * error[:, :, [names.index(joint) for joint in skeleton.JOINTS]]
+
+
+def errors_mm(points, truth):
+    """Return median and 95 % of these, mm."""
+    return np.nanpercentile(np.linalg.norm(limb_errors(points, truth), axis=-1), [50, 95])
 
 
 def line(points, truth):
     """Return what the errors of skeletons are, in words."""
-    points = points.between(truth.time_s[0], truth.time_s[-1])
-    names, error, _ = joints.errors(points, truth.joints, joints.true_places(points, truth))
-    error = 1000 * error[:, :, [names.index(joint) for joint in skeleton.JOINTS]]
+    error = limb_errors(points, truth)
     elbows = error[:, :, [at for at, name in enumerate(skeleton.JOINTS) if name.endswith("elbow")]]
     apart, shift = np.linalg.norm(error, axis=-1), np.nanmean(error, axis=(0, 1, 2))
     return (
@@ -92,7 +103,9 @@ def main():
         ((seen, sex_of, truth),) = error_fit.seen_truly(files, [files.take])
         raw = error_fit.triangulated(seen, SHAPE, list(sex_of), step["triangulate"])
         for words, points in (("cameras of the study", files.raw), ("true cameras", raw)):
-            print(f"{name}, {words}: {line(corrected(points, table, sex_of, step), truth)}")
+            print(
+                f"{name}, {words}: {line(stages(points, table, sex_of, step)['corrected'], truth)}"
+            )
 
 
 if __name__ == "__main__":

@@ -57,6 +57,7 @@ rule calibrate_cameras:
         ties_npz=of_job(calibration.ties),
         clicks_csv=lambda w: session_of(w).court_points or [],
         court_yaml=of_job(Job.court_file),
+        pictures=of_job(calibration.line_pictures),
     output:
         cameras_toml=paths.CAMERAS,
         covariance_npz=paths.CAMERA_COVARIANCE,
@@ -64,9 +65,10 @@ rule calibrate_cameras:
     log:
         "results/{session}/logs/calibrate_cameras/{calibration}.log",
     wildcard_constraints:
-        calibration="sfm-n[0-9]+(-o[0-2])?",
+        calibration="sfm-n[0-9]+(-o[0-2])?(-lines)?",
     params:
         code=code("calibrate_cameras.py"),
+        search=of_job(calibration.line_search),
         step=of_job(calibration.clicks),
     script:
         "../scripts/calibrate_cameras.py"

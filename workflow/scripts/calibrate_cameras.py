@@ -1,7 +1,8 @@
-"""Calibrate fixed cameras in the court's frame: ties, clicks -> cameras, covariance, quality."""
+"""Calibrate fixed cameras in the court's frame: ties, clicks, lines -> cameras, covariance."""
 
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court import joint_adjustment, quality
+from courtside.calibration.court_lines import walk_and_lines
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records import tie_points
 from courtside.geometry import camera as camera_models
@@ -11,12 +12,14 @@ from courtside.study.errors import InputError
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json
 from courtside.study.execution.script import run
+from courtside.video import images
 
 
 def main(
     ties_npz,
     clicks_csv,
     court_yaml,
+    pictures,
     cameras_toml,
     covariance_npz,
     quality_json,
@@ -25,7 +28,7 @@ def main(
     **options,
 ):
     record = tie_points.read(ties_npz)
-    found, checked = calibrate(record, clicks_csv, court_yaml, **options)
+    found, checked = calibrate(record, clicks_csv, court_yaml, pictures=pictures, **options)
     names = list(record.ties.cameras)
     report = {
         "calibration": calibration,
@@ -61,12 +64,20 @@ def calibrate(record, clicks_csv, court_yaml, **options):
     return found, checked
 
 
-def solve(record, clicks_csv, court_yaml, **options):
+def solve(record, clicks_csv, court_yaml, *, pictures, search, **options):
     if not court_yaml:
         return joint_adjustment.free(record.ties), quality.check_maps(*record.n_maps)
     court = court_files.read(court_yaml)
     marked = clicks.read(clicks_csv, list(record.ties.cameras), list(court.points))
-    return quality.adjust_and_check(court, record.ties, marked, **options)
+    if not pictures:
+        return quality.adjust_and_check(court, record.ties, marked, **options)
+    shown = zip(record.ties.cameras, map(images.read, pictures), strict=True)
+    told = walk_and_lines.of_pictures(record.ties, marked, court, dict(shown), **search, **options)
+    found, checked = quality.adjust_and_check(
+        court, record.ties, marked, lines=told.knowledge, **options
+    )
+    warnings = [*checked["warnings"], *told.warnings]
+    return found, checked | told.said() | {"warnings": warnings}
 
 
 if __name__ == "__main__":

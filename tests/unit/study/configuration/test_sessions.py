@@ -101,6 +101,14 @@ def test_each_session_has_the_calibrations_that_its_recordings_allow(recordings,
     assert session(**recordings).calibrations() == ways
 
 
+def test_lines_are_adjusted_with_the_clicks_of_a_walk():
+    ways = {"parameters": {"calibrations": ["sfm-n40", "sfm-n40-lines"]}, "walks": {"w": "w.mp4"}}
+    cameras = {"cameras": {"a": sessions.FixedCamera()}}
+    clicked = session(**ways, **cameras, court_points="p.csv")
+    assert clicked.calibrations() == ["sfm-n40", "sfm-n40-lines"]
+    assert session(**ways, **cameras, court_points=None).calibrations() == ["sfm-n40"]
+
+
 def test_calibration_with_boards_needs_those_of_every_camera():
     every = {name: sessions.FixedCamera(chessboard=BOARD) for name in "ab"}
     one = {**every, "b": sessions.FixedCamera()}

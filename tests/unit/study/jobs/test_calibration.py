@@ -56,6 +56,15 @@ def test_ties_are_those_of_the_structure_from_motion_of_a_calibration(job, name,
     assert found == f"results/plain-tiny/sfm/{variant}/ties.npz"
 
 
+def test_lines_are_measured_in_the_pictures_of_fixed_cameras_where_a_calibration_asks(job):
+    one = job(**PLAIN, calibration="sfm-n12-lines")
+    assert calibration.line_pictures(one) == calibration.each_fixed(one, paths.STATIC)
+    assert calibration.line_search(one) == {"search_share": 0.006, "lines": "light"}
+    assert calibration.ties(one) == "results/plain-tiny/sfm/global-n12-o0/ties.npz"
+    assert calibration.covariance(one).endswith("calibration/sfm-n12-lines/covariance.npz")
+    assert calibration.line_pictures(job(**PLAIN, calibration="sfm-n12")) == []
+
+
 def test_only_adjusted_cameras_have_a_covariance(job):
     found = calibration.covariance(job(**PLAIN, calibration="sfm-n12"))
     assert found == "results/plain-tiny/calibration/sfm-n12/covariance.npz"

@@ -8,7 +8,7 @@ from courtside.study.errors import InputError
 # The default choice of bridging images is o0; a name leaves it out.
 CALIBRATION = re.compile(
     r"file|(?P<alone>known|board)|(?P<points>known|dlt)(?P<n_points>[0-9]+)(?P<board>-board)?"
-    r"|(?P<kind>sfm|sim3|paper)(?P<mapped>-global)?-n(?P<n_images>[0-9]+)(-o(?P<offset>[0-9]+))?"
+    r"|(?P<kind>sfm|sim3|paper)(?P<mapped>-global)?-n(?P<n_images>[0-9]+)(-o(?P<offset>[0-9]+))?(?P<lines>-lines)?"
 )
 VARIANT = re.compile(r"(?P<mapper>[a-z]+)-n(?P<n_images>[0-9]+)-o(?P<offset>[0-9]+)")
 PEOPLE = "-people"  # behind the name of a calibration: refined by people
@@ -69,7 +69,7 @@ def distinct_offsets(n_images: int, n_frames: int, n_offsets: int) -> list[int]:
 class Calibration:
     """A way to find the fixed cameras of a session."""
 
-    # `file`, `known`, `board`, `sfm-n40`, `sfm-n40-o1`, `sim3-n40`, `paper-n40`,
+    # `file`, `known`, `board`, `sfm-n40`, `sfm-n40-o1`, `sfm-n40-lines`, `sim3-n40`, `paper-n40`,
     # `paper-global-n40`, `known18`, `known8-board`, `dlt18`, `file-people` and the like
     name: str
     # `file` (made elsewhere); from structure from motion: `sfm` (ties and clicks adjusted
@@ -82,6 +82,7 @@ class Calibration:
     variant: Variant | None = None
     n_points: int | None = None  # number of clicked points, where they are all that it rests on
     board: bool = False  # whether lenses come from pictures of a chessboard
+    lines: bool = False  # whether the court's painted lines are adjusted with ties and clicks
     base: str | None = None  # the calibration that people refine, of kind `people`
 
     @classmethod
@@ -92,7 +93,11 @@ class Calibration:
             if of.base is None:
                 return replace(of, name=name, kind="people", base=of.name)
         found = CALIBRATION.fullmatch(name)
-        if found is None or (found["mapped"] and found["kind"] != "paper"):
+        if (
+            found is None
+            or (found["mapped"] and found["kind"] != "paper")
+            or (found["lines"] and found["kind"] != "sfm")
+        ):
             raise InputError(
                 f"expected a calibration such as file, sfm-n40 or known18, found {name!r}"
             )
@@ -104,7 +109,7 @@ class Calibration:
         incremental = found["kind"] == "paper" and not found["mapped"]
         mapper = "incremental" if incremental else "global"
         variant = Variant(mapper, int(found["n_images"]), int(found["offset"] or 0))
-        return cls(name, found["kind"], variant)
+        return cls(name, found["kind"], variant, lines=bool(found["lines"]))
 
     @property
     def has_covariance(self) -> bool:

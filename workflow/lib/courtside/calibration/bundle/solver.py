@@ -32,10 +32,15 @@ def mean(knowledge: Sequence[Quadratic]) -> Quadratic:
 
     It is no more certain than one of them: their errors may be the same.
     """
+    return scaled(total(knowledge), 1 / len(knowledge))
+
+
+def total(knowledge: Sequence[Quadratic]) -> Quadratic:
+    """Return the sum of several independent `Quadratic`, about the first's reference."""
     reference = knowledge[0].reference
     gradients = [k.gradient + k.information @ reference.difference(k.reference) for k in knowledge]
-    information = np.mean([k.information for k in knowledge], axis=0)
-    return Quadratic(reference, information, np.mean(gradients, axis=0))
+    information = np.sum([k.information for k in knowledge], axis=0)
+    return Quadratic(reference, information, np.sum(gradients, axis=0))
 
 
 def scaled(knowledge: Quadratic, factor: float) -> Quadratic:
@@ -216,6 +221,7 @@ def _camera_side(network, by_camera, residual, quadratic) -> tuple[NDArray, NDAr
     information = np.bincount(flat, blocks.ravel(), minlength=size * size).reshape(size, size)
     pull = np.einsum("mri,mr->mi", by_camera, residual)
     gradient = np.bincount(columns.ravel(), pull.ravel(), minlength=size)
+    information, gradient = information.astype(float), gradient.astype(float)  # int of nothing
     off, inverse = _prior(network)
     information[np.diag_indices(size)] += inverse**2
     gradient += off * inverse
@@ -243,7 +249,8 @@ def _point_side(network, by_point, residual) -> tuple[NDArray, NDArray]:
 
 
 def _sum_by(index: NDArray, values: NDArray, length: int) -> NDArray:
-    return np.stack([np.bincount(index, column, minlength=length) for column in values.T], axis=1)
+    sums = [np.bincount(index, column, minlength=length) for column in values.T]
+    return np.stack(sums, axis=1).astype(float)  # int of nothing
 
 
 def _coupling(network, root, by_point, by_camera) -> "NDArray | scipy.sparse.csr_matrix":

@@ -73,14 +73,21 @@ def none(n_images: int) -> Factors:
     return Factors(np.ones((n_images, 2)), 1.0, np.zeros((n_images, 2)), 0.0)
 
 
-def estimate(network: Network, quadratic: solver.Quadratic, factors: Factors) -> Factors:
+def estimate(
+    network: Network,
+    quadratic: solver.Quadratic,
+    factors: Factors,
+    lines: solver.Quadratic | None = None,
+) -> Factors:
     """Estimate the factors of a network of clicks adjusted with the `quadratic` of its ties.
 
-    `factors` are those that the network's sigmas and the quadratic contain.
+    `factors` are those that the network's sigmas and the quadratic contain; `lines` is what else is
+    known, whose weight stays.
     """
     sigma = network.axis_sigma_px
     residual, rows = _rows(network)
-    covariance = _covariance(network, quadratic, rows)
+    known = [quadratic] if lines is None else [quadratic, lines]
+    covariance = _covariance(network, solver.total(known), rows)
     square = (residual / sigma) ** 2
     weight = 1 / (1 + square.sum(axis=1) / network.loss_scale**2)
     rows = rows * np.sqrt(weight)[:, None, None]

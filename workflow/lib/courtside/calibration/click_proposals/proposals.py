@@ -26,7 +26,6 @@ CAMERA_PX = 0.6  # of a point on the floor by the moved camera: paint is some mm
 HEIGHT_M = 0.03  # of one above the floor: lines on the floor determine heights badly
 OFF_SIGMA = 4.0  # an edge farther from where the camera expects it is another one
 PAINT_PX = 0.1  # error not in the fit of a profile: codec, neighbouring paint
-BLUR = 0.75, 1920  # px of blur, per px of width beyond this
 _Found = tuple[NDArray, NDArray, float, str]
 
 
@@ -66,10 +65,7 @@ def propose(
     """
     if image.shape[1::-1] != tuple(camera.size):
         raise ValueError(f"expected a picture of {camera.size} px, found {image.shape[1::-1]}")
-    blur_px = BLUR[0] * max(1.0, camera.size[0] / BLUR[1])
-    polarity = {"light": 1, "dark": -1, "any": 0}[lines]
-    view = View(image.mean(axis=2).astype(np.float32), camera, court, blur_px, polarity)
-    view, reason = register(view, search_px)
+    view, reason = register(View.of(image, camera, court, lines), search_px)
     n = len(court.points)
     if reason:
         nothing = np.full(n, np.nan)
@@ -85,13 +81,13 @@ def register(view: View, search_px: float) -> tuple[View, str]:
     for share in SHARES:
         reach = max(share * search_px, LEAST_PX)
         shifts = [view.shift(*each, reach) for each in zip(line, ends, middle, strict=True)]
-        good = np.array([_believed(shift) for shift in shifts])
+        good = np.array([believed(shift) for shift in shifts])
         if good.sum() < FEWEST or len({line[at] for at in np.flatnonzero(good)}) < 3:
             return view, "too few painted lines are seen where they are expected"
         halves = np.array([line_edges.middle_line(view.court, at)[1] for at in line[good]])
         along = ends[good, 1] - ends[good, 0]
         normal = line_profiles.tangent_and_normal(view.camera, middle[good], along, halves)[1]
-        used = [shift for shift in shifts if shift is not None and _believed(shift)]
+        used = [shift for shift in shifts if shift is not None and believed(shift)]
         offset = np.array([(shift.low_px + shift.high_px) / 2 for shift in used])
         sigma = np.array([shift.sigma_px for shift in used])
         moved, _ = refine_pose.refine(view.camera, middle[good], normal, offset, sigma)
@@ -99,7 +95,8 @@ def register(view: View, search_px: float) -> tuple[View, str]:
     return view, ""
 
 
-def _believed(shift: Shift | None) -> bool:
+def believed(shift: Shift | None) -> bool:
+    """Say whether a stretch is surely a painted line."""
     return (
         shift is not None
         and shift.score > LEAST_SCORE

@@ -10,6 +10,7 @@ from courtside.calibration.court import line_edges
 from courtside.calibration.court.court import Court
 from courtside.geometry.camera import Camera, project
 
+BLUR = 0.75, 1920  # ASSUME: px of blur, per px of width beyond this
 NO_PLACE = np.full(2, np.nan), np.full((2, 2), np.nan), 0.0  # px, covariance, share that is seen
 
 
@@ -22,6 +23,13 @@ class View:
     court: Court
     blur_px: float  # of the picture, standard deviation
     polarity: int  # 1 where lines are lighter than the floor, -1 where darker
+
+    @classmethod
+    def of(cls, image: NDArray, camera: Camera, court: Court, lines: str) -> "View":
+        """Return the view of a picture (H, W, 3) uint8; `lines` are "light", "dark" or "any"."""
+        blur_px = BLUR[0] * max(1.0, camera.size[0] / BLUR[1])
+        polarity = {"light": 1, "dark": -1, "any": 0}[lines]
+        return cls(image.mean(axis=2).astype(np.float32), camera, court, blur_px, polarity)
 
     def shift(
         self, line: int, ends_m: NDArray, origin_m: NDArray, reach_px: float

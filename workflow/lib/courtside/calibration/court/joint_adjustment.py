@@ -253,6 +253,7 @@ def solve(
     max_iterations: int = 8,
     factors: Factors | None = None,
     start: Network | None = None,
+    lines: solver.Quadratic | None = None,
 ) -> Solution:
     """Find the fixed cameras from their tie-point constraints and any clicks.
 
@@ -266,6 +267,7 @@ def solve(
     points : (P,) bool; court points to use; by default all
     factors : on the variances of clicks (scatter and bias) and ties; by default none
     start : network of another solution, where the search starts; by default the ties' own
+    lines : what the court's painted lines tell, `court_lines.edges.knowledge`
     """
     factors = factors or variance_components.none(len(ties.cameras))
     network = _with_bias(ties, click_bias_px, factors)
@@ -282,9 +284,9 @@ def solve(
     network = selection.add_control_points(
         network, court.xyz, court.sigma_m, images, sigma_px=sigmas, loss_scale=click_loss
     )
-    knowledge = solver.scaled(ties.knowledge, 1 / factors.ties)
+    known = [solver.scaled(ties.knowledge, 1 / factors.ties), *([lines] if lines else [])]
     network, normal = solver.adjust(
-        network, quadratic=knowledge, max_iterations=max_iterations, tolerance=1e-7
+        network, quadratic=solver.total(known), max_iterations=max_iterations, tolerance=1e-7
     )
     _check_placed(ties, normal)
     cameras = selection.cameras(network, ties.cameras, ties.sizes)
@@ -305,7 +307,8 @@ def solve_with_factors(ties: Ties, clicks: ClickedPoints, court: Court, **option
     for _ in range(FACTOR_ROUNDS):
         before = solved.factors
         knowledge = solver.scaled(ties.knowledge, 1 / before.ties)
-        found = variance_components.estimate(solved.network, knowledge, before)
+        lines = options.get("lines")
+        found = variance_components.estimate(solved.network, knowledge, before, lines)
         solved = solve(ties, clicks, court, **options, factors=found, start=solved.network)
         change = np.append(found.clicks / before.clicks, found.ties / before.ties)
         if np.abs(np.log(change)).max() < FACTOR_TOLERANCE:

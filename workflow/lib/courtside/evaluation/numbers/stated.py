@@ -225,6 +225,25 @@ VIEWS = {  # the columns that the documents show of their tables
             "court found; 18 clicks, median / 95 %, cm; court lines, cm; lines / clicks": "{found}",
         },
     ),
+    "walk-lines": View(
+        "walk-lines",
+        {
+            "hall: volume error, median / 95 %, cm; in 90 % ellipsoids": "{row}",
+            "cameras with lines": "{seen}",
+            "walk, 18 clicks": "{clicks}",
+            "walk, 18 clicks, lines": "{both}",
+            "walk, lines": "{lines}",
+        },
+    ),
+    "walk-lines-player": View(
+        "walk-lines-player",
+        {
+            "joints, median / 95 %, mm": "{row}",
+            "walk, 18 clicks": "{clicks}",
+            "walk, 18 clicks, lines": "{both}",
+            "true cameras": "{true}",
+        },
+    ),
     "refined-people": View(
         "refined-people",
         {

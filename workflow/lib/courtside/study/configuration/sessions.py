@@ -145,6 +145,8 @@ class Session:
         def allowed(way: Calibration) -> bool:
             if way.base:
                 return filmed and allowed(Calibration.parse(way.base))
+            if way.lines and not clicked:
+                return False
             return (
                 alone if way.name == "known" else possible[way.kind] and (boards or not way.board)
             )

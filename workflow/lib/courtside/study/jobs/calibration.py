@@ -138,6 +138,16 @@ def ties(job: Job) -> str:
     return job.fill(paths.TIES, **vars(_way(job).variant))
 
 
+def line_pictures(job: Job) -> list[str]:
+    """Return the pictures of the fixed cameras whose court lines a calibration is adjusted with."""
+    return each_fixed(job, paths.STATIC) if _way(job).lines else []
+
+
+def line_search(job: Job) -> dict[str, Any]:
+    """Return how lines are searched for, as where court points are proposed."""
+    return job.some("propose_court_points", ("search_share", "lines"))
+
+
 def covariance(job: Job) -> str | list:
     """Return the covariance of cameras where their calibration has one."""
     known = job["calibration"] != IMPORTED and _way(job).has_covariance
