@@ -82,14 +82,13 @@ def guess(
     fault: InputError | None = None
     for share in FOCAL_SHARES if set(names) - set(lenses) else (ANY_FOCAL,):
         try:
-            posed, tracks = relative_poses.pose(
-                _with_lenses(names, sizes, lenses, share), takes, pairs
-            )
+            ways = relative_poses.pose(_with_lenses(names, sizes, lenses, share), takes, pairs)
         except InputError as error:
             fault = error
             continue
-        unseen = sum(row < 0 for _, rows in tracks for row in rows)
-        tried.append((unseen, _disagreement(posed, takes, tracks), share, posed, tracks))
+        for posed, tracks in ways:
+            unseen = sum(row < 0 for _, rows in tracks for row in rows)
+            tried.append((unseen, _disagreement(posed, takes, tracks), share, posed, tracks))
     if not tried:
         raise fault or InputError("people: expected cameras, found none")
     *_, cameras, tracks = min(tried, key=lambda one: one[:3])

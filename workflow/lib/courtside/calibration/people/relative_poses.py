@@ -85,27 +85,31 @@ def pair(cameras: Sequence[Camera], takes: Sequence[Take]) -> list[Paired]:
 
 def pose(
     cameras: Sequence[Camera], takes: Sequence[Take], pairs: Iterable[Paired]
-) -> tuple[list[Camera], list[Track]]:
-    """Return the cameras posed in the axes of one of them, and the tracks of persons.
+) -> list[tuple[list[Camera], list[Track]]]:
+    """Return ways to pose the cameras, one from each two of them, and the tracks of persons.
 
-    Their lenses are used, known or guessed, their poses not. The unit of length is the distance of
-    two cameras. Raises `InputError` where people do not tell.
+    Their lenses are used, known or guessed, their poses not. The world has the axes of one camera,
+    the unit of length is the distance of two. Raises `InputError` where people do not tell.
     """
     rays = _rays(cameras, takes)
-    posed = [one for two in pairs if (one := _related(rays, two)) is not None]
-    posed.sort(key=lambda one: -one.pair.agreeing * one.sine)
-    _check(cameras, posed)
-    lost: list[int] = []
-    for one in posed:
+    related = [one for two in pairs if (one := _related(rays, two)) is not None]
+    _check(cameras, related)
+    found, blind = [], list[int]()
+    for one in related:
         poses, tracks, lost = _resected(takes, rays, one)
+        blind += lost
         if not lost:
             each = zip(cameras, poses, strict=True)
-            return [replace(camera, cam_from_world=pose) for camera, pose in each], tracks
-    raise InputError(
-        f"camera {cameras[lost[0]].name}: expected {LEAST_OVERLAP // 2} joints or more that two "
-        "other cameras see, too, found fewer that agree; name a take in which somebody walks "
-        "through the views of all cameras, and check its clock and that its video is not mirrored"
-    )
+            posed = [replace(camera, cam_from_world=pose) for camera, pose in each]
+            found.append((posed, tracks))
+    if not found:
+        name = cameras[max(blind, key=blind.count)].name
+        raise InputError(
+            f"camera {name}: expected {LEAST_OVERLAP // 2} joints or more that two other cameras "
+            "see, too, found fewer that agree; name a take in which somebody walks through the "
+            "views of all cameras, and check its clock and that its video is not mirrored"
+        )
+    return found
 
 
 def _rays(cameras: Sequence[Camera], takes: Sequence[Take]) -> Rays:
