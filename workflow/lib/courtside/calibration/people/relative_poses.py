@@ -86,13 +86,14 @@ def pair(cameras: Sequence[Camera], takes: Sequence[Take]) -> list[Paired]:
 def pose(
     cameras: Sequence[Camera], takes: Sequence[Take], pairs: Iterable[Paired]
 ) -> list[tuple[list[Camera], list[Track]]]:
-    """Return ways to pose the cameras, one from each two of them, and the tracks of persons.
+    """Return ways to pose the cameras and tracks of persons, from each two cameras, widest first.
 
     Their lenses are used, known or guessed, their poses not. The world has the axes of one camera,
     the unit of length is the distance of two. Raises `InputError` where people do not tell.
     """
     rays = _rays(cameras, takes)
     related = [one for two in pairs if (one := _related(rays, two)) is not None]
+    related.sort(key=lambda one: -one.pair.agreeing * one.sine)
     _check(cameras, related)
     found, blind = [], list[int]()
     for one in related:
