@@ -95,7 +95,8 @@ def pose(
     related = [one for two in pairs if (one := _related(rays, two)) is not None]
     related.sort(key=lambda one: -one.pair.agreeing * one.sine)
     _check(cameras, related)
-    found, blind = [], list[int]()
+    found: list[tuple[list[Camera], list[Track]]] = []
+    blind: list[int] = []
     for one in related:
         poses, tracks, lost = _resected(takes, rays, one)
         blind += lost
