@@ -6,7 +6,8 @@ Outputs: results/{session}/calibration/{calibration}/, results/{session}/pages/c
 Steps: import_cameras (`file`), check_cameras (by static points and people), calibrate_cameras
 (`sfm-n40`, the default), align_cameras (`paper-n40`, `paper-global-n40`, `sim3-n40`),
 calibrate_lens and resect_cameras (`known18`, `known8-board`, `dlt18`), resect_together (`known`:
-all points, all cameras), calibrate_boards (`board`), refine_cameras (`file-people` and the like);
+all points, all cameras), calibrate_boards (`board`), calibrate_from_people
+(`people`: nothing else), refine_cameras (`file-people` and the like);
 propose_court_points (where the points probably are), find_court (the same without a click),
 build_clicking_page; export_cameras (for EasyMocap and COLMAP, by request).
 """
@@ -170,6 +171,28 @@ rule calibrate_boards:
         names=lambda w: session_of(w).calibration_camera_names(),
     script:
         "../scripts/calibrate_boards.py"
+
+
+rule calibrate_from_people:
+    input:
+        files=of_job(calibration.filmed_files),
+        lens_tomls=of_job(calibration.known_lenses),
+    output:
+        cameras_toml=paths.CAMERAS,
+        covariance_npz=paths.CAMERA_COVARIANCE,
+        quality_json=paths.CALIBRATION_QUALITY,
+    log:
+        "results/{session}/logs/calibrate_from_people/{calibration}.log",
+    wildcard_constraints:
+        calibration="people",
+    params:
+        code=code("calibrate_from_people.py"),
+        names=lambda w: list(session_of(w).cameras),
+        takes=of_job(calibration.filmed),
+        views=step("triangulate"),
+        clock_step=step("synchronise_cameras"),
+    script:
+        "../scripts/calibrate_from_people.py"
 
 
 rule export_cameras:

@@ -23,6 +23,7 @@ from courtside.study.methods import Calibration, Fusion, Variant
         ("paper-n5-o2", Calibration("paper-n5-o2", "paper", Variant("incremental", 5, 2))),
         ("known", Calibration("known", "known")),
         ("board", Calibration("board", "board")),
+        ("people", Calibration("people", "people-alone")),
         ("known18", Calibration("known18", "known", n_points=18)),
         ("known8-board", Calibration("known8-board", "known", n_points=8, board=True)),
         ("dlt18", Calibration("dlt18", "dlt", n_points=18)),
@@ -43,6 +44,7 @@ def test_a_calibration_is_parsed_from_its_name(name, expected):
         "",
         "-people",
         "file-people-people",
+        "people-people",
         "sfm",
         "sfm-n",
         "sfm-global-n40",
@@ -69,8 +71,12 @@ def test_adjusting_all_cameras_together_gives_a_covariance():
         "known18",
         "dlt18",
     ]
-    found = [name for name in [*names, "known", "board"] if Calibration.parse(name).has_covariance]
-    assert found == ["file-people", "sfm-n40", "known", "board"]
+    found = [
+        name
+        for name in [*names, "known", "board", "people"]
+        if Calibration.parse(name).has_covariance
+    ]
+    assert found == ["file-people", "sfm-n40", "known", "board", "people"]
 
 
 def test_a_structure_from_motion_is_parsed_and_named():

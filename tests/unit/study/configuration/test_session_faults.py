@@ -59,6 +59,8 @@ ALONE = without(RECORDED, "walks")
 BOARD = {"kind": "charuco", "squares": [4, 5], "square_m": 0.1, "dictionary": "DICT_4X4_50"}
 BOARD |= {"corners": "p.csv", "lenses": "c.toml"}
 BOARDED = {"court": "none", "cameras": RECORDED["cameras"], "board": BOARD}
+PEOPLE = without(BOARDED, "board") | {"subjects": {"p1": {"height_m": 1.7}}}
+PEOPLE |= {"override": {"calibrations": ["people"]}}
 PLAYERS = VIRTUAL | {"subjects": {"p1": None}, "takes": {"shot": FILMED}}
 
 
@@ -80,6 +82,7 @@ PLAYERS = VIRTUAL | {"subjects": {"p1": None}, "takes": {"shot": FILMED}}
         RECORDED | OVERRIDDEN | {"static_points": "config/courts/badminton.yaml"},
         RECORDED | {"cameras": {"a": {"static": "a.mp4"}}},
         BOARDED,
+        PEOPLE,
         BOARDED | {"board": without(BOARD, "lenses")},
         {"court": "none", "cameras": {}, "walks": {"w": {"images": "w.mp4"}}},
         VIRTUAL
@@ -162,7 +165,15 @@ def test_good_sessions_have_no_fault(root, content):
         ),
         (
             without(without(RECORDED, "walks"), "court_points"),
-            ["expected `walks`, `court_points`, `board` or `calibration`, found none"],
+            ["expected `walks`, `court_points`, `board` or `calibration`, or `override: "],
+        ),
+        (
+            PEOPLE | {"court": "badminton"},
+            ["override.calibrations: expected `people` in a session with court: none"],
+        ),
+        (
+            PEOPLE | {"subjects": {"p1": None}},
+            ["subjects: expected `height_m` of whom takes show"],
         ),
         (
             BOARDED | {"board": BOARD | {"videos": {"a": "a.mp4", "b": "b.mp4"}}},

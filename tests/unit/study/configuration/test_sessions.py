@@ -52,8 +52,9 @@ def test_a_one_stage_model_has_no_detector():
 
 WAYS = [
     *("file", "sfm-n40", "sim3-n40", "paper-n40", "paper-global-n40"),
-    *("known", "board", "known18", "known8", "dlt18", "known18-board"),
+    *("known", "board", "people", "known18", "known8", "dlt18", "known18-board"),
 ]
+FILMED = {"take": sessions.Take("take", {"a": "a.mp4", "b": "b.mp4"}, ())}
 BOARD = {"images": "boards", "inner_corners": [7, 4], "square_m": 0.06}
 
 
@@ -78,6 +79,8 @@ def session(**changes):
         ({"calibration_file": "c.toml"}, ["file"]),
         ({"board": {"kind": "charuco"}}, ["board"]),
         ({"board": {"kind": "tags"}, "court_points": "p.csv", "placed": True}, ["board"]),
+        ({"takes": FILMED}, ["people"]),
+        ({"takes": FILMED, "court": "badminton"}, []),
         ({"walks": {"w": "w.mp4"}}, ["sfm-n40"]),
         ({"court_points": "p.csv"}, ["known", "known18", "known8", "dlt18"]),
         ({"court_points": "p.csv", "placed": True}, ["known"]),
@@ -91,7 +94,11 @@ def session(**changes):
         ),
         (
             {"court_points": "p.csv", "walks": {"w": "w.mp4"}},
-            [way for way in WAYS if way not in ("file", "known", "board", "known18-board")],
+            [
+                way
+                for way in WAYS
+                if way not in ("file", "known", "board", "people", "known18-board")
+            ],
         ),
         ({"walks": {"w": "photos"}, "cameras": {}}, []),
         ({}, []),

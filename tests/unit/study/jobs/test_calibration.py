@@ -186,6 +186,20 @@ def test_maps_of_refined_cameras_show_their_base_too(job):
     assert calibration.of_base(alone, paths.CAMERAS) == calibration.base_covariance(alone) == []
 
 
+def test_people_alone_place_cameras_with_their_heights_and_known_lenses(job, study):
+    real = job(session="walk-4cams-tiny", calibration="people")
+    session = study.sessions["walk-4cams-tiny"]
+    (one,) = calibration.filmed(real)
+    take = session.takes[one["take"]]
+    assert one["heights_m"] == [session.subjects[who].height_m for who in take.subjects]
+    assert [path.rpartition("/")[2] for path in one["pose2d"]] == [f"{c}.npz" for c in take.cameras]
+    assert calibration.filmed_files(real) == one["pose2d"]
+    assert calibration.known_lenses(real) == []
+    assert len(calibration.known_lenses(job(**PLAIN, calibration="people"))) == sum(
+        bool(camera.chessboard) for camera in study.sessions["plain-tiny"].cameras.values()
+    )
+
+
 def test_takes_that_refine_cameras_must_be_filmed(job, study):
     session = study.sessions["players-tiny"]
     step = {**session.parameters["refine_cameras"], "takes": ["shot", "nothing"]}

@@ -3,6 +3,7 @@
 resampling: `common_times`, `resample`, `nearest`: each camera's clock applied
 common_views: `of_takes`: limb joints of everybody in several takes
 lost_cameras: `recover`: cameras in which nobody is associated, found again by people
+self_calibration: `tracks`, `guess`, `seen`: takes for a calibration from people alone
 person_height: `in_pictures`: the height of a person in each picture, for limits in shares of it
 left_right: `swapped_views`, `apply_swaps`: sides that a network confused
 fusion: `triangulate_take`, `merge`, `with_cameras`: half bodies, the cameras' covariance

@@ -7,11 +7,14 @@ from courtside.study.errors import InputError
 
 # The default choice of bridging images is o0; a name leaves it out.
 CALIBRATION = re.compile(
-    r"file|(?P<alone>known|board)|(?P<points>known|dlt)(?P<n_points>[0-9]+)(?P<board>-board)?"
-    r"|(?P<kind>sfm|sim3|paper)(?P<mapped>-global)?-n(?P<n_images>[0-9]+)(-o(?P<offset>[0-9]+))?(?P<lines>-lines)?"
+    r"file|(?P<alone>known|board|people)"
+    r"|(?P<points>known|dlt)(?P<n_points>[0-9]+)(?P<board>-board)?"
+    r"|(?P<kind>sfm|sim3|paper)(?P<mapped>-global)?-n(?P<n_images>[0-9]+)"
+    r"(-o(?P<offset>[0-9]+))?(?P<lines>-lines)?"
 )
 VARIANT = re.compile(r"(?P<mapper>[a-z]+)-n(?P<n_images>[0-9]+)-o(?P<offset>[0-9]+)")
 PEOPLE = "-people"  # behind the name of a calibration: refined by people
+ALONE = "people-alone"  # the kind of a calibration from people and nothing else
 IMPORTED = "imported"  # in place of a calibration: 3D joints are another program's
 HALFBODY = "halfbody"  # the paper's rule for three cameras
 OFFSETS = 3  # choices of so many bridging images: they start thirds of their spacing late
@@ -70,12 +73,14 @@ class Calibration:
     """A way to find the fixed cameras of a session."""
 
     # `file`, `known`, `board`, `sfm-n40`, `sfm-n40-o1`, `sfm-n40-lines`, `sim3-n40`, `paper-n40`,
-    # `paper-global-n40`, `known18`, `known8-board`, `dlt18`, `file-people` and the like
+    # `paper-global-n40`, `known18`, `known8-board`, `dlt18`, `people`, `file-people`
+    # and the like
     name: str
     # `file` (made elsewhere); from structure from motion: `sfm` (ties and clicks adjusted
     # together), `sim3` (one similarity), `paper` (the paper's alignment); from clicks alone:
     # `known` (resection; without a number all points, all cameras together), `dlt`; from a board
-    # that several cameras see: `board`; `people`: another calibration, refined by people in takes
+    # that several cameras see: `board`; from people in takes and nothing else: `people-alone`;
+    # `people`: another calibration, refined by people in takes
     kind: str
     # The structure from motion that it rests on. Only `paper-n40` is mapped incrementally, as in
     # the paper
@@ -90,7 +95,7 @@ class Calibration:
         """Parse a name of the configuration's `calibrations`."""
         if name.endswith(PEOPLE):
             of = cls.parse(name.removesuffix(PEOPLE))
-            if of.base is None:
+            if of.base is None and of.kind != ALONE:
                 return replace(of, name=name, kind="people", base=of.name)
         found = CALIBRATION.fullmatch(name)
         if (
@@ -104,6 +109,8 @@ class Calibration:
         if found["points"]:
             n_points, board = int(found["n_points"]), bool(found["board"])
             return cls(name, found["points"], n_points=n_points, board=board)
+        if name == "people":
+            return cls(name, ALONE)
         if not found["kind"]:
             return cls(name, found["alone"] or "file")
         incremental = found["kind"] == "paper" and not found["mapped"]
@@ -114,7 +121,7 @@ class Calibration:
     @property
     def has_covariance(self) -> bool:
         """Whether the covariance of the cameras is known."""
-        return self.kind in ("sfm", "people") or self.name in ("known", "board")
+        return self.kind in ("sfm", "people", ALONE) or self.name in ("known", "board")
 
 
 @dataclass(frozen=True)

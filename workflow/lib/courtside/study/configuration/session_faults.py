@@ -32,6 +32,7 @@ def find(
         yield f"{file}: walks.{name}: expected a name that no camera has, found {name!r}; rename it"
     yield from _virtual_faults(file, content) if virtual else _recorded_faults(file, content, root)
     yield from _override_faults(file, content)
+    yield from _people_faults(file, content)
     yield from consent.faults(file, content)
     yield from sighting_faults.find(file, content)
     for key, views in content.get("views", {}).items():
@@ -50,6 +51,23 @@ def find(
     yield from take_faults.of_other_programs(folder, file, content)
     for where, path in paths.items():
         yield from _path_faults(f"{file}: {where}", path, known, root)
+
+
+def _people_faults(file: Path, content: Content) -> Iterator[str]:
+    """Yield why cameras cannot be found from people alone, where a session asks for that."""
+    if "people" not in content.get("override", {}).get("calibrations", []):
+        return
+    if content["court"] != "none":
+        yield (
+            f"{file}: override.calibrations: expected `people` in a session with court: none, "
+            f"found court: {content['court']}; people do not tell where its lines are"
+        )
+    subjects = content.get("subjects", {})
+    if not any((one or {}).get("height_m") for one in subjects.values()):
+        yield (
+            f"{file}: subjects: expected `height_m` of whom takes show, for the calibration "
+            "`people`, found none; state it: nothing else tells the unit of length"
+        )
 
 
 def _override_faults(file: Path, content: Content) -> Iterator[str]:
@@ -140,10 +158,11 @@ def _recorded_faults(file: Path, content: Content, root: Path) -> Iterator[str]:
     cameras, walks = content["cameras"], content.get("walks", {})
     takes = [take for take in content.get("takes", {}).values() if take]
     found = {"walks", "calibration", "court_points", "board"} & set(content)
-    if not found and (cameras or not takes):
+    alone = "people" in content.get("override", {}).get("calibrations", [])
+    if not found and not alone and (cameras or not takes):
         yield (
-            f"{file}: expected `walks`, `court_points`, `board` or `calibration`, found none; say "
-            "how the cameras are to be found"
+            f"{file}: expected `walks`, `court_points`, `board` or `calibration`, or `override: "
+            "{calibrations: [people]}`, found none; say how the cameras are to be found"
         )
     yield from _board_faults(file, content)
     if len(cameras) < 2 and ("calibration" in content or any(map(take_faults.cameras_of, takes))):

@@ -8,7 +8,7 @@ from typing import Any
 from courtside.study import paths
 from courtside.study.configuration import consent
 from courtside.study.execution.artefacts import Artefact
-from courtside.study.methods import HALFBODY, Calibration, Fusion, Variant, distinct_offsets
+from courtside.study.methods import ALONE, HALFBODY, Calibration, Fusion, Variant, distinct_offsets
 
 DEFAULT_DETECTOR = "blazepose-detector"  # of config/detectors.yaml
 ONE_STAGE = ("rtmo", "yolo-pose")  # decoders of networks that find persons themselves
@@ -131,16 +131,17 @@ class Session:
         alone = clicked and (self.also_known or not (walked or self.calibration_file or self.board))
         clicked = clicked and not self.placed
         boards = clicked and all(camera.chessboard for camera in self.cameras.values())
+        filmed = any(take.cameras for take in self.takes.values())
         possible = {
             "file": self.calibration_file is not None,
             "board": self.board is not None,
+            ALONE: filmed and self.court is None,  # whose world it would not be
             "known": clicked,
             "dlt": clicked,
             "sfm": walked and bool(self.cameras) and not self.unclicked,
             "sim3": walked and clicked,
             "paper": walked and clicked,
         }
-        filmed = any(take.cameras for take in self.takes.values())
 
         def allowed(way: Calibration) -> bool:
             if way.base:

@@ -60,16 +60,45 @@ def checked(job: Job) -> list[dict[str, Any]]:
     return _seen(job, "file", [name for name, take in job.session.takes.items() if take.cameras])
 
 
-def refining(job: Job) -> list[dict[str, Any]]:
-    """Return of each take whose people refine cameras the files of what cameras see."""
-    filmed = [name for name, take in job.session.takes.items() if take.cameras]
-    wanted = job.step("refine_cameras")["takes"] or filmed
-    if missing := [name for name in wanted if name not in filmed]:
+def filmed(job: Job) -> list[dict[str, Any]]:
+    """Return of each take whose people place cameras its keypoints, clocks and heights, m."""
+    model, subjects, found = job.session.parameters["models"][0], job.session.subjects, []
+    for name in wanted_takes(job):
+        take = job.session.takes[name]
+        one = Job(job.study, {**job.wildcards, "take": name, "model": model})
+        said = {"synchronised": take.synchronised, "clocks": takes.clocks(one, take.cameras)}
+        heights_m = [subjects[who].height_m for who in take.subjects]
+        pose2d = takes.each_camera(one, paths.POSE2D)
+        found.append({"take": name, "pose2d": pose2d, "heights_m": heights_m, **said})
+    return found
+
+
+def filmed_files(job: Job) -> list[str]:
+    """Return the keypoints of `filmed` in one list."""
+    return [path for take in filmed(job) for path in take["pose2d"]]
+
+
+def known_lenses(job: Job) -> list[str]:
+    """Return the lenses of the cameras that have pictures of a chessboard."""
+    own = [name for name, camera in job.session.cameras.items() if camera.chessboard]
+    return job.of_each(paths.LENS, camera=own)
+
+
+def wanted_takes(job: Job) -> list[str]:
+    """Return the takes whose people refine or place cameras; an `InputError` if one is unknown."""
+    known = [name for name, take in job.session.takes.items() if take.cameras]
+    wanted = job.step("refine_cameras")["takes"] or known
+    if missing := [name for name in wanted if name not in known]:
         raise InputError(
-            f"{job.session.file}: refine_cameras: takes: expected filmed takes of {filmed}, found "
+            f"{job.session.file}: refine_cameras: takes: expected filmed takes of {known}, found "
             f"{missing}; name others, or null for all"
         )
-    return _seen(job, _base(job)["calibration"], wanted)
+    return list(wanted)
+
+
+def refining(job: Job) -> list[dict[str, Any]]:
+    """Return of each take whose people refine cameras the files of what cameras see."""
+    return _seen(job, _base(job)["calibration"], wanted_takes(job))
 
 
 def of_base(job: Job, pattern: str) -> str | list:

@@ -1,0 +1,133 @@
+"""Cameras from the people that they film and nothing else, against the truth.
+
+    python benchmarks/people_alone.py RESULTS [--session SESSION] [--takes TAKE ...]
+        [--cameras NAME ...]
+
+RESULTS are those of a run that detected poses in the takes of a virtual session. Lenses are not
+known; each subject's height is, to the centimetre; three cameras film two players. Joints are the
+true ones as true cameras see them, placed by the cameras found. `joints` is their median error
+after the best rigid motion, `shape` after the best similarity, `scale` the length of a true metre,
+`hold` the share of joints within the 90 % ellipsoids that the cameras' covariance states. Accepted
+are views of limb joints that the fit left out. Writes docs/numbers/people_alone.csv.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
+
+from courtside.calibration import point_covariance
+from courtside.calibration.bundle import selection
+from courtside.calibration.people import from_nothing
+from courtside.calibration.people.adjustment import Limits
+from courtside.evaluation.numbers import stated
+from courtside.geometry import camera as camera_models
+from courtside.geometry import similarity
+from courtside.geometry.similarity import Sim3
+from courtside.geometry.triangulation import triangulate_all
+from courtside.reconstruction import self_calibration
+from courtside.records.devices import clocks
+from courtside.records.keypoints import keypoints
+from courtside.records.truth import session_truth, take_truth
+from courtside.study.configuration import yaml_files
+from courtside.synchronisation import cameras as camera_sync
+
+ROOT = Path(__file__).resolve().parents[1]
+MODEL, TAKES = "blazepose-heavy", ("footwork", "crossing")
+THREE = ("oblique", "mirror", "front")  # not on one line
+MADE = "benchmark", "`python benchmarks/people_alone.py RESULTS`"
+EVERY = 12  # of the true frames: neighbouring ones say the same
+QUANTILE_90 = 6.251  # of chi-squared with 3 degrees of freedom
+CONFIG = yaml_files.read(ROOT / "config" / "config.yaml")
+LIMITS = Limits(*(CONFIG["triangulate"][k] for k in ("min_score", "max_error_share", "fade_share")))
+
+
+def filmed(results, session, name, take, names, cameras=None):
+    """Return a take as `self_calibration` needs it; clocks by cameras where they are known."""
+    folder = results / session / "takes" / name / "pose2d" / MODEL
+    views = [keypoints.read_2d(folder / f"{camera}.npz") for camera in names]
+    if take.get("synchronised"):
+        return name, views, clocks.one_clock(names)
+    known = cameras and [cameras[camera] for camera in names]
+    return name, views, camera_sync.synchronise(views, known, **CONFIG["synchronise_cameras"])
+
+
+def calibrated(names, timed, heights_m):
+    """Return the cameras `names` from people; `timed` gives takes, by cameras or without."""
+    first = self_calibration.guess(names, {}, timed(None), heights_m)
+    seen = self_calibration.seen(first, timed({one.name: one for one in first.cameras}))
+    of = [take for take, _ in first.tracks]
+    return from_nothing.adjust(first.cameras, {}, seen, of, heights_m, LIMITS)
+
+
+def errors(found, real, xyz):
+    """Return median joint error and shape error, mm, scale - 1, %, and coverage, %."""
+    cameras, covariance = found.cameras, found.covariance.of_columns()
+    exact = np.stack([camera_models.project(camera, xyz) for camera in real])
+    placed = triangulate_all(cameras, exact)
+    best = similarity.umeyama(placed, xyz)
+    rigid = Sim3(1.0, best.rotation, xyz.mean(axis=0) - best.rotation @ placed.mean(axis=0))
+    off = rigid.points(placed) - xyz
+    spread = point_covariance.point_covariance(selection.of_cameras(cameras), covariance, placed)
+    spread = best.rotation @ spread @ best.rotation.T
+    inside = np.einsum("ni,nij,nj->n", off, np.linalg.inv(spread), off) <= QUANTILE_90
+    shape = np.linalg.norm(best.points(placed) - xyz, axis=1)
+    return (
+        1000 * np.median(np.linalg.norm(off, axis=1)),
+        1000 * np.median(shape),
+        100 * (1 / best.scale - 1),
+        100 * inside.mean(),
+    )
+
+
+def rows(results, name, takes, names):
+    """Yield the rows as docs/make_tables.py reads them."""
+    session = yaml_files.read(ROOT / "config" / "sessions" / f"{name}.yaml")
+    told = {take: session["takes"][take] for take in takes}
+    everybody = list(session["subjects"])
+    heights_m = [
+        [session["subjects"][who]["height_m"] for who in take.get("subjects", everybody)]
+        for take in told.values()
+    ]
+    folder = results / "virtual" / name
+    real = session_truth.read(folder / "truth.npz").cameras
+    real = [camera for camera in real if camera.name in names]
+    names = [camera.name for camera in real]
+    true = [take_truth.read(folder / "takes" / take / "truth.npz") for take in takes]
+    xyz = np.concatenate([one.xyz[:, ::EVERY, :12].reshape(-1, 3) for one in true])
+    seconds = sum(take["virtual"]["seconds"] for take in told.values())
+
+    def timed(known):
+        return [filmed(results, name, *one, names, known) for one in told.items()]
+
+    found = calibrated(names, timed, heights_m)
+    joint, shape, scale, inside = errors(found, real, xyz)
+    accepted = found.score.accepted_percent()
+    print(names, joint, shape, scale, inside, accepted, flush=True)
+    row = f"`{name}`: people alone, {len(names)} cameras, {seconds} s, heights stated"
+    said = f"joints after a rigid motion {joint:.0f} mm, scale {scale:+.1f} %, hold {inside:.0f} %"
+    yield row, "alone", said, "mm", 1
+    yield row, "alone_shape", f"{shape / 10:.2f}", "cm", 1
+    yield row, "alone_accepted", f"{accepted.mean():.1f}", "%", 1
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("results", type=Path)
+    parser.add_argument("--session", default="players-b")
+    parser.add_argument("--takes", nargs="+", default=list(TAKES))
+    parser.add_argument("--cameras", nargs="+", default=list(THREE))
+    parser.add_argument("--model", default=MODEL)
+    given = parser.parse_args()
+    MODEL = given.model
+    made = [
+        ["ways", row, part, printed, unit, given.session, n, 0, *MADE]
+        for row, part, printed, unit, n in rows(
+            given.results, given.session, given.takes, given.cameras
+        )
+    ]
+    if (given.session, tuple(given.cameras)) == ("players-b", THREE):
+        stated.write(ROOT / stated.FOLDER / "people_alone.csv", stated.joined(made))

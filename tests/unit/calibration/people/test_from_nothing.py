@@ -1,0 +1,86 @@
+"""Cameras from made people: the true ones after one rigid motion; bad input is one line."""
+
+import numpy as np
+import pytest
+
+from courtside.calibration import point_covariance
+from courtside.calibration.bundle import selection
+from courtside.calibration.people import from_nothing, world_frame
+from courtside.calibration.people.adjustment import Limits
+from courtside.calibration.people.held_out import Score
+from courtside.calibration.people.views import Seen
+from courtside.geometry import camera as cameras
+from courtside.geometry.similarity import Sim3, umeyama
+from courtside.geometry.triangulation import triangulate_all
+from courtside.study.errors import InputError
+from fixtures.cameras import corner_cameras
+from fixtures.people import tracks_made
+
+TRUE = corner_cameras.four_cameras()[:3]
+NAMES, SIZES = [one.name for one in TRUE], {one.name: one.size for one in TRUE}
+LIMITS = Limits(score=0.05, limit=0.05, fade=0.067)
+WALK = tracks_made.persons(40)
+LENSES = {camera.name: camera for camera in TRUE}
+HEIGHTS = [[world_frame.length(xyz) / world_frame.OF_HEIGHT for xyz in WALK]]
+
+
+def guessed(take, heights=HEIGHTS, lenses=None):
+    return from_nothing.guess(NAMES, SIZES, lenses or {}, [take], heights)
+
+
+def seen(take, tracks):
+    """Return the tracks as the adjustment sees them; pictures of persons are 400 px high."""
+    xy = [from_nothing.track_xy([take], track) for track in tracks]
+    number = np.repeat(np.arange(len(xy)), xy[0].shape[1])
+    xy = np.concatenate(xy, axis=1)
+    score = np.where(np.isfinite(xy[..., 0]), 0.9, np.nan)
+    return Seen(xy, score, np.full(score.shape[:2], 400.0), number, np.arange(len(number)) / 10)
+
+
+def test_cameras_with_unknown_lenses_are_found_from_two_persons_and_their_heights():
+    take = tracks_made.take(TRUE, WALK)
+    start = guessed(take)
+    found = from_nothing.adjust(
+        start.cameras, {}, seen(take, start.tracks), [0, 0], HEIGHTS, LIMITS
+    )
+    xyz = WALK[:, ::4].reshape(-1, 3)
+    placed = triangulate_all(found.cameras, np.stack([cameras.project(c, xyz) for c in TRUE]))
+    best = umeyama(placed, xyz)
+    assert best.scale == pytest.approx(1, abs=0.01)
+    rigid = Sim3(1.0, best.rotation, xyz.mean(axis=0) - best.rotation @ placed.mean(axis=0))
+    off = rigid.points(placed) - xyz
+    assert np.median(np.linalg.norm(off, axis=1)) < 0.02
+    spread = point_covariance.point_covariance(
+        selection.of_cameras(found.cameras), found.covariance.of_columns(), placed
+    )
+    spread = best.rotation @ spread @ best.rotation.T
+    square = np.einsum("ni,nij,nj->n", off, np.linalg.inv(spread), off)
+    assert 0.2 < square.mean() < 9  # 3 over many draws; all joints here err together
+    assert np.abs(placed[:, 2] - xyz[:, 2]).max() < 0.06
+    said = from_nothing.said(found, ["walk"])
+    assert min(said["accepted_percent"].values()) > 95
+    assert said["line"].startswith("people alone: joints that the fit left out disagree by ")
+
+
+def test_a_lens_of_a_board_is_not_guessed():
+    take = tracks_made.take(TRUE, WALK)
+    start = guessed(take, lenses=LENSES)
+    assert [camera.K[0, 0] for camera in start.cameras] == [1400.0] * 3
+
+
+def test_a_person_who_stands_still_tells_nothing():
+    take = tracks_made.take(TRUE, tracks_made.persons(still=True)[:1])
+    with pytest.raises(InputError, match="expected somebody who moves by"):
+        guessed(take, [[1.7]])
+
+
+def test_without_a_height_there_is_no_unit():
+    with pytest.raises(InputError, match="expected `height_m` of every subject"):
+        guessed(tracks_made.take(TRUE, WALK), [[1.7, None]], LENSES)
+
+
+def test_a_camera_that_contradicts_the_others_is_named():
+    accepted = np.array([[1.0, 1, 1, np.nan], [1, 1, 0, 1], [0, 0, 1, np.nan]])
+    with pytest.raises(InputError, match=r"camera c2: expected 50 % or more of its views .* 33 %"):
+        from_nothing.check(TRUE, Score(accepted=[accepted]))
+    from_nothing.check(TRUE[:2], Score(accepted=[accepted[:2]]))

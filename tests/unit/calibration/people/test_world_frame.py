@@ -1,0 +1,75 @@
+"""The world of people: metres by heights, the floor under feet, covariance of the shape alone."""
+
+import numpy as np
+import pytest
+
+from courtside.calibration import point_covariance
+from courtside.calibration.bundle import selection
+from courtside.calibration.people import prior, world_frame
+from courtside.calibration.records import covariance
+from courtside.geometry import rotations
+from courtside.geometry.similarity import Sim3
+from courtside.study.errors import InputError
+from fixtures.cameras import corner_cameras
+from fixtures.people import tracks_made
+
+TRUE = corner_cameras.four_cameras()
+WALK = tracks_made.persons()
+ELSEWHERE = Sim3(1.0, rotations.rotation_from_rodrigues([0.4, -0.3, 1.2]), np.array([3.0, -2, 5]))
+
+
+def test_a_body_is_as_long_in_every_posture():
+    one, other = (world_frame.length(xyz) for xyz in WALK)
+    assert other / one == pytest.approx(tracks_made.SIZES[1] / tracks_made.SIZES[0], rel=0.01)
+    assert np.isnan(world_frame.length(WALK[0, :10]))
+
+
+def test_heights_give_metres_the_tallest_to_the_longest():
+    units = [[0.6, 0.5], [0.5]]
+    heights = [[1.5, 1.8], [1.5]]
+    factor, sigma = world_frame.metres(units, heights)
+    assert factor == pytest.approx(3.0 * world_frame.OF_HEIGHT)
+    assert 0.005 < sigma < world_frame.metres(units[1:], heights[1:])[1]
+
+
+@pytest.mark.parametrize("heights", [[[None]], [[1.7, None]], [[1.7, 1.8]], [[]]])
+def test_a_take_of_somebody_without_height_tells_nothing(heights):
+    with pytest.raises(InputError, match="expected `height_m` of every subject"):
+        world_frame.metres([[0.5]], heights)
+
+
+def test_the_floor_is_found_under_feet_from_any_axes():
+    elsewhere = [ELSEWHERE.camera(camera) for camera in TRUE]
+    joints = ELSEWHERE.points(np.concatenate(WALK))
+    world = world_frame.floor(joints, elsewhere)
+    placed = world.points(joints) - np.concatenate(WALK)
+    # Ankles of the made persons are 0.08 m high; z is the same up to what an ankle's height is.
+    assert np.ptp(placed[..., 2]) < 0.03
+    assert np.abs(placed[..., 2]).max() < 0.05
+    x = [world.camera(camera).centre_in_world for camera in elsewhere]
+    assert (x[1] - x[0])[1] == pytest.approx(0, abs=1e-9)
+    assert (x[1] - x[0])[0] > 0
+
+
+def test_the_covariance_is_of_the_shape_and_of_the_scale():
+    known = prior.stated(
+        TRUE, rotation_deg=5, position_m=1, focal_percent=1, principal_point_percent=1, k1=0.01
+    )
+    places = WALK[:, ::6].reshape(-1, 3)
+    network = selection.of_cameras(TRUE)
+    whole = known.of_columns()
+    by_column = point_covariance.sensitivity(network, places).reshape(places.size, -1)
+    shape = world_frame.of_shape(TRUE, whole, places, 0.0)
+    about = places - places.mean(axis=0)
+    motions = [np.tile(axis, len(places)) for axis in np.eye(3)]
+    motions += [np.cross(axis, about).ravel() for axis in np.eye(3)] + [about.ravel()]
+    before, after = (
+        [float(np.sum((motion @ by_column @ one) * (motion @ by_column))) for motion in motions]
+        for one in (whole, shape)
+    )
+    assert (np.array(after) < 1e-6 * np.array(before)).all()
+    scaled = world_frame.of_shape(TRUE, np.zeros_like(whole), places, 0.01)
+    spread = by_column @ scaled @ by_column.T
+    np.testing.assert_allclose(spread, 1e-4 * np.outer(about, about), atol=1e-7)
+    named = covariance.of_network([camera.name for camera in TRUE], scaled)
+    assert named.covariance.shape == (56, 56)

@@ -1,0 +1,72 @@
+"""Takes for the calibration from people: common times, sure joints, cameras that do not film."""
+
+import numpy as np
+import pytest
+
+from courtside.calibration.people.from_nothing import Guess
+from courtside.reconstruction import self_calibration
+from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints import skeleton
+from courtside.study.errors import InputError
+from fixtures.cameras import corner_cameras
+from fixtures.people import keypoints_made, tracks_made
+
+CAMERAS = corner_cameras.four_cameras()[:3]
+NAMES = [camera.name for camera in CAMERAS]
+WALK = tracks_made.persons(40)
+TIME_S = np.arange(40) / 10
+JOINTS = ["nose", *skeleton.JOINTS]
+LATE_S = 0.2
+CLOCKS = {NAMES[0]: Clock(status="reference"), NAMES[1]: Clock(offset_s=LATE_S)}
+
+
+def filmed():
+    """Return a take of the first two cameras; of the first person a joint is unsure for a while."""
+    xy = tracks_made.take(CAMERAS, WALK, noise_px=0).xy
+    found = []
+    for number, camera in enumerate(CAMERAS[:2]):
+        score = np.full((2, 40, 13), 0.9)
+        score[0, 10:20, 3] = 0.2
+        own_s = TIME_S + LATE_S * number
+        whole = np.pad(xy[number], ((0, 0), (0, 0), (1, 0), (0, 0)))
+        found.append(keypoints_made.view(camera, JOINTS, own_s, whole, score=score))
+    return "walk", found, CLOCKS
+
+
+def test_tracks_are_at_common_times_without_unsure_joints():
+    take = self_calibration.tracks(*filmed(), NAMES)
+    exact = tracks_made.take(CAMERAS, WALK, noise_px=0).xy
+    unsure = np.isnan(take.xy[0][..., 0])
+    assert unsure.sum() == 10
+    assert unsure[0, 10:20, 2].all()
+    for own, true in zip(take.xy[:2], exact[:2], strict=True):
+        np.testing.assert_allclose(own[1], true[1], atol=1e-6)
+    assert take.xy[2].shape == (0, 40, 12, 2)
+
+
+def test_persons_are_seen_through_their_tracks():
+    first = Guess(CAMERAS, [(0, (0, 1, -1)), (0, (1, 0, -1))])
+    seen = self_calibration.seen(first, [filmed()])
+    assert seen.xy.shape == (3, 80, 12, 2)
+    assert np.bincount(seen.track).tolist() == [40, 40]
+    assert np.isnan(seen.xy[2]).all()
+    exact = tracks_made.take(CAMERAS, WALK, noise_px=0).xy
+    np.testing.assert_allclose(seen.xy[0, 40:], exact[0][1], atol=1e-6)
+    np.testing.assert_allclose(seen.xy[1, :40], exact[1][1], atol=1e-6)
+    depth_m = np.linalg.norm(CAMERAS[0].centre_in_world - WALK[0, 5, 0])
+    assert 0.7 < seen.height_px[0, 5] / (1.7 * 1400 / depth_m) < 1.4
+
+
+def test_cameras_are_guessed_from_a_take():
+    xy = tracks_made.take(CAMERAS, WALK).xy
+    views = [
+        keypoints_made.view(camera, skeleton.JOINTS, TIME_S, own)
+        for camera, own in zip(CAMERAS, xy, strict=True)
+    ]
+    take = "walk", views, dict.fromkeys(NAMES, Clock())
+    lenses = {camera.name: camera for camera in CAMERAS}
+    found = self_calibration.guess(NAMES, lenses, [take], [[1.6, 1.8]])
+    assert [camera.name for camera in found.cameras] == NAMES
+    assert len(found.tracks) == 2
+    with pytest.raises(InputError, match="camera c2: expected a take that it films, found none"):
+        self_calibration.guess(NAMES, lenses, [filmed()], [[1.6, 1.8]])

@@ -1,0 +1,257 @@
+"""Cameras from the people that they film and nothing else: no board, no clicks, no walk.
+
+Focal lengths that are not known are tried, people's joints and all cameras are adjusted together
+(`adjustment`), and people's height and feet give the unit and the floor (`world_frame`).
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.calibration.file_check import residuals
+from courtside.calibration.people import (
+    adjustment,
+    held_out,
+    prior,
+    relative_poses,
+    views,
+    world_frame,
+)
+from courtside.calibration.people.adjustment import Limits
+from courtside.calibration.people.held_out import Points, Score
+from courtside.calibration.people.relative_poses import Take, Track
+from courtside.calibration.people.views import Seen
+from courtside.calibration.records import covariance as camera_covariance
+from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance
+from courtside.geometry.camera import Camera
+from courtside.geometry.triangulation import triangulate_all
+from courtside.study.errors import InputError
+
+# ASSUME: focal lengths over the picture's width, from wide lenses of phones to short telephoto
+# lenses, a fifth apart: the adjustment finds what lies between.
+FOCAL_SHARES = (0.7, 0.84, 1.0, 1.2, 1.45, 1.75)
+ANY_FOCAL = 1.2  # tracks are paired with this one: which belong together hardly depends on it
+# Standard deviations of cameras after the first guess; so large, they say next to nothing of shape.
+LOOSE = {"rotation_deg": 5.0, "position_m": 1.0}
+GUESSED = {"focal_percent": 20.0, "principal_point_percent": 1.0, "k1": 0.05}  # ASSUME
+KNOWN = {"focal_percent": 0.5, "principal_point_percent": 0.3, "k1": 0.01}  # of a board's lens
+PASSES = 2  # ASSUME: adjustments, each about the last; the next hardly moves a joint
+MOST_ROWS = 480  # frames of all persons together; more take longer and say the same
+MOST_POINTS = 400  # joints that two guesses are compared by
+MOST_FRAMES = 200  # of one track that its length is measured in
+MOST_PLACES = 200  # joints that the world of the covariance rests on
+STILL = 0.15  # ASSUME: ways shorter than this share of a person's extent show nothing
+LEAST_ACCEPTED = 50.0  # ASSUME: percent of a camera's views; a camera with fewer is not found
+
+
+@dataclass(frozen=True, eq=False)
+class Guess:
+    """Cameras roughly placed, in metres, and whose tracks they see."""
+
+    cameras: list[Camera]
+    tracks: list[Track]
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Cameras from people."""
+
+    cameras: list[Camera]
+    covariance: CameraCovariance
+    score: Score  # by blocks of time that the fit did not see
+    scale_sigma: float  # share: of all lengths
+
+
+def guess(
+    names: Sequence[str],
+    sizes: Mapping[str, tuple[int, int]],
+    lenses: Mapping[str, Camera],
+    takes: Sequence[Take],
+    heights_m: Sequence[Sequence[float | None]],
+) -> Guess:
+    """Place cameras by tracks whose persons are not known, but for the heights in each take.
+
+    `sizes` px by camera; `lenses` are those known. Raises `InputError` where people do not tell.
+    """
+    _check_ways(takes)
+    pairs = relative_poses.pair(_with_lenses(names, sizes, lenses, ANY_FOCAL), takes)
+    tried: list[tuple[int, float, float, list[Camera], list[Track]]] = []
+    fault: InputError | None = None
+    for share in FOCAL_SHARES if set(names) - set(lenses) else (ANY_FOCAL,):
+        try:
+            ways = relative_poses.pose(_with_lenses(names, sizes, lenses, share), takes, pairs)
+        except InputError as error:
+            fault = error
+            continue
+        for posed, tracks in ways:
+            unseen = sum(row < 0 for _, rows in tracks for row in rows)
+            tried.append((unseen, _disagreement(posed, takes, tracks), share, posed, tracks))
+    if not tried:
+        raise fault or InputError("people: expected cameras, found none")
+    *_, cameras, tracks = min(tried, key=lambda one: one[:3])
+    joints = [_placed(cameras, takes, track) for track in tracks]
+    scale, _ = world_frame.metres(_lengths(takes, tracks, joints), heights_m)
+    cameras = [_scaled(camera, scale) for camera in cameras]
+    world = world_frame.floor(scale * np.concatenate(joints), cameras)
+    return Guess([world.camera(camera) for camera in cameras], tracks)
+
+
+def _check_ways(takes: Sequence[Take]) -> None:
+    """Raise an `InputError` if everybody stands still, as all cameras see it."""
+    longest = 0.0
+    for xy in (xy for take in takes for xy in take.xy):
+        middle = np.ma.median(np.ma.masked_invalid(xy), axis=2).filled(np.nan)
+        for track, place in zip(xy, middle, strict=True):
+            seen = np.isfinite(place).all(axis=1)
+            if not seen.any():
+                continue
+            box = np.ma.masked_invalid(track[seen])
+            extent = np.ma.median((box.max(axis=1) - box.min(axis=1)).max(axis=1))
+            low, high = np.quantile(place[seen], [0.05, 0.95], axis=0)
+            longest = max(longest, float(np.linalg.norm(high - low) / max(float(extent), 1.0)))
+    if longest < STILL:
+        raise InputError(
+            f"people: expected somebody who moves by {STILL} of their height or more in a picture, "
+            f"found {longest:.2f}; name takes in which people walk about"
+        )
+
+
+def _with_lenses(names, sizes, lenses: Mapping[str, Camera], share: float) -> list[Camera]:
+    """Return cameras at the origin with the lenses known, and others of one focal length."""
+    found = []
+    for name in names:
+        width, height = sizes[name]
+        f_px = share * max(width, height)
+        matrix = np.array([[f_px, 0, (width - 1) / 2], [0, f_px, (height - 1) / 2], [0, 0, 1]])
+        plain = Camera(name, (width, height), matrix, np.zeros(5), np.eye(3, 4))
+        found.append(replace(lenses.get(name, plain), name=name))
+    return found
+
+
+def _scaled(camera: Camera, factor: float) -> Camera:
+    return replace(camera, cam_from_world=camera.cam_from_world * [1, 1, 1, factor])
+
+
+def track_xy(takes: Sequence[Take], track: Track) -> NDArray:
+    """Return the joints (C, T, J, 2) px of a track, NaN where a camera has none."""
+    take, rows = takes[track[0]], track[1]
+    none = np.full(take.xy[0].shape[1:], np.nan)
+    return np.stack([none if row < 0 else xy[row] for xy, row in zip(take.xy, rows, strict=True)])
+
+
+def _placed(cameras: Sequence[Camera], takes: Sequence[Take], track: Track) -> NDArray:
+    """Return the joints (T, J, 3) of a track in some of its frames."""
+    xy = track_xy(takes, track)
+    xy = xy[:, :: max(1, xy.shape[1] // MOST_FRAMES)]
+    return triangulate_all(cameras, xy.reshape(len(xy), -1, 2)).reshape(*xy.shape[1:3], 3)
+
+
+def _disagreement(cameras, takes, tracks: Sequence[Track]) -> float:
+    """Return how far joints disagree, px, of all tracks together."""
+    every = np.concatenate(
+        [track_xy(takes, track).reshape(len(cameras), -1, 2) for track in tracks], axis=1
+    )
+    seen = np.flatnonzero(np.isfinite(every[..., 0]).sum(axis=0) >= 2)
+    at = seen[np.linspace(0, len(seen) - 1, min(len(seen), MOST_POINTS)).astype(int)]
+    return float(residuals.typical_px(residuals.Rays(every[:, at]).residuals(cameras)))
+
+
+def _lengths(takes, tracks: Sequence[Track], joints: Sequence[NDArray]) -> list[list[float]]:
+    """Return by take the lengths of persons, those seen most first."""
+    found: list[list[tuple[int, float]]] = [[] for _ in takes]
+    for (take, _), xyz in zip(tracks, joints, strict=True):
+        seen = int(np.isfinite(xyz).all(axis=-1).sum())
+        found[take].append((-seen, world_frame.length(xyz)))
+    return [[own for _, own in sorted(one)] for one in found]
+
+
+def adjust(
+    start: Sequence[Camera],
+    lenses: Mapping[str, Camera],
+    seen: Seen,
+    takes_of: Sequence[int],
+    heights_m: Sequence[Sequence[float | None]],
+    limits: Limits,
+) -> Found:
+    """Adjust cameras with the people that they see, from a guess in metres.
+
+    `takes_of` has the take of each track of `seen`. Raises `InputError` where people are too few,
+    stay in one place, or a camera disagrees with the others about joints that the fit left out.
+    """
+    seen = seen.thinned(MOST_ROWS)
+    views.check(start, seen, limits.score)
+    cameras, sigma = list(start), 0.0
+    for _ in range(PASSES):
+        fitted = _refined(cameras, lenses, seen, limits)
+        factor, sigma = _metres(fitted.cameras, seen, takes_of, heights_m, limits)
+        cameras = [_scaled(camera, factor) for camera in fitted.cameras]
+    joints = _joints(cameras, seen, limits)
+    world = world_frame.floor(joints, cameras)
+    score = held_out.score(
+        lambda part, _: _refined(cameras, lenses, part, limits).cameras, seen, Points(), limits
+    )
+    check(cameras, score)
+    cameras = [world.camera(camera) for camera in cameras]
+    places = world.points(joints).reshape(-1, 3)
+    places = places[np.isfinite(places).all(axis=1)]
+    places = places[np.linspace(0, len(places) - 1, MOST_PLACES).astype(int)]
+    covariance = world_frame.of_shape(cameras, fitted.covariance, places, sigma)
+    named = camera_covariance.of_network([camera.name for camera in cameras], covariance)
+    return Found(cameras, named, score, sigma)
+
+
+def said(found: Found, takes: Sequence[str]) -> dict[str, Any]:
+    """Return the quality of cameras as numbers and one `line`."""
+    share = 1000 * found.score.typical()
+    accepted = dict(
+        zip((c.name for c in found.cameras), found.score.accepted_percent(), strict=True)
+    )
+    lowest = min(accepted, key=accepted.__getitem__)
+    return {
+        "takes": list(takes),
+        "held_out_joints_permille": round(share, 3),
+        "accepted_percent": {name: round(float(value), 1) for name, value in accepted.items()},
+        "scale_sigma_percent": round(100 * found.scale_sigma, 2),
+        "warnings": [],
+        "line": f"people alone: joints that the fit left out disagree by {share:.1f} thousandths "
+        f"of the height; {accepted[lowest]:.0f} % of views or more are accepted ({lowest}); "
+        f"lengths are known to {100 * found.scale_sigma:.1f} % by stated heights",
+    }
+
+
+def _refined(cameras, lenses, seen: Seen, limits: Limits) -> adjustment.Refined:
+    """Adjust cameras about which little is known but lenses of boards."""
+    guessed, known = (
+        prior.stated(cameras, **LOOSE, **lens).covariance for lens in (GUESSED, KNOWN)
+    )
+    of_board = np.repeat([camera.name in lenses for camera in cameras], len(PARAMETERS))
+    names = [camera.name for camera in cameras]
+    about = CameraCovariance(names, np.where(of_board[:, None], known, guessed))
+    return adjustment.refine(cameras, seen, prior.knowledge(cameras, about), limits)
+
+
+def _joints(cameras, seen: Seen, limits: Limits) -> NDArray:
+    """Return the joints (T, J, 3) m that views agree on."""
+    found = views.placed(cameras, seen, limits.score, limits.limit, limits.fade)
+    return found.xyz.reshape(len(seen.track), -1, 3)
+
+
+def _metres(cameras, seen: Seen, takes_of, heights_m, limits) -> tuple[float, float]:
+    joints, tracks = _joints(cameras, seen, limits), np.unique(seen.track)
+    each = [(takes_of[track], ()) for track in tracks]
+    found = _lengths(heights_m, each, [joints[seen.track == track] for track in tracks])
+    return world_frame.metres(found, heights_m)
+
+
+def check(cameras: Sequence[Camera], score: Score) -> None:
+    """Raise an `InputError` for a camera that disagrees with the others where it was not fitted."""
+    for camera, share in zip(cameras, score.accepted_percent(), strict=True):
+        if not share >= LEAST_ACCEPTED:
+            raise InputError(
+                f"camera {camera.name}: expected {LEAST_ACCEPTED:.0f} % or more of its views of "
+                f"joints to agree with those of the others, found {share:.0f} %; check its clock "
+                "and video, or name takes in which it sees more of people"
+            )

@@ -1,0 +1,333 @@
+"""Where cameras stand towards each other, from the tracks of people alone; the scale is free.
+
+Which track of one camera is which of another is not known either: pairs of tracks are tried, and
+the essential matrix that most joints of all tracks agree with is kept (Nistér 2004). Joints of the
+two cameras that tell most become points, and the other cameras are resected from these.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations, product
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.geometry import epipolar, rotations, triangulation
+from courtside.geometry.camera import Camera, undistort
+from courtside.study.errors import InputError
+
+MOST_ROWS = 4  # tracks of one camera in one take that are tried as one person: the longest
+LEAST_OVERLAP = 200  # joints that two tracks share, to be tried as one person
+SAMPLE = 1500  # joints that an estimate rests on: neighbouring frames err alike
+AGREE = 0.02  # ASSUME: of a person's extent: how far joints are off their epipolar lines
+LEAST_SHARE = 0.5  # ASSUME: of two tracks' joints that agree if they show one person
+RIVAL = 0.9  # ASSUME: of the joints that the best pairing explains; another with more is as good
+LEAST_SINE = 0.05  # ASSUME: of the angle between rays, 3 degrees: less is no parallax
+IN_FRONT = 0.75  # ASSUME: least share of joints in front of a camera
+CONFIDENCE, ROUNDS = 0.9999, 2000  # of the random samples
+IDEAL = np.eye(3)  # the matrix of a camera whose pixels are rays
+
+Track = tuple[int, tuple[int, ...]]  # take, and the row of each camera; -1 where it has none
+Rays = list[list[NDArray]]  # by take and camera: tracks (R, T, J, 2) on the z = 1 plane
+
+
+@dataclass(frozen=True, eq=False)
+class Take:
+    """The tracklets of one take at common times: R rows, T times, J joints."""
+
+    name: str
+    xy: list[NDArray]  # by camera (R, T, J, 2): distorted px, NaN where unseen or unsure
+
+    def longest(self, camera: int, most: int | None = None) -> list[int]:
+        """Return the rows of a camera that show enough joints, those with most first."""
+        seen = np.isfinite(self.xy[camera][..., 0]).sum(axis=(1, 2))
+        order = np.argsort(-seen, kind="stable")[:most]
+        return [int(row) for row in order if seen[row] >= LEAST_OVERLAP]
+
+
+@dataclass(frozen=True, eq=False)
+class Paired:
+    """Two cameras, and the tracks that show one person in both."""
+
+    cameras: tuple[int, int]
+    rows: list[tuple[int, int, int]]  # take, row of the first camera, row of the second
+    agreeing: int  # joints
+    rival: float  # of so many joints, the share that another pairing of the same tracks explains
+
+
+def pair(cameras: Sequence[Camera], takes: Sequence[Take]) -> list[Paired]:
+    """Return of each two cameras which tracks show one person; lenses may be guessed.
+
+    Raises `InputError` where no two cameras share enough joints, or tracks can be paired in
+    another way as well.
+    """
+    rays = _rays(cameras, takes)
+    every = combinations(range(len(cameras)), 2)
+    found = [one for two in every if (one := _paired(takes, rays, two)) is not None]
+    if not found:
+        raise InputError(
+            f"people: expected {LEAST_OVERLAP} joints or more of one person whom two cameras see "
+            "at the same time, found fewer that agree in every two cameras; name longer takes, and "
+            "check the clocks"
+        )
+    found.sort(key=lambda one: -one.agreeing)
+    if (best := found[0]).rival > RIVAL:
+        names = " and ".join(cameras[camera].name for camera in best.cameras)
+        raise InputError(
+            f"take {takes[best.rows[0][0]].name}: expected one way to pair the tracks of cameras "
+            f"{names}, found another that explains {100 * best.rival:.0f} % as many joints; name a "
+            "take with one person in it, too"
+        )
+    return found
+
+
+def pose(
+    cameras: Sequence[Camera], takes: Sequence[Take], pairs: Iterable[Paired]
+) -> list[tuple[list[Camera], list[Track]]]:
+    """Return ways to pose the cameras and tracks of persons, from each two cameras, widest first.
+
+    Their lenses are used, known or guessed, their poses not. The world has the axes of one camera,
+    the unit of length is the distance of two. Raises `InputError` where people do not tell.
+    """
+    rays = _rays(cameras, takes)
+    related = [one for two in pairs if (one := _related(rays, two)) is not None]
+    related.sort(key=lambda one: -one.pair.agreeing * one.sine)
+    _check(cameras, related)
+    found: list[tuple[list[Camera], list[Track]]] = []
+    blind: list[int] = []
+    for one in related:
+        poses, tracks, lost = _resected(takes, rays, one)
+        blind += lost
+        if not lost:
+            each = zip(cameras, poses, strict=True)
+            posed = [replace(camera, cam_from_world=pose) for camera, pose in each]
+            found.append((posed, tracks))
+    if not found:
+        name = cameras[max(blind, key=blind.count)].name
+        raise InputError(
+            f"camera {name}: expected {LEAST_OVERLAP // 2} joints or more that two other cameras "
+            "see, too, found fewer that agree; name a take in which somebody walks through the "
+            "views of all cameras, and check its clock and that its video is not mirrored"
+        )
+    return found
+
+
+def _rays(cameras: Sequence[Camera], takes: Sequence[Take]) -> Rays:
+    return [
+        [undistort(camera, xy) for camera, xy in zip(cameras, take.xy, strict=True)]
+        for take in takes
+    ]
+
+
+def _reach(rays: NDArray) -> NDArray:
+    """Return how far joints of tracks (R, T, J, 2) may be off, (R,): shares of their extents."""
+    known = np.isfinite(rays).all(axis=-1, keepdims=True)
+    high = np.where(known, rays, -np.inf).max(axis=2)
+    low = np.where(known, rays, np.inf).min(axis=2)
+    sides = np.where(np.isfinite(high), high, 0.0) - np.where(np.isfinite(low), low, 0.0)
+    longer = np.ma.masked_equal(sides.max(axis=-1), 0.0)
+    return AGREE * np.ma.median(longer, axis=1).filled(0.0)
+
+
+def _thinned(at: NDArray) -> tuple[NDArray, ...]:
+    """Return evenly chosen rows of indices (N, 2), as indices of arrays."""
+    chosen = np.linspace(0, len(at) - 1, min(len(at), SAMPLE)).astype(int)
+    return tuple(at[chosen].T)
+
+
+def _shared(a: NDArray, b: NDArray) -> tuple[NDArray, NDArray]:
+    """Return joints (N, 2) that two tracks (T, J, 2) share."""
+    at = _thinned(np.argwhere(np.isfinite(a[..., 0]) & np.isfinite(b[..., 0])))
+    return a[at], b[at]
+
+
+def _essential(a: NDArray, b: NDArray, reach: float) -> NDArray | None:
+    """Return the essential matrix of joints (N, 2) on the z = 1 planes of two cameras."""
+    matrix, _ = cv2.findEssentialMat(
+        a, b, IDEAL, method=cv2.RANSAC, prob=CONFIDENCE, threshold=reach, maxIters=ROUNDS
+    )
+    return None if matrix is None else matrix[:3]
+
+
+def _agreeing(
+    matrix: NDArray, takes: Sequence[Take], rays: Rays, two: tuple[int, int]
+) -> tuple[list[tuple[int, int, int]], int]:
+    """Return the pairs of tracks that agree with an essential matrix, and how many joints do.
+
+    At no time is one track paired with two.
+    """
+    tried = []
+    for t, take in enumerate(takes):
+        a, b = (rays[t][camera] for camera in two)
+        limit = _reach(a)[:, None] / 2 + _reach(b) / 2
+        for i, j in product(*(take.longest(camera) for camera in two)):
+            off = np.abs(epipolar.distance_px(matrix, a[i], b[j]))
+            known, near = np.isfinite(off), np.nan_to_num(off, nan=np.inf) <= limit[i, j]
+            if known.any() and near.sum() >= LEAST_SHARE * known.sum():
+                tried.append((int(near.sum()), (t, i, j), known.any(axis=1)))
+    rows: list[tuple[int, int, int]] = []
+    total = 0
+    used: dict[tuple[int, int, int], Any] = {}
+    for count, key, times in sorted(tried, key=lambda one: -one[0]):
+        ends = [(key[0], side, row) for side, row in enumerate(key[1:])]
+        if not any((used.get(end, False) & times).any() for end in ends):
+            rows.append(key)
+            total += count
+            used |= {end: used.get(end, False) | times for end in ends}
+    return rows, total
+
+
+def _paired(takes: Sequence[Take], rays: Rays, two: tuple[int, int]) -> Paired | None:
+    """Return which tracks of two cameras belong together, by the pairing that explains most."""
+    found = []
+    for t, take in enumerate(takes):
+        a, b = (rays[t][camera] for camera in two)
+        limit = _reach(a)[:, None] / 2 + _reach(b) / 2
+        for i, j in product(*(take.longest(camera, MOST_ROWS) for camera in two)):
+            one, other = _shared(a[i], b[j])
+            matrix = _essential(one, other, limit[i, j]) if len(one) >= LEAST_OVERLAP else None
+            if matrix is not None:
+                found.append(_agreeing(matrix, takes, rays, two))
+    found.sort(key=lambda one: -one[1])
+    if not found or not found[0][0]:
+        return None
+    rows, count = found[0]
+    rivals = [n for others, n in found if _contradict(takes, two, rows, others)]
+    return Paired(two, rows, count, max(rivals, default=0) / count)
+
+
+def _contradict(takes: Sequence[Take], two: tuple[int, int], rows, others) -> bool:
+    """Say whether two pairings give one track different partners at the same time."""
+    for (t, *one), (u, *other), side in product(rows, others, (0, 1)):
+        if t == u and one[side] == other[side] and one[1 - side] != other[1 - side]:
+            partners = takes[t].xy[two[1 - side]][[one[1 - side], other[1 - side]]]
+            if np.isfinite(partners[..., 0]).any(axis=2).all(axis=0).any():
+                return True
+    return False
+
+
+@dataclass(frozen=True, eq=False)
+class _Related:
+    """Two cameras whose relative pose is known but for its length."""
+
+    pair: Paired
+    pose: NDArray  # (3, 4): of the second camera in the first's axes; its shift has length 1
+    sine: float  # of the angle between rays, median
+
+
+def _related(rays: Rays, pair: Paired) -> _Related | None:
+    a, b = pair.cameras
+    both = [_shared(rays[t][a][i], rays[t][b][j]) for t, i, j in pair.rows]
+    one, other = (np.concatenate(part) for part in zip(*both, strict=True))
+    reach = float(np.median([_reach(rays[t][a])[i] / 2 + _reach(rays[t][b])[j] / 2
+                             for t, i, j in pair.rows]))  # fmt: skip
+    every = np.linspace(0, len(one) - 1, min(len(one), 2 * SAMPLE)).astype(int)
+    matrix = _essential(one[every], other[every], reach)
+    if matrix is None:
+        return None
+    near = np.abs(epipolar.distance_px(matrix, one, other)) <= reach
+    if not near.any():
+        return None
+    _, rotation, shift, _ = cv2.recoverPose(matrix, one[near], other[near], IDEAL)
+    sine = np.median(np.sin(_angles(rotation, one[near], other[near])))
+    return _Related(pair, np.column_stack([rotation, shift]), float(sine))
+
+
+def _angles(rotation: NDArray, one: NDArray, other: NDArray) -> NDArray:
+    """Return the angles (N,) between rays of two cameras, radians."""
+    first, second = (
+        rotations.unit(np.pad(xy, ((0, 0), (0, 1)), constant_values=1.0)) for xy in (one, other)
+    )
+    return np.arccos(np.clip((first @ rotation.T * second).sum(axis=1), -1, 1))
+
+
+def _check(cameras: Sequence[Camera], posed: list[_Related]) -> None:
+    """Raise an `InputError` where two cameras do not tell how they stand."""
+    widest = max(posed, key=lambda one: one.sine, default=None)
+    if widest is None or widest.sine < LEAST_SINE:
+        found = np.degrees(np.arcsin(widest.sine)) if widest else 0.0
+        raise InputError(
+            f"cameras {', '.join(camera.name for camera in cameras)}: expected two whose rays to a "
+            f"joint meet at {np.degrees(np.arcsin(LEAST_SINE)):.0f} degrees or more, found "
+            f"{found:.1f} at most; place cameras further apart"
+        )
+
+
+def _resected(
+    takes: Sequence[Take], rays: Rays, best: _Related
+) -> tuple[list[NDArray], list[Track], list[int]]:
+    """Return poses (3, 4) in the axes of the first of two cameras, persons, and who is lost."""
+    two, n_cameras = best.pair.cameras, len(rays[0])
+    poses, lost = {two[0]: np.eye(3, 4), two[1]: best.pose}, list[int]()
+    points = [_points(rays[t], two, rows, best.pose) for t, *rows in best.pair.rows]
+    persons = [{two[0]: i, two[1]: j} for _, i, j in best.pair.rows]
+    for camera in sorted(set(range(n_cameras)) - set(two)):
+        tried = [
+            (*_posed(xyz, rays[t][camera][row], _reach(rays[t][camera])[row]), number, row)
+            for number, ((t, *_), xyz) in enumerate(zip(best.pair.rows, points, strict=True))
+            for row in takes[t].longest(camera, MOST_ROWS)
+        ]
+        count, pose, *_ = max(tried, key=lambda one: one[0], default=(0, None, 0, 0))
+        near: list[tuple[int, int]] = []
+        if pose is not None and count >= LEAST_OVERLAP // 2:
+            near = list(_followed(takes, rays, camera, pose, best.pair.rows, points))
+        if pose is None or not near:
+            lost.append(camera)
+            continue
+        poses[camera] = pose
+        for number, row in near:
+            persons[number][camera] = row
+    tracks = [
+        (t, tuple(person.get(camera, -1) for camera in range(n_cameras)))
+        for (t, *_), person in zip(best.pair.rows, persons, strict=True)
+    ]
+    return [poses.get(camera, np.eye(3, 4)) for camera in range(n_cameras)], tracks, lost
+
+
+def _points(rays: list[NDArray], two, rows, pose: NDArray) -> NDArray:
+    """Return the joints (T, J, 3) that a track has in the axes of the first of two cameras."""
+    both = np.stack([rays[camera][row] for camera, row in zip(two, rows, strict=True)])
+    flat = both.reshape(2, -1, 2)
+    weight = np.isfinite(flat).all(axis=-1).astype(float)
+    xyz = triangulation.triangulate(np.nan_to_num(flat), weight, np.stack([np.eye(3, 4), pose]))
+    return xyz.reshape(*both.shape[1:3], 3)
+
+
+def _posed(xyz: NDArray, rays: NDArray, reach: float) -> tuple[int, NDArray | None]:
+    """Return how many joints (T, J, 3) a track (T, J, 2) agrees with, and its camera's pose."""
+    at = np.argwhere(np.isfinite(xyz).all(axis=-1) & np.isfinite(rays[..., 0]))
+    if len(at) < LEAST_OVERLAP // 2:
+        return 0, None
+    place, ray = xyz[_thinned(at)], rays[_thinned(at)]
+    fine, vector, shift, near = cv2.solvePnPRansac(
+        place, ray, IDEAL, None, iterationsCount=ROUNDS, confidence=CONFIDENCE,
+        reprojectionError=2 * float(reach), flags=cv2.SOLVEPNP_SQPNP,
+    )  # fmt: skip
+    if not fine or near is None:
+        return 0, None
+    pose = np.column_stack([rotations.rotation_from_rodrigues(vector.ravel()), shift])
+    depth = place[near[:, 0]] @ pose[2, :3] + pose[2, 3]
+    return (len(near), pose) if (depth > 0).mean() >= IN_FRONT else (0, None)
+
+
+def _followed(
+    takes: Sequence[Take], rays: Rays, camera: int, pose: NDArray, rows, points
+) -> Iterator[tuple[int, int]]:
+    """Yield which row of a posed camera shows each track of two others, best first."""
+    tried = []
+    for number, ((t, *_), xyz) in enumerate(zip(rows, points, strict=True)):
+        in_cam = xyz @ pose[:, :3].T + pose[:, 3]
+        for row in takes[t].longest(camera):
+            own = rays[t][camera][row]
+            off = np.linalg.norm(in_cam[..., :2] / in_cam[..., 2:] - own, axis=-1)
+            known, limit = np.isfinite(off), 3 * _reach(rays[t][camera])[row]
+            near = int((known & (np.nan_to_num(off, nan=np.inf) <= limit)).sum())
+            if known.any() and near >= LEAST_SHARE * known.sum():
+                tried.append((near, number, row))
+    taken: set[int] = set()
+    for _, number, row in sorted(tried, key=lambda one: -one[0]):
+        if number not in taken:
+            taken.add(number)
+            yield number, row

@@ -1,0 +1,95 @@
+"""Takes as the calibration from people alone needs them: tracks of joints at common times."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.calibration.people import from_nothing
+from courtside.calibration.people.relative_poses import Take
+from courtside.calibration.people.views import Seen, joined
+from courtside.geometry import camera as camera_models
+from courtside.geometry.camera import Camera
+from courtside.reconstruction import person_height, resampling
+from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints import skeleton
+from courtside.records.keypoints.keypoints import Keypoints2D
+from courtside.study.errors import InputError
+
+# A take's name, the keypoints of each camera that films it, and their clocks by camera.
+Filmed = tuple[str, Sequence[Keypoints2D], Mapping[str, Clock]]
+MIN_SCORE = 0.5  # ASSUME: of joints that cameras are first guessed by
+
+
+def tracks(
+    name: str, views: Sequence[Keypoints2D], clocks: Mapping[str, Clock], cameras: Sequence[str]
+) -> Take:
+    """Return a take's tracklets at common times; a camera that does not film it has none."""
+    time_s = _times(views, clocks)
+    xy = {camera: np.zeros((0, len(time_s), len(skeleton.JOINTS), 2)) for camera in cameras}
+    for view in views:
+        found, score = _resampled(view, time_s, clocks)
+        sure = np.nan_to_num(score) >= MIN_SCORE
+        xy[view.camera] = np.where(sure[..., None], found, np.nan)
+    return Take(name, list(xy.values()))
+
+
+def seen(first: from_nothing.Guess, takes: Sequence[Filmed]) -> Seen:
+    """Return what cameras, roughly known, see of the persons whom their tracks show."""
+    cameras = first.cameras
+    resampled = [_by_camera(cameras, views, clocks) for _, views, clocks in takes]
+    parts = []
+    for take, rows in first.tracks:
+        time_s, by_camera = resampled[take]
+        shape = (len(cameras), len(time_s), len(skeleton.JOINTS))
+        xy, score = np.full((*shape, 2), np.nan), np.full(shape, np.nan)
+        for at, (row, view) in enumerate(zip(rows, by_camera, strict=True)):
+            if row >= 0 and view is not None:
+                xy[at], score[at] = view[0][row], view[1][row]
+        height_px = person_height.in_pictures(cameras, xy[:, None], score[:, None], skeleton.JOINTS)
+        track = np.zeros(len(time_s), dtype=int)
+        parts.append(Seen(xy, score, height_px[:, 0], track, time_s))
+    return joined(parts)
+
+
+def guess(
+    names: Sequence[str],
+    lenses: Mapping[str, Camera],
+    takes: Sequence[Filmed],
+    heights_m: Sequence[Sequence[float | None]],
+) -> from_nothing.Guess:
+    """Place cameras roughly; the arguments are as for `from_nothing.guess`."""
+    sizes = {
+        view.camera: (int(view.size[0]), int(view.size[1])) for _, views, _ in takes
+        for view in views
+    }  # fmt: skip
+    if blind := [name for name in names if name not in sizes]:
+        raise InputError(
+            f"camera {blind[0]}: expected a take that it films, found none; people alone place a "
+            "camera: name takes that show them in all cameras"
+        )
+    for name, lens in lenses.items():
+        camera_models.check_size(lens, sizes[name], f"keypoints of camera {name}")
+    found = [tracks(name, views, clocks, names) for name, views, clocks in takes]
+    return from_nothing.guess(names, sizes, lenses, found, heights_m)
+
+
+def _times(views: Sequence[Keypoints2D], clocks: Mapping[str, Clock]) -> NDArray:
+    return resampling.common_times(views, [clocks[view.camera] for view in views])
+
+
+def _resampled(
+    view: Keypoints2D, time_s: NDArray, clocks: Mapping[str, Clock]
+) -> tuple[NDArray, NDArray]:
+    """Return a view's limb joints: xy (R, T, J, 2) and score (R, T, J)."""
+    joints = [list(view.joints).index(name) for name in skeleton.JOINTS]
+    xy, score = resampling.resample(view, time_s, clocks[view.camera])
+    return xy[:, :, joints], score[:, :, joints]
+
+
+def _by_camera(cameras: Sequence[Camera], views, clocks):
+    time_s, found = _times(views, clocks), {view.camera: view for view in views}
+    return time_s, [
+        _resampled(found[camera.name], time_s, clocks) if camera.name in found else None
+        for camera in cameras
+    ]
