@@ -42,7 +42,7 @@ from courtside.study.configuration import yaml_files
 
 SESSIONS = ("players-a", "players-b", "players-shaken", "repeats")
 LONG = 1000  # frames
-LONGEST = ("players-b", ("footwork", "sfm-n40"))
+LONGEST = ("players-b", ("footwork", "sfm-n40-lines"))
 MODEL, FUSION = "blazepose-heavy", "all-robust"
 STAGES = ("corrected", "model")
 ANGLES = ("knee_flexion", "hip_flexion", "elbow_flexion", "shoulder_elevation", "trunk_lean")

@@ -41,11 +41,9 @@ def of_take(results, name):
     """Return the errors of each foot of a take."""
     session, take = name.split("/")
     folder = results / session / "takes" / take
-    found = sorted((folder / "pose3d_corrected").glob("*/all-robust/blazepose-*.npz"))
-    calibrations = [path.parts[-3] for path in found]
-    at = calibrations.index("sfm-n40") if "sfm-n40" in calibrations else 0
-    way = "/".join(found[at].parts[-3:]).removesuffix(".npz")
-    points = keypoints.read_3d(found[at])
+    path = min((folder / "pose3d_corrected").glob("*/all-robust/blazepose-*.npz"))
+    way = "/".join(path.parts[-3:]).removesuffix(".npz")
+    points = keypoints.read_3d(path)
     chosen, _ = cutoffs.read(folder / "kinematics" / f"{way}.cutoffs.csv")
     per_joint = skeleton.read(ROOT / "config/skeletons/blazepose33.yaml").by_group(chosen)
     truth = take_truth.read(results / "virtual" / session / "takes" / take / "truth.npz")

@@ -1,6 +1,6 @@
 """A camera knocked at mid-take, found and measured by people alone: a virtual session.
 
-    python benchmarks/knocked_camera.py results SESSION TAKE [--base sfm-n40] [--seeds 2]
+    python benchmarks/knocked_camera.py results SESSION TAKE [--base sfm-n40-lines] [--seeds 2]
 
 Each camera in turn is knocked about a random axis: its keypoints from then on are where the turned
 camera would have seen them; clocks and people are those without the knock. No video is used. Told
@@ -56,7 +56,7 @@ def main():
     parser.add_argument("results", type=Path)
     parser.add_argument("session")
     parser.add_argument("take")
-    parser.add_argument("--base", default="sfm-n40")
+    parser.add_argument("--base", default="sfm-n40-lines")
     parser.add_argument("--model", default="blazepose-heavy")
     parser.add_argument("--deg", type=float, default=0.4)
     parser.add_argument("--seeds", type=int, default=2)

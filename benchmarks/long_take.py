@@ -140,7 +140,7 @@ def main():
     parser.add_argument("session")
     parser.add_argument("take")
     parser.add_argument("--minutes", type=float, nargs="+", default=[0.5, 2.0, 10.0])
-    parser.add_argument("--calibration", default="sfm-n40")
+    parser.add_argument("--calibration", default="sfm-n40-lines")
     parser.add_argument("--model", default="blazepose-full")
     parser.add_argument("--json", type=Path)
     asked = parser.parse_args()

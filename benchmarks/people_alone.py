@@ -17,12 +17,12 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
+from people_seen import CONFIG, LIMITS, ROOT
 
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
 from courtside.calibration.people import from_nothing
-from courtside.calibration.people.adjustment import Limits
 from courtside.evaluation.numbers import stated
 from courtside.geometry import camera as camera_models
 from courtside.geometry import similarity
@@ -35,14 +35,11 @@ from courtside.records.truth import session_truth, take_truth
 from courtside.study.configuration import yaml_files
 from courtside.synchronisation import cameras as camera_sync
 
-ROOT = Path(__file__).resolve().parents[1]
 MODEL, TAKES = "blazepose-heavy", ("footwork", "crossing")
 THREE = ("oblique", "mirror", "front")  # not on one line
 MADE = "benchmark", "`python benchmarks/people_alone.py RESULTS`"
 EVERY = 12  # of the true frames: neighbouring ones say the same
 QUANTILE_90 = 6.251  # of chi-squared with 3 degrees of freedom
-CONFIG = yaml_files.read(ROOT / "config" / "config.yaml")
-LIMITS = Limits(*(CONFIG["triangulate"][k] for k in ("min_score", "max_error_share", "fade_share")))
 
 
 def filmed(results, session, name, take, names, cameras=None):

@@ -13,7 +13,7 @@ CONFIG = yaml_files.read(ROOT / "config" / "config.yaml")
 CLICK_KEYS = ("click_sigma_px", "click_bias_px", "click_loss")
 WEIGHTS = {key: CONFIG["adjust_network"][key] for key in CLICK_KEYS}
 STATED = {key: value for key, value in CONFIG["refine_cameras"].items() if key != "takes"}
-LIMITS = Limits(*(CONFIG["triangulate"][k] for k in ("min_score", "max_error_share", "fade_share")))
+LIMITS = Limits.of(CONFIG["triangulate"])
 
 
 def of_takes(session, takes, way, model, names, people="found.npz"):

@@ -1,6 +1,6 @@
 """How near to the truth people bring disturbed cameras: a virtual session, with and without clicks.
 
-    python benchmarks/refined_by_people.py results SESSION TAKE ... [--base sfm-n40] [--seeds 6]
+    python benchmarks/refined_by_people.py results SESSION TAKE ... [--base CALIBRATION] [--seeds 6]
 
 SESSION is a virtual session whose takes were detected and associated with the calibration BASE. For
 each seed the true cameras are disturbed as `refine_cameras` of config.yaml states (0.3 degrees, 3
@@ -67,7 +67,7 @@ def main():
     parser.add_argument("results", type=Path)
     parser.add_argument("session")
     parser.add_argument("takes", nargs="+")
-    parser.add_argument("--base", default="sfm-n40")
+    parser.add_argument("--base", default="sfm-n40-lines")
     parser.add_argument("--model", default="blazepose-heavy")
     parser.add_argument("--seeds", type=int, default=6)
     given = parser.parse_args()

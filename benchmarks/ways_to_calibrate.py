@@ -52,7 +52,7 @@ from courtside.study.configuration import yaml_files
 from refined_by_people import disturbed, errors
 from virtualgym.session import clicks as clicking
 
-SESSION, TAKE, BASE, MODEL = "players-b", "footwork", "sfm-n40", "blazepose-heavy"
+SESSION, TAKE, BASE, MODEL = "players-b", "footwork", "sfm-n40-lines", "blazepose-heavy"
 LOOKS = ("plain", "rich")
 LINES = ("plain-a", "rich-a", "plain-b", "players-a", "players-b")
 LINES_DRAWS = 30

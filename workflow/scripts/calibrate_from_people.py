@@ -20,7 +20,7 @@ def main(paths, cameras_toml, covariance_npz, quality_json, *, names, takes, clo
     }
     filmed = [[keypoints.read_2d(path) for path in take["pose2d"]] for take in takes]
     heights_m = [take["heights_m"] for take in takes]
-    limits = Limits(views["min_score"], views["max_error_share"], views["fade_share"])
+    limits = Limits.of(views)
 
     def timed(cameras):
         """Return of each take its name, keypoints and clocks, by cameras where they are known."""
