@@ -19,12 +19,12 @@ def main(
     ties_npz,
     clicks_csv,
     court_yaml,
-    pictures,
     cameras_toml,
     covariance_npz,
     quality_json,
     *,
     calibration,
+    pictures=(),
     **options,
 ):
     record = tie_points.read(ties_npz)
@@ -64,7 +64,7 @@ def calibrate(record, clicks_csv, court_yaml, **options):
     return found, checked
 
 
-def solve(record, clicks_csv, court_yaml, *, pictures, search, **options):
+def solve(record, clicks_csv, court_yaml, *, pictures, search=None, **options):
     if not court_yaml:
         return joint_adjustment.free(record.ties), quality.check_maps(*record.n_maps)
     court = court_files.read(court_yaml)
