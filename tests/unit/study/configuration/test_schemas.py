@@ -48,3 +48,13 @@ def test_an_entry_that_repeats_is_named():
     skeleton = {"joints": names, "bones": [], "segments": {}, "groups": {}}
     (line,) = schemas.faults(skeleton, "skeleton", Path("long.yaml"))
     assert line == "long.yaml: joints: expected entries that differ, found 'neck' again"
+
+
+@pytest.mark.parametrize(
+    ("name", "n_faults"),
+    [("people", 0), ("sfm-n40-lines", 0), ("sfm-n40-lines-people", 0), ("people-people", 1)],
+)
+def test_a_session_may_name_calibrations_of_its_own(name, n_faults):
+    session = {"court": "none", "cameras": {}, "override": {"calibrations": [name]}}
+    found = schemas.faults(session, "session", Path("s.yaml"))
+    assert len([line for line in found if "override.calibrations" in line]) == n_faults
