@@ -20,9 +20,9 @@ FLOOR_M = 0.01  # of a standing point's height
 
 @dataclass(frozen=True, eq=False)
 class Held:
-    """Heels and toes that stand, by how much they count; 0 where they swing."""
+    """How strongly standing heels and toes are held in each frame; 0 where they swing."""
 
-    points: NDArray  # (H,) int: of the shape's
+    points: NDArray  # (H,) int: rows of the shape's points
     between: NDArray  # (T - 1, H) 1/m2: of the squared way to the next frame
     floor: NDArray  # (T, H) 1/m2: of the squared height above `height`
     height: NDArray  # (H,) m

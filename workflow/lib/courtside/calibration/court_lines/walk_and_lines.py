@@ -97,8 +97,8 @@ def of_edges(
 ) -> Told:
     """Return what edges, by camera, tell about the cameras that they give.
 
-    `base` is the solution of ties and clicks alone. A camera whose edges contradict it brings none;
-    a warning names it.
+    `base` is the solution of ties and clicks alone. Edges of a camera that contradict it are left
+    out, and a warning names the camera.
     """
     off = {name: _off_sigmas(base, name, seen, court) for name, seen in measured.items()}
     found = {name: seen for name, seen in measured.items() if off[name] <= CONTRADICTED}

@@ -3,8 +3,8 @@
 A knocked camera turned in place: it has one pose before and another after. In each row, the joints
 seen by two cameras give epipolar residuals, linear in the turn of either camera. Their normal
 equations, summed over time, tell for each camera and each time how much better a step fits than
-none: the cost is linear in rows. No video is needed. Takes in a row are one take whose knocks, if
-any, are where takes meet.
+none: the cost is linear in rows. No video is needed. Several takes, in their order, are treated as
+one take in which knocks can only be where two takes meet.
 """
 
 from collections.abc import Mapping, Sequence
@@ -135,9 +135,9 @@ def between(
     takes: Mapping[str, Seen],
     limits: Limits,
 ) -> tuple[Seen, list[dict[str, Any]]]:
-    """Return what was seen in all takes, in their order, without knocks between them, and these.
+    """Find knocks between takes; return what was seen in all, without them, and the knocks' rows.
 
-    A row for each take from the knock on: its camera was turned before the take began.
+    Takes are in their order. Each take after a knock has a row: its camera was turned before it.
     """
     names, parts, start_s = list(takes), [], [0.0]
     for part in takes.values():

@@ -86,7 +86,7 @@ def pair(cameras: Sequence[Camera], takes: Sequence[Take]) -> list[Paired]:
 def pose(
     cameras: Sequence[Camera], takes: Sequence[Take], pairs: Iterable[Paired]
 ) -> list[tuple[list[Camera], list[Track]]]:
-    """Return ways to pose the cameras and tracks of persons, from each two cameras, widest first.
+    """Return possible poses of all cameras, with persons' tracks, from each two; the best first.
 
     Their lenses are used, known or guessed, their poses not. The world has the axes of one camera,
     the unit of length is the distance of two. Raises `InputError` where people do not tell.

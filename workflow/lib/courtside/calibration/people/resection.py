@@ -1,4 +1,4 @@
-"""A camera that nobody's views agree with, found again by joints that the other cameras place."""
+"""A camera whose views agree with no other, found again by joints that the others place."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -36,10 +36,11 @@ def lost(cameras: Sequence[Camera], seen: Seen, limits: Limits) -> list[int]:
 def find(
     camera: Camera, xyz: NDArray, tracklets: NDArray, limits: Limits
 ) -> tuple[Camera, int] | None:
-    """Find a camera's pose by who is who; None where nobody fits.
+    """Find a camera's pose by persons whom other cameras place; None where no tracklet fits.
 
-    `xyz` (K, T, J, 3) m has persons, `tracklets` (P, T, J, 2) px rows of the camera at the same
-    times, NaN where missing. The pair of most agreeing joints counts; also return how many.
+    `xyz` (K, T, J, 3) m are joints of persons, `tracklets` (P, T, J, 2) px those that the camera
+    sees at the same times; NaN where missing. Each tracklet is tried as each person. Return the
+    camera for the pair with most agreeing joints, and how many agree.
     """
     best: tuple[Camera, int] | None = None
     for row in tracklets:
@@ -81,7 +82,7 @@ def _pose(camera: Camera, xyz: NDArray, xy: NDArray, limit_px: float) -> tuple[C
 def widened(
     known: CameraCovariance, cameras: Sequence[Camera], which: Sequence[int]
 ) -> CameraCovariance:
-    """Return what is known of cameras, where next to nothing is known of some."""
+    """Return what is known of cameras, with next to nothing of the poses of `which`."""
     size, covariance = len(PARAMETERS), known.of([c.name for c in cameras]).covariance.copy()
     for at in which:
         own = slice(size * at, size * (at + 1))

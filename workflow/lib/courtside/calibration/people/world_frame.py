@@ -36,7 +36,8 @@ LEAST_FRAMES = 20  # ASSUME: that the length of a body needs
 def length(xyz: NDArray) -> float:
     """Return the length of leg and trunk of a person by joints (T, J, 3), NaN where unknown.
 
-    The sum of medians over frames: shorter in no posture. Joints are those of `skeleton.JOINTS`.
+    The sum of the medians of its parts over frames: no posture shortens it. Joints are those of
+    `skeleton.JOINTS`.
     """
     place = {name: xyz[:, at] for at, name in enumerate(skeleton.JOINTS)}
     middle = {part: _middle(place, part) for part in ("shoulder", "hip")}
@@ -86,8 +87,8 @@ def metres(
 def floor(xyz: NDArray, cameras: Sequence[Camera]) -> Sim3:
     """Return `world_from_cameras` for joints (T, J, 3) m of all persons, NaN where unknown.
 
-    The lowest places of ankles lie in one plane. Where people stay in one place, it is across the
-    mean line from ankles to shoulders.
+    The lowest places of ankles lie in one plane. Where people stay in one place, it is
+    perpendicular to the mean line from ankles to shoulders.
     """
     place = {name: xyz[:, at] for at, name in enumerate(skeleton.JOINTS)}
     upward = rotations.unit(_middle(place, "shoulder") - _middle(place, "ankle"))
@@ -130,9 +131,9 @@ def of_shape(
 ) -> NDArray:
     """Return the covariance (K, K) of cameras in the world that people's joints define.
 
-    `covariance` is that of a network's columns, with little known of place, direction and scale.
-    These leave it: the world moves with joints `xyz` (N, 3) m (an S-transformation, Baarda 1973),
-    and `scale_sigma`, a share, is added about their middle.
+    `covariance` is that of a network's columns, with little known of place, direction and scale of
+    the whole. Errors of these three are taken out: the world moves with joints `xyz` (N, 3) m (an
+    S-transformation, Baarda 1973). `scale_sigma`, a share, is then added about their middle.
     """
     network, middle = selection.of_cameras(cameras), xyz.mean(axis=0)
     moved = [
