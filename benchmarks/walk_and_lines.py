@@ -1,6 +1,6 @@
 """Walk, clicks and painted lines together: errors of cameras and of a player seen by them.
 
-    python benchmarks/walk_and_lines.py RESULTS [--halls RESULTS] [--seeds 12] [--only SESSION ...]
+    python benchmarks/walk_and_lines.py RESULTS [--halls RESULTS] [--seeds 8] [--only SESSION ...]
 
 RESULTS are those of a default run, as those of the halls of `other_halls.py`. Drawn persons click
 each hall; its cameras are found from the walk and 18 clicks, the same with the court's lines, and
@@ -145,7 +145,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("results", type=Path)
     parser.add_argument("--halls", type=Path)
-    parser.add_argument("--seeds", type=int, default=12)
+    parser.add_argument("--seeds", type=int, default=8)
     parser.add_argument("--only", nargs="+", default=[])
     given = parser.parse_args()
     path, made = ROOT / stated.FOLDER / "walk_and_lines.csv", []
