@@ -119,6 +119,8 @@ if __name__ == "__main__":
     parser.add_argument("--cameras", nargs="+", default=list(THREE))
     parser.add_argument("--model", default=MODEL)
     given = parser.parse_args()
+    chosen = given.session, tuple(given.cameras), tuple(given.takes), given.model
+    documented = chosen == ("players-b", THREE, TAKES, MODEL)
     MODEL = given.model
     made = [
         ["ways", row, part, printed, unit, given.session, n, 0, *MADE]
@@ -126,5 +128,5 @@ if __name__ == "__main__":
             given.results, given.session, given.takes, given.cameras
         )
     ]
-    if (given.session, tuple(given.cameras)) == ("players-b", THREE):
+    if documented:
         stated.write(ROOT / stated.FOLDER / "people_alone.csv", stated.joined(made))

@@ -54,6 +54,14 @@ def test_a_camera_moved_between_takes_is_named_with_them():
     assert found.cameras is None
 
 
+def test_a_camera_whose_picture_people_stay_out_of_in_a_take_is_not_accused():
+    *others, last = take(TRUE, TRUE, ["c3"])
+    empty = replace(last.tracklets, score=np.zeros_like(last.tracklets.score))
+    takes = {"a": take(TRUE, TRUE), "b": [*others, replace(last, tracklets=empty)]}
+    found = lost_cameras.recover(TRUE, takes, LIMITS, SKELETON, None)
+    assert found.lines == [] and found.which == []
+
+
 def test_a_camera_that_people_do_not_find_is_named():
     base = [*TRUE[:3], wrong(TRUE[3])]
     seen = take(base, TRUE, ["c3"])

@@ -1,5 +1,7 @@
 """Takes for the calibration from people: common times, sure joints, cameras that do not film."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -70,3 +72,12 @@ def test_cameras_are_guessed_from_a_take():
     assert len(found.tracks) == 2
     with pytest.raises(InputError, match="camera c2: expected a take that it films, found none"):
         self_calibration.guess(NAMES, lenses, [filmed()], [[1.6, 1.8]])
+
+
+def test_a_camera_that_filmed_in_two_sizes_is_named_with_the_take():
+    walk, views, clocks = filmed()
+    half = replace(views[1], size=np.array([960, 540]))
+    takes = [(walk, views, clocks), ("later", [views[0], half], clocks)]
+    said = r"take later: camera c1: expected pictures of .* as in .* found 960 x 540 px; name"
+    with pytest.raises(InputError, match=said):
+        self_calibration.guess(NAMES, {}, takes, [[1.6, 1.8]] * 2)

@@ -35,3 +35,11 @@ def test_a_picture_without_lines_gives_a_reason(court):
     image = court_pictures.draw(CAMERA, replace(court, lines_m=court.lines_m[:1], net=None))
     seen, reason = edges.measure(CAMERA, image, court, search_px=6.0)
     assert seen is None and "too few painted lines" in reason
+
+
+def test_lines_that_are_not_seen_once_the_camera_is_moved_give_a_reason(court, monkeypatch):
+    width, height = CAMERA.size
+    monkeypatch.setattr(edges.proposals, "register", lambda view, _: (view, ""))
+    image = np.full((height, width, 3), 100, dtype=np.uint8)
+    seen, reason = edges.measure(CAMERA, image, court, search_px=6.0)
+    assert seen is None and reason.startswith("no painted line is seen")

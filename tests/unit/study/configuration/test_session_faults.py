@@ -59,8 +59,11 @@ ALONE = without(RECORDED, "walks")
 BOARD = {"kind": "charuco", "squares": [4, 5], "square_m": 0.1, "dictionary": "DICT_4X4_50"}
 BOARD |= {"corners": "p.csv", "lenses": "c.toml"}
 BOARDED = {"court": "none", "cameras": RECORDED["cameras"], "board": BOARD}
+AB = {"a": "a.mp4", "b": "b.mp4"}
 PEOPLE = without(BOARDED, "board") | {"subjects": {"p1": {"height_m": 1.7}}}
 PEOPLE |= {"override": {"calibrations": ["people"]}}
+PEOPLE |= {"cameras": {"a": None, "b": None, "c": None}}
+PEOPLE |= {"takes": {"t": {"videos": AB | {"c": "w.mp4"}}}}
 PLAYERS = VIRTUAL | {"subjects": {"p1": None}, "takes": {"shot": FILMED}}
 
 
@@ -170,6 +173,14 @@ def test_good_sessions_have_no_fault(root, content):
         (
             PEOPLE | {"court": "badminton"},
             ["override.calibrations: expected `people` in a session with court: none"],
+        ),
+        (
+            without(PEOPLE, "takes"),
+            ["takes: expected one that fixed cameras film, for the calibration `people`"],
+        ),
+        (
+            PEOPLE | {"cameras": {"a": None, "b": None}, "takes": {"t": {"videos": AB}}},
+            ["cameras: expected three or more for the calibration `people`, found 2"],
         ),
         (
             PEOPLE | {"subjects": {"p1": None}},

@@ -74,14 +74,21 @@ def _lost(
         gone = [take for take in of if at in lost[take]]
         if gone and len(gone) == len(of):
             which.append(at)
-        elif gone:
-            others = ", ".join(take for take in of if take not in gone)
+        elif gone := [take for take in gone if _shows_people(camera, takes[take], limits)]:
+            others = ", ".join(take for take in of if at not in lost[take])
             lines.append(
                 f"camera {camera.name}: expected people where the other cameras see them, found "
                 f"next to none in {', '.join(gone)}, others in {others}: was it moved? Put those "
                 "takes in a session with a calibration of its own"
             )
     return which, lines
+
+
+def _shows_people(camera: Camera, seen: Sequence[Footage], limits: Limits) -> bool:
+    """Say whether a camera sees joints in a take: people may stay out of its picture."""
+    scores = [one.tracklets.score for one in seen if one.camera.name == camera.name]
+    sure = sum(int((np.nan_to_num(score) >= limits.score).sum()) for score in scores)
+    return sure >= resection.FEWEST
 
 
 def found_again(

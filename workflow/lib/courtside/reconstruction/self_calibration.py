@@ -59,10 +59,7 @@ def guess(
     heights_m: Sequence[Sequence[float | None]],
 ) -> from_nothing.Guess:
     """Place cameras roughly; the arguments are as for `from_nothing.guess`."""
-    sizes = {
-        view.camera: (int(view.size[0]), int(view.size[1])) for _, views, _ in takes
-        for view in views
-    }  # fmt: skip
+    sizes = _sizes(takes)
     if blind := [name for name in names if name not in sizes]:
         raise InputError(
             f"camera {blind[0]}: expected a take that it films, found none; people alone place a "
@@ -72,6 +69,22 @@ def guess(
         camera_models.check_size(lens, sizes[name], f"keypoints of camera {name}")
     found = [tracks(name, views, clocks, names) for name, views, clocks in takes]
     return from_nothing.guess(names, sizes, lenses, found, heights_m)
+
+
+def _sizes(takes: Sequence[Filmed]) -> dict[str, tuple[int, int]]:
+    """Return the size of each camera's pictures, px; an `InputError` if takes have several."""
+    found: dict[str, tuple[int, int]] = {}
+    for name, views, _ in takes:
+        for view in views:
+            size = int(view.size[0]), int(view.size[1])
+            known = found.setdefault(view.camera, size)
+            if size != known:
+                raise InputError(
+                    f"take {name}: camera {view.camera}: expected pictures of {known[0]} x "
+                    f"{known[1]} px, as in the takes before it, found {size[0]} x {size[1]} px; "
+                    "name takes filmed in one size in `refine_cameras: takes`"
+                )
+    return found
 
 
 def _times(views: Sequence[Keypoints2D], clocks: Mapping[str, Clock]) -> NDArray:

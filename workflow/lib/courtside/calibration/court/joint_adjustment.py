@@ -267,7 +267,7 @@ def solve(
     points : (P,) bool; court points to use; by default all
     factors : on the variances of clicks (scatter and bias) and ties; by default none
     start : network of another solution, where the search starts; by default the ties' own
-    lines : what the court's painted lines tell, `court_lines.edges.knowledge`
+    lines : what the court's painted lines tell, `court_lines.walk_and_lines.Told.knowledge`
     """
     factors = factors or variance_components.none(len(ties.cameras))
     network = _with_bias(ties, click_bias_px, factors)

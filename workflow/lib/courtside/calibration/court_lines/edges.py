@@ -51,4 +51,6 @@ def measure(
         _, (normal,) = line_profiles.tangent_and_normal(view.camera, middle[None], along, half)
         xy = project(view.camera, middle) + (shift.low_px + shift.high_px) / 2 * normal
         rows.append((line, middle, half / np.linalg.norm(half), xy, normal, shift.sigma_px))
+    if not rows:
+        return None, "no painted line is seen where it is expected"
     return Edges(*(np.array(column) for column in zip(*rows, strict=True))), ""

@@ -30,8 +30,8 @@ from courtside.geometry.camera import Camera
 from courtside.geometry.triangulation import triangulate_all
 from courtside.study.errors import InputError
 
-# ASSUME: focal lengths over the picture's width, from wide lenses of phones to short telephoto
-# lenses, a fifth apart: the adjustment finds what lies between.
+# ASSUME: focal lengths over the picture's longer side, from wide lenses of phones to short
+# telephoto lenses, a fifth apart: the adjustment finds what lies between.
 FOCAL_SHARES = (0.7, 0.84, 1.0, 1.2, 1.45, 1.75)
 ANY_FOCAL = 1.2  # tracks are paired with this one: which belong together hardly depends on it
 # Standard deviations of cameras after the first guess; so large, they say next to nothing of shape.

@@ -62,6 +62,17 @@ def _people_faults(file: Path, content: Content) -> Iterator[str]:
             f"{file}: override.calibrations: expected `people` in a session with court: none, "
             f"found court: {content['court']}; people do not tell where its lines are"
         )
+    takes = [take for take in content.get("takes", {}).values() if take]
+    if "virtual" not in content and not any(map(take_faults.cameras_of, takes)):
+        yield (
+            f"{file}: takes: expected one that fixed cameras film, for the calibration `people`, "
+            "found none; state a take with `videos`"
+        )
+    if len(content["cameras"]) < 3:
+        yield (
+            f"{file}: cameras: expected three or more for the calibration `people`, found "
+            f"{len(content['cameras'])}; people do not tell how two stand"
+        )
     subjects = content.get("subjects", {})
     if not any((one or {}).get("height_m") for one in subjects.values()):
         yield (
