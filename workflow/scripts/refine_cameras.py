@@ -33,24 +33,25 @@ def main(
     rows, lost, limits = [], [], Limits.of(views)
     try:
         again = people_of(paths, base, takes, limits)
-        known, lost = resection.widened(known, base, again.which), again.lines
+        wide, lost = resection.widened(known, base, again.which), again.lines
         read = {take["take"]: clocks.read(take["sync"])[1] for take in takes}
-        seen, rows = knocks.in_all(again.cameras or base, known, again.parts, read, limits)
+        seen, rows = knocks.in_all(again.cameras or base, wide, again.parts, read, limits)
         told = seen, limits, points(paths, base, weights)
         theirs = in_file(paths.calibration, names, override, unit)
         kept = {"calibrated": theirs, "found_again": again.cameras}
-        found = refinement.refine(base, known, *told, **kept)
+        found = refinement.refine(base, wide, *told, **kept)
     except InputError as error:
         found = refinement.unchanged(base, known, str(error))
+    covariance = known if found.taken == "base" else found.covariance
     said = [found.line, *found.wrong, *lost, *knocks.lines(rows)]
     for line in said:
         log.logger.warning("%s", line)
     report |= {"taken": found.taken, "verdicts": found.verdicts, "wrong": found.wrong}
     report["expected_before_cm"] = expected_cm(paths.court, base, known)
-    report["expected_volume_rms_cm"] = expected_cm(paths.court, found.cameras, found.covariance)
+    report["expected_volume_rms_cm"] = expected_cm(paths.court, found.cameras, covariance)
     knock_table.write(knocks_csv, rows)
     camera_models.write_toml(cameras_toml, found.cameras, source=f"{calibration}, {found.taken}")
-    camera_covariance.write(covariance_npz, found.covariance)
+    camera_covariance.write(covariance_npz, covariance)
     tables.write(table_csv, found.table, float_format="%.4f")
     write_json(quality_json, {**report, "warnings": said})
 
