@@ -6,6 +6,7 @@ camera_fields: checked numbers of calibration files (`numbers`, `pose`, `five_co
 rotations: `rotation_from_rodrigues`, `rodrigues_from_rotation`, `interpolate`, `invert`
 similarity: `Sim3`, `umeyama`, `robust_umeyama`, `kabsch`
 interpolation: `linear`, `nearest`, `shares`
+boxes: `usual_side`
 epipolar: `straight_px`, `relative_pose`, `fundamental`, `lines`, `distance_px`
 triangulation: `triangulate_robust`, `triangulate_plain`, `triangulate_all`, `triangulate`
 depth_registration: `rays`, `points_in_colour`

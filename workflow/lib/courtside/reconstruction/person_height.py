@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.geometry import epipolar, triangulation
+from courtside.geometry import boxes, epipolar, triangulation
 from courtside.geometry.camera import Camera
 from courtside.records.keypoints import skeleton as limbs
 
@@ -47,12 +47,7 @@ def extents(xy: NDArray) -> NDArray:
 
     Its median over the frames; `LEAST_PX` where a view never shows the person.
     """
-    known = np.isfinite(xy).all(axis=-1, keepdims=True)
-    low = np.where(known, xy, np.inf).min(axis=3)
-    high = np.where(known, xy, -np.inf).max(axis=3)
-    sides = np.where(np.isfinite(low), high, 0.0) - np.where(np.isfinite(low), low, 0.0)
-    longer = np.ma.masked_equal(sides.max(axis=-1), 0.0)
-    return np.maximum(np.ma.median(longer, axis=2).filled(LEAST_PX), LEAST_PX)
+    return np.maximum(boxes.usual_side(xy), LEAST_PX)
 
 
 def _middle(

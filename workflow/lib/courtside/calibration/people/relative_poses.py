@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.geometry import epipolar, rotations, triangulation
+from courtside.geometry import boxes, epipolar, rotations, triangulation
 from courtside.geometry.camera import Camera, undistort
 from courtside.study.errors import InputError
 
@@ -123,12 +123,7 @@ def _rays(cameras: Sequence[Camera], takes: Sequence[Take]) -> Rays:
 
 def _reach(rays: NDArray) -> NDArray:
     """Return how far joints of tracks (R, T, J, 2) may be off, (R,): shares of their extents."""
-    known = np.isfinite(rays).all(axis=-1, keepdims=True)
-    high = np.where(known, rays, -np.inf).max(axis=2)
-    low = np.where(known, rays, np.inf).min(axis=2)
-    sides = np.where(np.isfinite(high), high, 0.0) - np.where(np.isfinite(low), low, 0.0)
-    longer = np.ma.masked_equal(sides.max(axis=-1), 0.0)
-    return AGREE * np.ma.median(longer, axis=1).filled(0.0)
+    return AGREE * boxes.usual_side(rays)
 
 
 def _thinned(at: NDArray) -> tuple[NDArray, ...]:
