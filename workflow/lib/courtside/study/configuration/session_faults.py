@@ -53,9 +53,14 @@ def find(
         yield from _path_faults(f"{file}: {where}", path, known, root)
 
 
+def _asks_people(content: Content) -> bool:
+    """Say whether cameras are to be found from people alone."""
+    return "people" in content.get("override", {}).get("calibrations", [])
+
+
 def _people_faults(file: Path, content: Content) -> Iterator[str]:
     """Yield why cameras cannot be found from people alone, where a session asks for that."""
-    if "people" not in content.get("override", {}).get("calibrations", []):
+    if not _asks_people(content):
         return
     if content["court"] != "none":
         yield (
@@ -169,8 +174,7 @@ def _recorded_faults(file: Path, content: Content, root: Path) -> Iterator[str]:
     cameras, walks = content["cameras"], content.get("walks", {})
     takes = [take for take in content.get("takes", {}).values() if take]
     found = {"walks", "calibration", "court_points", "board"} & set(content)
-    alone = "people" in content.get("override", {}).get("calibrations", [])
-    if not found and not alone and (cameras or not takes):
+    if not found and not _asks_people(content) and (cameras or not takes):
         yield (
             f"{file}: expected `walks`, `court_points`, `board` or `calibration`, or `override: "
             "{calibrations: [people]}`, found none; say how the cameras are to be found"

@@ -62,12 +62,12 @@ def checked(job: Job) -> list[dict[str, Any]]:
 
 def filmed(job: Job) -> list[dict[str, Any]]:
     """Return of each take whose people place cameras its keypoints, clocks and heights, m."""
-    model, subjects, found = job.session.parameters["models"][0], job.session.subjects, []
+    model, found = job.session.parameters["models"][0], []
     for name in wanted_takes(job):
         take = job.session.takes[name]
         one = Job(job.study, {**job.wildcards, "take": name, "model": model})
         said = {"synchronised": take.synchronised, "clocks": takes.clocks(one, take.cameras)}
-        heights_m = [subjects[who].height_m for who in take.subjects]
+        heights_m = list(takes.heights(one).values())
         pose2d = takes.each_camera(one, paths.POSE2D)
         found.append({"take": name, "pose2d": pose2d, "heights_m": heights_m, **said})
     return found
