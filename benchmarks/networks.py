@@ -145,14 +145,6 @@ def rows(table, ms):
             yield [*about, "time", f"{ratio:.2f}", *rest]
 
 
-def kept(measured):
-    """Return the rows of sessions that were not measured now."""
-    if not OUTPUT.is_file():
-        return []
-    before = pd.read_csv(OUTPUT, dtype=str, keep_default_na=False)
-    return before[~before["sessions"].isin(measured)].to_numpy().tolist()
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("results", type=Path)
@@ -171,7 +163,8 @@ def main():
             real = recorded(folder, given.results, given.demo, given.hall, networks)
         table = pd.concat([table, real], ignore_index=True)
     print(table.round(2).to_string(index=False))
-    stated.write(OUTPUT, [*rows(table, ms), *kept(set(table["session"]))])
+    others = stated.of_other_sessions(OUTPUT, set(table["session"]))
+    stated.write(OUTPUT, [*rows(table, ms), *others])
 
 
 if __name__ == "__main__":

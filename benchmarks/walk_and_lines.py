@@ -6,7 +6,8 @@ RESULTS are those of a default run, as those of the halls of `other_halls.py`. D
 each hall; its cameras are found from the walk and 18 clicks, the same with the court's lines, and
 the walk with lines alone. Lines are measured once, near where the first person's cameras have them.
 The 2D keypoints of `players-b/footwork` are triangulated anew with cameras from the session's own
-clicks, with and without lines, and as they truly are. Writes docs/numbers/walk_and_lines.csv.
+clicks, with and without lines, and as they truly are. Writes docs/numbers/walk_and_lines.csv, in
+which rows of halls that are not measured stay.
 """
 
 import argparse
@@ -148,13 +149,13 @@ def main():
     parser.add_argument("--seeds", type=int, default=8)
     parser.add_argument("--only", nargs="+", default=[])
     given = parser.parse_args()
-    path, made = ROOT / stated.FOLDER / "walk_and_lines.csv", []
-    for row in hall_rows(given.results, given.halls, given.seeds, given.only):
-        made.append(["walk-lines", *row, 0, *MADE])
+    rows = hall_rows(given.results, given.halls, given.seeds, given.only)
+    made = [["walk-lines", *row, 0, *MADE] for row in rows]
     if not given.only:
-        stated.write(path, made)
         made += [["walk-lines-player", *row, 0, *MADE] for row in player_rows(given.results)]
-        stated.write(path, made)
+        path = ROOT / stated.FOLDER / "walk_and_lines.csv"
+        others = stated.of_other_sessions(path, {row[5] for row in made})
+        stated.write(path, [*made, *others])
 
 
 if __name__ == "__main__":

@@ -70,6 +70,13 @@ def study(tmp_path):
     return tmp_path
 
 
+def test_every_benchmark_stands_in_the_readme():
+    folder = Path(__file__).parents[1] / "benchmarks"
+    readme = (folder / "README.md").read_text(encoding="utf-8")
+    scripts = [path.name for path in folder.glob("*.py") if "__main__" in path.read_text("utf-8")]
+    assert scripts and [name for name in scripts if name not in readme] == []
+
+
 def test_a_log_says_when_jobs_began_and_ended(study):
     jobs = run_log.jobs(study / "run.snakemake.log")
     took_s = {job.rule: (job.ended - job.began).total_seconds() for job in jobs}

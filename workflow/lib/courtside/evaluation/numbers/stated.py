@@ -2,7 +2,7 @@
 
 import csv
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 
 from courtside.evaluation.numbers.markers import View
@@ -49,6 +49,15 @@ def write(path: StrPath, rows: Iterable[Sequence[object]]) -> None:
         table = csv.writer(stream, lineterminator="\n")
         table.writerow([*COLUMNS, "command"])
         table.writerows(rows)
+
+
+def of_other_sessions(path: StrPath, sessions: Collection[str]) -> list[list[str]]:
+    """Return the rows of a table whose sessions are not among these: a new run may keep them."""
+    if not Path(path).is_file():
+        return []
+    with Path(path).open(newline="", encoding="utf-8") as stream:
+        before = list(csv.DictReader(stream))
+    return [list(row.values()) for row in before if row["sessions"] not in sessions]
 
 
 def _number(documents: Source, file: str, line: int, row: dict[str, str]) -> Number:
