@@ -32,6 +32,7 @@ from courtside.body_model import take
 from courtside.evaluation import joints, kinematics, marker_system
 from courtside.evaluation.movement import contacts
 from courtside.evaluation.numbers import stated
+from courtside.evaluation.numbers.players import NETWORK
 from courtside.footwork import feet
 from courtside.kinematics import joint_angles, shared_errors
 from courtside.records import footwork, npz
@@ -43,7 +44,7 @@ from courtside.study.configuration import yaml_files
 SESSIONS = ("players-a", "players-b", "players-shaken", "repeats")
 LONG = 1000  # frames
 LONGEST = ("players-b", ("footwork", "sfm-n40-lines"))
-MODEL, FUSION = "blazepose-heavy", "all-robust"
+FUSION = "all-robust"
 STAGES = ("corrected", "model")
 ANGLES = ("knee_flexion", "hip_flexion", "elbow_flexion", "shoulder_elevation", "trunk_lean")
 HALL = ("RHip", "RKnee", "RAnkle", "RShoulder", "RElbow", "RHand")
@@ -56,14 +57,14 @@ HALL_COMMAND = "`python benchmarks/body_model.py results --hall RESULTS DATA`"
 def fitted(results, session, way, folder):
     """Fit one take by the rule's script; return its stages, and processor seconds per frame."""
     name, calibration = way
-    file = f"{calibration}/{FUSION}/{MODEL}"
+    file = f"{calibration}/{FUSION}/{NETWORK}"
     base, config = results / session / "takes" / name, ROOT / "config"
     paths = SimpleNamespace(
         raw=base / f"pose3d/{file}.npz",
         corrected=base / f"pose3d_corrected/{file}.npz",
         cutoffs=base / f"kinematics/{file}.cutoffs.csv",
         skeleton=config / "skeletons/blazepose33.yaml",
-        offsets=config / f"joint_offsets/{MODEL}.csv",
+        offsets=config / f"joint_offsets/{NETWORK}.csv",
     )
     file = config / "sessions" / f"{session}.yaml"
     known = yaml_files.read(file).get("subjects", {}) if file.is_file() else {}
@@ -89,7 +90,7 @@ def long_ms(results, session, way):
 
     The take's corrected joints follow one another until there are over `LONG` frames.
     """
-    file = f"{way[1]}/{FUSION}/{MODEL}"
+    file = f"{way[1]}/{FUSION}/{NETWORK}"
     points = keypoints.read_3d(results / f"{session}/takes/{way[0]}/pose3d_corrected/{file}.npz")
     n_frames = len(points.time_s) * (LONG // len(points.time_s) + 1)
     spec = npz.spec_of(type(points))

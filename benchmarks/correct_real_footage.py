@@ -21,7 +21,7 @@ sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.evaluation.numbers import stated
 from courtside.records.keypoints import keypoints, skeleton
 
-TAKE = f"walk-4cams/takes/balancing/{{stage}}/file/all-robust/{real_footage.MODEL}.npz"
+TAKE = f"walk-4cams/takes/balancing/{{stage}}/file/all-robust/{real_footage.NETWORK}.npz"
 STAGES = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
 LABEL = (
     "real, `walk-4cams/balancing`, against OpenPose's joints in Pose2Sim's TRC, which rests on the "

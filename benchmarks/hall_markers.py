@@ -31,6 +31,7 @@ sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
 from courtside.evaluation import marker_system
 from courtside.evaluation.numbers import stated
+from courtside.evaluation.numbers.players import NETWORK
 from courtside.geometry import camera as camera_models
 from courtside.geometry import triangulation
 from courtside.records.cameras import placed_points
@@ -252,7 +253,7 @@ def main():
     parser.add_argument("data", type=Path)
     parser.add_argument("--study", type=Path, help="a folder for the study, kept")
     parser.add_argument("--results", type=Path, help="of a run that is finished")
-    parser.add_argument("--model", default="blazepose-heavy")
+    parser.add_argument("--model", default=NETWORK)
     parser.add_argument("--csv", type=Path, help="where the errors are written, too")
     given = parser.parse_args()
     checked(given.data)
@@ -269,7 +270,7 @@ def main():
     if given.csv:
         labelled = [table.assign(way=way, stage=stage) for way, stage, _, table in found]
         pd.concat(labelled).to_csv(given.csv, index=False, float_format="%.3f")
-    if given.model == "blazepose-heavy":
+    if given.model == NETWORK:
         stated.write(
             ROOT / stated.FOLDER / "hall_markers.csv",
             [*register_rows(rows(found)), *stated.joined(register_rows(ways))],

@@ -22,6 +22,7 @@ from people_seen import LIMITS, ROOT, STATED, of_takes
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.people import knocks, prior, views
 from courtside.calibration.records import covariance
+from courtside.evaluation.numbers.players import NETWORK
 from courtside.geometry import camera as camera_models
 from courtside.geometry import interpolation, rotations
 from courtside.records.keypoints import skeleton
@@ -57,7 +58,7 @@ def main():
     parser.add_argument("session")
     parser.add_argument("take")
     parser.add_argument("--base", default="sfm-n40-lines")
-    parser.add_argument("--model", default="blazepose-heavy")
+    parser.add_argument("--model", default=NETWORK)
     parser.add_argument("--deg", type=float, default=0.4)
     parser.add_argument("--seeds", type=int, default=2)
     given = parser.parse_args()

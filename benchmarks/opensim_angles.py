@@ -22,8 +22,9 @@ from many_sessions import ROOT
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
 from courtside.evaluation.numbers import stated
+from courtside.evaluation.numbers.players import NETWORK
 
-OURS = "walk-4cams/takes/balancing/pose3d_ik/file/all-robust/blazepose-heavy.p1.mot"
+OURS = f"walk-4cams/takes/balancing/pose3d_ik/file/all-robust/{NETWORK}.p1.mot"
 RATE_HZ = 60  # Pose2Sim's frame 1 is the first of the take
 ANGLES = {"hip flexion": "hip_flexion", "knee flexion": "knee_angle", "elbow": "elbow_flex"}
 COMMAND = "`python benchmarks/opensim_angles.py RESULTS MOT`"

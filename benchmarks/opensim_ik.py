@@ -59,7 +59,7 @@ def located(folder, points):
 
 def one(results, session, way, folder, python):
     """Return the rows of one take: this project's fit and OpenSim's; none of several persons."""
-    file = f"{way[1]}/{body_model.FUSION}/{body_model.MODEL}.npz"
+    file = f"{way[1]}/{body_model.FUSION}/{body_model.NETWORK}.npz"
     known = keypoints.read_3d(results / session / "takes" / way[0] / "pose3d_corrected" / file)
     if len(known.person_id) > 1:
         return []

@@ -26,6 +26,7 @@ import filter_motion
 
 from courtside.calibration import file_formats
 from courtside.calibration.file_check import residuals
+from courtside.evaluation.numbers.players import NETWORK
 from courtside.exports import trc
 from courtside.geometry import camera as camera_models
 from courtside.geometry import triangulation
@@ -36,7 +37,6 @@ from courtside.study.configuration import yaml_files
 
 CONFIG = Path(__file__).parents[1] / "config"
 SKELETON = CONFIG / "skeletons" / "blazepose33.yaml"
-MODEL = "blazepose-heavy"
 # Of BODY_25B: left and right shoulder, elbow, wrist, hip, knee, ankle.
 OPENPOSE = {name: 5 + 2 * at for at, name in enumerate(("shoulder", "elbow", "wrist"))}
 OPENPOSE |= {name: 11 + 2 * at for at, name in enumerate(("hip", "knee", "ankle"))}
@@ -136,8 +136,8 @@ def main():
     step = yaml_files.read(CONFIG / "config.yaml")
     names = list(session["cameras"])
     take = given.results / "takes" / "balancing"
-    named = people.read(take / "people" / "file" / f"{MODEL}.npz")
-    folder = take / "pose2d" / MODEL
+    named = people.read(take / "people" / "file" / f"{NETWORK}.npz")
+    folder = take / "pose2d" / NETWORK
     seen = [named.assigned(keypoints.read_2d(folder / f"{name}.npz")) for name in names]
     others = np.stack([openpose(given.demo, at + 1) for at in range(len(names))])
     _, static = clicks.read_static(CONFIG / "static_points" / "walk-4cams.csv", names)

@@ -29,6 +29,7 @@ from courtside.calibration.people.held_out import Points
 from courtside.calibration.people.views import joined
 from courtside.calibration.records import covariance
 from courtside.evaluation import calibration
+from courtside.evaluation.numbers.players import NETWORK
 from courtside.evaluation.tables import ways
 from courtside.geometry import camera as camera_models
 from courtside.records.cameras import clicks
@@ -68,7 +69,7 @@ def main():
     parser.add_argument("session")
     parser.add_argument("takes", nargs="+")
     parser.add_argument("--base", default="sfm-n40-lines")
-    parser.add_argument("--model", default="blazepose-heavy")
+    parser.add_argument("--model", default=NETWORK)
     parser.add_argument("--seeds", type=int, default=6)
     given = parser.parse_args()
     session = yaml_files.read(ROOT / "config" / "sessions" / f"{given.session}.yaml")

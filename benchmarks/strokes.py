@@ -22,6 +22,7 @@ sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.court import court
 from courtside.calibration.point_covariance import WITHIN_90
 from courtside.evaluation.movement import contacts, strokes
+from courtside.evaluation.numbers.players import NETWORK
 from courtside.footwork import feet
 from courtside.kinematics import cutoffs
 from courtside.records.keypoints import keypoints, skeleton
@@ -43,7 +44,7 @@ RATE_HZ, SECONDS = 30.0, 14.0
 def made(results, session, take, what, suffix):
     """Return a file that BlazePose heavy and all cameras made of a take."""
     folder = Path(results, session, "takes", take, what)
-    (path,) = folder.glob(f"*/all-robust/blazepose-heavy.{suffix}")
+    (path,) = folder.glob(f"*/all-robust/{NETWORK}.{suffix}")
     return path
 
 

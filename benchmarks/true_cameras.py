@@ -20,6 +20,7 @@ from many_sessions import ROOT
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
 from courtside.evaluation import error_fit, joints
+from courtside.evaluation.numbers.players import NETWORK
 from courtside.kinematics import cutoffs, skeleton_filter
 from courtside.reconstruction import joint_correction
 from courtside.records.keypoints import keypoints, skeleton
@@ -91,7 +92,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("results", type=Path)
     parser.add_argument("--takes", nargs="+", default=TAKES)
-    parser.add_argument("--model", default="blazepose-heavy")
+    parser.add_argument("--model", default=NETWORK)
     parser.add_argument("--fusion", default="all-robust")
     parser.add_argument("--offsets", type=Path, help="a file of config/joint_offsets")
     given = parser.parse_args()

@@ -24,6 +24,7 @@ from courtside.calibration.court_lines import edges, walk_and_lines
 from courtside.calibration.records import tie_points
 from courtside.evaluation import calibration, error_fit
 from courtside.evaluation.numbers import stated
+from courtside.evaluation.numbers.players import NETWORK
 from courtside.reconstruction import joint_correction
 from courtside.records.cameras import clicks
 
@@ -117,10 +118,10 @@ def hall_rows(results, halls, n_draws, only):
 
 def player_rows(results):
     """Yield the errors of a player by cameras of the walk, with lines, and by the true ones."""
-    session, model = "players-b", "blazepose-heavy"
+    session = "players-b"
     name = f"{session}/footwork"
-    files, walk = true_cameras.Take(results, name, model, "all-robust"), Walk(results, session)
-    table = joint_correction.read(ROOT / "config" / "joint_offsets" / f"{model}.csv")
+    files, walk = true_cameras.Take(results, name, NETWORK, "all-robust"), Walk(results, session)
+    table = joint_correction.read(ROOT / "config" / "joint_offsets" / f"{NETWORK}.csv")
     ((seen, sex_of, truth),) = error_fit.seen_truly(files, [files.take])
     path = results / "virtual" / session / "court_points.csv"
     clicked = clicks.read(path, walk.one.names, list(walk.one.court.points))

@@ -43,6 +43,7 @@ from courtside.calibration.people.held_out import Points
 from courtside.calibration.records import covariance, tie_points
 from courtside.evaluation import calibration
 from courtside.evaluation.numbers import stated
+from courtside.evaluation.numbers.players import NETWORK
 from courtside.geometry import camera as camera_models
 from courtside.geometry import similarity
 from courtside.records.cameras import clicks
@@ -52,7 +53,7 @@ from courtside.study.configuration import yaml_files
 from refined_by_people import disturbed, errors
 from virtualgym.session import clicks as clicking
 
-SESSION, TAKE, BASE, MODEL = "players-b", "footwork", "sfm-n40-lines", "blazepose-heavy"
+SESSION, TAKE, BASE = "players-b", "footwork", "sfm-n40-lines"
 LOOKS = ("plain", "rich")
 LINES = ("plain-a", "rich-a", "plain-b", "players-a", "players-b")
 LINES_DRAWS = 30
@@ -227,7 +228,7 @@ def accepted(cameras, seen):
 
 def measured(one, way, n_draws, lines):
     """Return of each draw the errors before and after refinement by people, and whether taken."""
-    seen = of_takes(one.results / one.name, [TAKE], BASE, MODEL, one.names)[0]
+    seen = of_takes(one.results / one.name, [TAKE], BASE, NETWORK, one.names)[0]
     record = tie_points.read(one.results / one.name / "sfm" / "global-n40-o0" / "ties.npz")
     rows = []
     alike = way == "lines" and not any(xy is None for xy in lines.values())
@@ -278,7 +279,7 @@ def walk_rows(results):
     theirs = file_formats.rename(theirs, {name: name for name in names})
     crops = {name: (one or {}).get("crop_px") for name, one in session["cameras"].items()}
     base = [camera_models.crop(c, crops[c.name]) if crops[c.name] else c for c in theirs]
-    seen = of_takes(results / "walk-4cams", ["balancing"], "file", MODEL, names)[0]
+    seen = of_takes(results / "walk-4cams", ["balancing"], "file", NETWORK, names)[0]
     half = np.arange(len(seen.track)) < len(seen.track) / 2
     half, other = seen.of(half), seen.of(~half)
     _, static = clicks.read_static(ROOT / "config" / "static_points" / "walk-4cams.csv", names)

@@ -25,7 +25,7 @@ from courtside.records.truth import take_truth
 from courtside.video import reader
 
 SESSION, TAKE, TIME_S = "players-b", "shot", 2.37
-CALIBRATION, FUSION, NETWORK = "sfm-n40-lines", "all-robust", "blazepose-heavy"
+CALIBRATION, FUSION, NETWORK = "sfm-n40-lines", "all-robust", "blazepose-heavy-flip"
 LARGE, CLOSE = "front", ("oblique", "back", "mirror")
 RADIUS = np.sqrt(scipy.stats.chi2.ppf(0.9, 3))  # standard deviations: an ellipsoid for nine in ten
 SIGHT = oblique_view.Sight(azimuth_deg=-60.0, elevation_deg=10.0)

@@ -244,7 +244,7 @@ def test_the_session_of_the_hall_is_a_session(tmp_path):
     hall_markers.checked(data)
     config = tmp_path / "config"
     shutil.copytree(ROOT / "config", config)
-    written = hall_markers.write_study(tmp_path, data, "blazepose-heavy")
+    written = hall_markers.write_study(tmp_path, data, "blazepose-heavy-flip")
     study = yaml_files.read(config / "config.yaml") | yaml_files.read(tmp_path / written)
     sessions = configuration.load(study, written, config, tmp_path).sessions
     found = sessions["hall-markers"]

@@ -1,8 +1,17 @@
 """Numbers of virtual players, from summaries worked out by hand."""
 
+from pathlib import Path
+
 import pytest
 
 from courtside.evaluation.numbers import players
+from courtside.study.configuration import yaml_files
+
+ROOT = Path(__file__).parents[4]
+
+
+def test_the_network_of_the_tables_is_the_default_one():
+    assert yaml_files.read(ROOT / "config" / "config.yaml")["models"] == [players.NETWORK]
 
 
 def test_every_take_is_shown_raw_filtered_and_corrected(source, value):

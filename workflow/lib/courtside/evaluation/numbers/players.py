@@ -10,7 +10,7 @@ from courtside.evaluation.tables.players import furthest
 TABLE, ANGLES, HELD = (f"figures/{name}.csv" for name in ("players", "angles", "reliability"))
 STAGES = ("raw", "filtered", "corrected")
 OURS = "all-robust"  # the default rule, all cameras of a take
-NETWORK = "blazepose-heavy"  # the default network
+NETWORK = "blazepose-heavy-flip"  # the default network
 FUSIONS = {  # of a set of cameras and a rule
     "all-robust": "all cameras",
     "all-dlt": "all cameras, plain DLT",

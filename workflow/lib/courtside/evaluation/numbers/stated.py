@@ -113,7 +113,7 @@ VIEWS = {  # the columns that the documents show of their tables
         "looks-reported",
         {
             "`blazepose-heavy`, mm": "{row}",
-            "one look (default)": "{before}",
+            "one look": "{before}",
             "`flip_test`": "{after}",
             "by": "{after.origin}",
             "with": "{after.command}",
