@@ -1,4 +1,4 @@
-"""Contact of the feet with the floor: stances, steps, split steps, lunges, and their measures.
+"""Foot contacts with the floor: stances, steps, split steps, lunges, and their measures.
 
 tracks: `tracks`: heel and toe of a foot, between frames too, above the floor
 contact: `probability`: that a foot stands, by a hidden Markov model

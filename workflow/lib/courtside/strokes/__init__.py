@@ -1,4 +1,4 @@
-"""Strokes found in skeletons, with time, hand and place; reactions to the opponent.
+"""Detection of strokes in skeletons, with time, hand and position; reactions to the opponent.
 
 local_fit: `fit`: a path's place, velocity and acceleration that survive lost joints
 signals: `of_person`: reach, height and speed of both wrists, and the trunk
