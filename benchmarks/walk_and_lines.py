@@ -67,10 +67,10 @@ class Walk:
         """Yield the cameras of each way."""
         base, court = self.solve(clicked), self.one.court
         yield base
-        told = walk_and_lines.of_edges(base, self.ties, clicked, court, self.seen, **WEIGHTS)
+        told = walk_and_lines.from_edges(base, self.ties, clicked, court, self.seen, **WEIGHTS)
         yield self.solve(clicked, told.knowledge)
         nothing = {name: np.full_like(xy, np.nan) for name, xy in clicked.items()}
-        told = walk_and_lines.of_edges(base, self.ties, nothing, court, self.seen, **WEIGHTS)
+        told = walk_and_lines.from_edges(base, self.ties, nothing, court, self.seen, **WEIGHTS)
         lines = {"lines": told.knowledge, **WEIGHTS}
         yield joint_adjustment.solve(self.ties, nothing, court, **lines)
 
