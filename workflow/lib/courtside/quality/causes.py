@@ -71,7 +71,9 @@ def find(seen: Seen, camera: int, *, found_limit: float) -> Cause:
     if absent > 1 - found_limit:
         return Cause(DETECTION, _absent(absent))
     if len(seen.cameras) < 3:
-        words = "two cameras contradict each other, and no third one tells which of them is wrong"
+        words = (
+            "two cameras contradict each other, and no third camera shows which of them is wrong"
+        )
         return Cause(UNKNOWN, words)
     if not (there & expected).any() and not seen.followed[camera].any():
         return Cause(IDENTITY, "people are found there, but none of them is followed")

@@ -295,7 +295,7 @@ def say(camera: Camera, table: DataFrame, xyz: NDArray) -> list[str]:
     start_px = np.hypot(*np.median(parts[0], axis=0))
     if start_px > max(LEAST_PX, tremor):
         lines.append(
-            f"{name} stood {start_px:.1f} px off its static picture when the take began"
+            f"{name} was {start_px:.1f} px off its static picture at the start of the take"
             f"{_at_player(scale * start_px)}: steady its keypoints, "
             "or film the static picture again"
         )

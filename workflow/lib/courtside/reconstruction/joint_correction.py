@@ -40,7 +40,7 @@ OUTLIER = 1.5  # ASSUME: times the median error: beyond it a frame loses weight 
 ROUNDS = 15  # of reweighting
 NORMAL_MEDIAN = 1.5382  # median length of a vector of three standard normal numbers
 COLUMNS = ["joint", "vector", "share", "sigma_m", "n"]
-REMAKE = "make it anew with the rule evaluate_joint_offsets"
+REMAKE = "make it again with the rule evaluate_joint_offsets"
 
 
 def vectors(

@@ -35,7 +35,7 @@ JOINTS = skeleton.LIMBS[1:]  # those with a constant of their own, added to the 
 SIGNS = ("constant", *JOINTS, *error_signs.NAMES)
 LAST = "sigma_m"  # the row of standard deviations: the most of a good place, an outlier's
 COLUMNS = ["sign", "mean", "spread", "good", "outlier"]
-REMAKE = "make it anew with the rule evaluate_joint_errors"
+REMAKE = "make it again with the rule evaluate_joint_errors"
 
 
 @dataclass(frozen=True)

@@ -43,7 +43,7 @@ def recover(
     lines = [] if which else lines  # a wrong camera disturbs the others, too
     lines += [
         f"camera {names[at]}: expected people in its pictures where the others see them, found "
-        "next to none, and people do not tell where it stands: check its calibration"
+        "almost none, and people do not determine its pose: check its calibration"
         for at in which
         if found[at] is cameras[at]
     ]

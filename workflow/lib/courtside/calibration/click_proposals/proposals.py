@@ -125,7 +125,7 @@ def _point(view: View, at: int) -> _Found:
         return *NO_PLACE, "fewer than two edges meet here"
     one, other = rays[:2]
     if one is None or other is None:
-        return *NO_PLACE, "a line it names is not seen near it"
+        return *NO_PLACE, "one of its lines is not visible near it"
     return _meet(one, other)
 
 
@@ -198,5 +198,5 @@ def _why_not(off: NDArray, allowed: NDArray, sigma: float, max_sigma_px: float) 
     if sigma > max_sigma_px:
         return f"uncertain by {sigma:.1f} px"
     if off @ np.linalg.solve(allowed, off) > OFF_SIGMA**2:
-        return f"{np.linalg.norm(off):.1f} px from where the other lines put it"
+        return f"{np.linalg.norm(off):.1f} px from the position that the other lines predict"
     return ""

@@ -107,7 +107,7 @@ def cameras(found: Mapping[str, Found]) -> list[Camera]:
             reason = result.reason if isinstance(result, resection.Linear) else ""
             raise InputError(
                 reason
-                or f"camera {name}: expected a camera from DLT, found a matrix that gives none; "
+                or f"camera {name}: expected a valid camera from DLT, found none; "
                 "click more points, more exactly, or calibrate by least squares"
             )
         calibrated.append(result.camera)

@@ -275,7 +275,7 @@ def _covariance(columns: NDArray, name: str) -> NDArray:
     if extent[-1] < MIN_EXTENT * extent[0]:
         raise InputError(
             f"camera {name}: expected points that determine the camera, found that its focal "
-            "length and distance cannot be told apart; click points above the floor too, or give "
+            "length and distance cannot be separated; click points above the floor too, or give "
             "its lens calibration"
         )
     root = vectors.T / extent / scale[:, None]

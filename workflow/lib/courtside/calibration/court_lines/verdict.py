@@ -68,7 +68,10 @@ def judge(found: Found, court: Court, name: str, size: tuple[int, int], lines: s
     elif lines == "light" and paint[first] < LEAST_WHITE:
         outcome, reason = AMBIGUOUS, "the lines that fit the court are not white"
     elif _has_like(found.candidates, best, paint, court):
-        outcome, reason = AMBIGUOUS, "a like court beside it fits as well: which one is meant"
+        outcome, reason = (
+            AMBIGUOUS,
+            "a similar court beside it fits as well: it is ambiguous which one is meant",
+        )
     elif rival > MOST_RIVAL * best.score or best.score - rival < LEAST_MARGIN:
         outcome, reason = AMBIGUOUS, "another place of the camera explains the lines nearly as well"
     camera = views.to_camera(best.view, name, size, found.scale)

@@ -127,7 +127,7 @@ def _not_told(
     who = "which of them is" if len(free) != 1 else "whether this is"
     page = f"on the page {words.page} (people.csv), or " if words.page else ""
     return (
-        f"{words.take}: expected to be told who is {' and who is '.join(open_)}, found "
+        f"{words.take}: expected a statement who is {' and who is '.join(open_)}, found "
         f"{', '.join(people) or 'nobody'}; say {who} {' or '.join(open_)} {page}by `seen` in "
         f"{words.file}"
     )

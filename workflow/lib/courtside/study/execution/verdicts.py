@@ -1,4 +1,4 @@
-"""Verdicts on takes as files: read back, and told at the end of a run."""
+"""Verdicts on takes: read from their files, and summarised at the end of a run."""
 
 import csv
 from collections.abc import Iterable
@@ -50,7 +50,7 @@ def failed(path: StrPath) -> bool:
 
 
 def told(files: Iterable[str]) -> tuple[list[str], int]:
-    """Return the verdicts on some takes in lines, and how many takes failed.
+    """Return lines that summarise the verdicts on some takes, and the number of failed takes.
 
     A line counts them; one follows for each that is not good, those that failed last.
     """
