@@ -122,7 +122,7 @@ def player_rows(results):
     name = f"{session}/footwork"
     files, walk = true_cameras.Take(results, name, NETWORK, "all-robust"), Walk(results, session)
     table = joint_correction.read(ROOT / "config" / "joint_offsets" / f"{NETWORK}.csv")
-    ((seen, sex_of, truth),) = error_fit.seen_truly(files, [files.take])
+    ((seen, sex_of, truth),) = error_fit.footage_with_truth(files, [files.take])
     path = results / "virtual" / session / "court_points.csv"
     clicked = clicks.read(path, walk.one.names, list(walk.one.court.points))
     base, both, _ = walk.ways(clicked)

@@ -49,7 +49,7 @@ def main(
 
 
 def calibrate(record, clicks_csv, court_yaml, **options):
-    """Return what `solve` does; of a doubtful map nothing is said of clicks, court or names."""
+    """Return the result of `solve`; a doubtful map gives no warnings on clicks, court or names."""
     doubt = quality.doubt(record.support)
     if record.outcome:
         raise InputError(record.outcome)

@@ -5,5 +5,5 @@ one job log: `to_file` and `progress`, for scripts artefacts: `fetch` and `unpac
 registries: `wheel` and `npm_package`, downloaded, not installed digest: `code_digest` and
 `Remembered`, which rerun rules whose code changed checksums: `Checksums` of large files, kept
 between runs future_dates, machine_resources: checks before any work summary: the text at the end of
-a run verdicts: `told`, `read`, `failed`: verdicts on takes, at the end of a run
+a run verdicts: `summary`, `read`, `failed`: verdicts on takes, at the end of a run
 """

@@ -49,7 +49,7 @@ def failed(path: StrPath) -> bool:
         return True  # it must be made again
 
 
-def told(files: Iterable[str]) -> tuple[list[str], int]:
+def summary(files: Iterable[str]) -> tuple[list[str], int]:
     """Return lines that summarise the verdicts on some takes, and the number of failed takes.
 
     A line counts them; one follows for each that is not good, those that failed last.
