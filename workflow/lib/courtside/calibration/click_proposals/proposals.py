@@ -125,7 +125,7 @@ def _point(view: View, at: int) -> _Found:
         return *NO_PLACE, "fewer than two edges meet here"
     one, other = rays[:2]
     if one is None or other is None:
-        return *NO_PLACE, "one of its lines is not visible near it"
+        return *NO_PLACE, "one of its lines is not seen near it"
     return _meet(one, other)
 
 
