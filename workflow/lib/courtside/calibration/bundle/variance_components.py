@@ -35,9 +35,12 @@ GAUGE = 7  # rotation, translation and scale of the frame, which ties leave open
 class Factors:
     """Factors on the variances that clicks and ties were stated to have.
 
-    Attributes ---------- clicks : (V, 2) float; of the scatter of each image's clicks along x and y
-    ties : of all ties clicks_redundancy : (V, 2) float; redundancy of the clicks; 0: the prior
-    alone ties_redundancy : the same for the ties
+    Attributes
+    ----------
+    clicks : (V, 2) float; of the scatter of each image's clicks along x and y
+    ties : of all ties
+    clicks_redundancy : (V, 2) float; redundancy of the clicks; 0: the prior alone
+    ties_redundancy : the same for the ties
     """
 
     clicks: NDArray

@@ -259,12 +259,15 @@ def solve(
 
     Raises `InputError` if neither ties nor clicks place a camera.
 
-    Parameters ---------- click_sigma_px, click_loss : as for `condense` click_bias_px : bias that
-    all clicks in one picture share, standard deviation per axis, at a width of 3840 px points :
-    (P,) bool; court points to use; by default all factors : on the variances of clicks (scatter and
-    bias) and ties; by default none start : network of another solution, where the search starts; by
-    default the ties' own lines : from painted lines,
-    `court_lines.walk_and_lines.LineConstraints.knowledge`
+    Parameters
+    ----------
+    click_sigma_px, click_loss : as for `condense`
+    click_bias_px : bias that all clicks in one picture share, standard deviation per axis, at a
+        width of 3840 px
+    points : (P,) bool; court points to use; by default all
+    factors : on the variances of clicks (scatter and bias) and ties; by default none
+    start : network of another solution, where the search starts; by default the ties' own
+    lines : from painted lines, `court_lines.walk_and_lines.LineConstraints.knowledge`
     """
     factors = factors or variance_components.none(len(ties.cameras))
     network = _with_bias(ties, click_bias_px, factors)

@@ -195,12 +195,16 @@ def nonlinear(
     `sigma_px` and `xyz_sigma`. Raises `InputError` if the points are too few (8, or 4 with K), on
     one line, leave the camera undetermined, or fit no camera near them.
 
-    Parameters ---------- xyz : (P, 3) float; known places, m xy : (P, 2) float; clicks, px; NaN
-    where missing size : of the picture, px K : (3, 3) float; from a lens calibration: only the pose
-    is estimated. Without K also the focal length, equal along both axes, and k1, with the principal
-    point at the picture's centre dist : (5,) float; only with K; zeros by default sigma_px : of a
-    good click per axis xyz_sigma : (P,) float; how far the points are from `xyz`, standard
-    deviation per axis, m
+    Parameters
+    ----------
+    xyz : (P, 3) float; known places, m
+    xy : (P, 2) float; clicks, px; NaN where missing
+    size : of the picture, px
+    K : (3, 3) float; from a lens calibration: only the pose is estimated. Without K also the focal
+        length, equal along both axes, and k1, with the principal point at the picture's centre
+    dist : (5,) float; only with K; zeros by default
+    sigma_px : of a good click per axis
+    xyz_sigma : (P,) float; how far the points are from `xyz`, standard deviation per axis, m
     """
     if K is None and dist is not None:
         raise ValueError("expected dist only together with K")

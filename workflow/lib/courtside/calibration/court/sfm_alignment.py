@@ -69,9 +69,10 @@ def paper_frame(court: Court, xyz_in_sfm: NDArray) -> PaperFrame:
     points. A camera needs a rotation: the nearest one (polar factor of R).
 
     # ASSUME: S_z, a point on the z axis, is S_o + e_x x e_y: no court point lies above the origin,
-    # and the paper does not say how it is found. ASSUME: the scale, "known length over SfM length",
-    # is for both sides together, (6.1 + 13.4 m) over the sum of their SfM lengths: the paper names
-    # both lengths and one scale. It multiplies R and t.
+    # and the paper does not say how it is found.
+    # ASSUME: the scale, "known length over SfM length", is for both sides together, (6.1 + 13.4 m)
+    # over the sum of their SfM lengths: the paper names both lengths and one scale. It multiplies R
+    # and t.
 
     Parameters
     ----------
@@ -200,10 +201,12 @@ def stretch(
     three and least squares over those that agree. A similarity would impose the court's
     proportions.
 
-    Parameters ---------- xyz_in_sfm : (P, 3) float; NaN where missing causes_m : (P, 3, R) float;
-    displacement of the points by independent errors of the cameras, each of one standard deviation
-    (`point_covariance.field`). These errors bend all points together, which the points' scatter
-    does not show
+    Parameters
+    ----------
+    xyz_in_sfm : (P, 3) float; NaN where missing
+    causes_m : (P, 3, R) float; displacement of points by independent errors of the cameras, each
+        of one standard deviation (`point_covariance.field`). These errors bend all points together,
+        which the points' scatter does not show
 
     Returns
     -------
@@ -256,10 +259,12 @@ def refuse_exchanged_cameras(
 
     Then the files of these cameras may be exchanged. Other faults of the clicks are not looked for.
 
-    Parameters ---------- cameras : in one frame, of structure from motion: clicks must not have
-    shaped it adjust : function from clicks to the fixed cameras after a joint adjustment with them.
-    With few pictures, structure from motion is bent by more than the scatter of clicks: points that
-    this bend can explain are judged after the adjustment
+    Parameters
+    ----------
+    cameras : in one frame, of structure from motion: clicks must not have shaped it
+    adjust : function from clicks to the fixed cameras after a joint adjustment with them. With few
+        pictures, structure from motion is bent by more than the scatter of clicks: points that
+        this bend can explain are judged after the adjustment
     """
     near_m = FITTING * np.max(court.size_m)
     if not misses_court(court, cameras, clicks):
