@@ -31,7 +31,7 @@ SHAPE = skeleton.read(ROOT / "config" / "skeletons" / "blazepose33.yaml")
 
 
 class Take:
-    """The files of one take of a default run, and what `error_fit.seen_truly` asks of them."""
+    """The files of one take of a default run, as `error_fit.footage_with_truth` needs them."""
 
     def __init__(self, results, name, model, fusion):
         session, take = name.split("/")
@@ -101,7 +101,7 @@ def main():
     step = yaml_files.read(ROOT / "config" / "config.yaml")
     for name in given.takes:
         files = Take(given.results, name, given.model, given.fusion)
-        ((seen, sex_of, truth),) = error_fit.seen_truly(files, [files.take])
+        ((seen, sex_of, truth),) = error_fit.footage_with_truth(files, [files.take])
         raw = error_fit.triangulated(seen, SHAPE, list(sex_of), step["triangulate"])
         for words, points in (("cameras of the study", files.raw), ("true cameras", raw)):
             print(

@@ -67,10 +67,10 @@ class Walk:
         """Yield the cameras of each way."""
         base, court = self.solve(clicked), self.one.court
         yield base
-        told = walk_and_lines.of_edges(base, self.ties, clicked, court, self.seen, **WEIGHTS)
+        told = walk_and_lines.from_edges(base, self.ties, clicked, court, self.seen, **WEIGHTS)
         yield self.solve(clicked, told.knowledge)
         nothing = {name: np.full_like(xy, np.nan) for name, xy in clicked.items()}
-        told = walk_and_lines.of_edges(base, self.ties, nothing, court, self.seen, **WEIGHTS)
+        told = walk_and_lines.from_edges(base, self.ties, nothing, court, self.seen, **WEIGHTS)
         lines = {"lines": told.knowledge, **WEIGHTS}
         yield joint_adjustment.solve(self.ties, nothing, court, **lines)
 
@@ -122,7 +122,7 @@ def player_rows(results):
     name = f"{session}/footwork"
     files, walk = true_cameras.Take(results, name, NETWORK, "all-robust"), Walk(results, session)
     table = joint_correction.read(ROOT / "config" / "joint_offsets" / f"{NETWORK}.csv")
-    ((seen, sex_of, truth),) = error_fit.seen_truly(files, [files.take])
+    ((seen, sex_of, truth),) = error_fit.footage_with_truth(files, [files.take])
     path = results / "virtual" / session / "court_points.csv"
     clicked = clicks.read(path, walk.one.names, list(walk.one.court.points))
     base, both, _ = walk.ways(clicked)

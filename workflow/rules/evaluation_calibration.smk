@@ -1,4 +1,4 @@
-"""Calibrations of virtual sessions against their truth.
+"""Comparison of calibrations of virtual sessions with the truth.
 
 Only this file and evaluation_takes.smk read truth.
 

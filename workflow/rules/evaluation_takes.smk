@@ -1,4 +1,4 @@
-"""Takes of virtual sessions against their truth.
+"""Comparison of takes of virtual sessions with the truth.
 
 Only this file and evaluation_calibration.smk read truth.
 

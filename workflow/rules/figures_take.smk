@@ -1,4 +1,4 @@
-"""Figures of a take: what was seen, what was made of it, and how far to trust it.
+"""Figures of a take: detections, skeletons, measures, and their reliability.
 
 Inputs: 2D and 3D keypoints, cameras, videos. Outputs: results/{session}/takes/{take}/figures/.
 Steps: draw_overlay, draw_skeletons, draw_reprojection, draw_visibility, draw_kinematics,

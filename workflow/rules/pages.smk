@@ -1,4 +1,4 @@
-"""Pages and videos to look around in: people to be named, verdicts, viewers, Pose2Sim projects.
+"""Pages and videos: naming of people, verdicts, viewers, overlay videos, Pose2Sim projects.
 
 Inputs: 3D keypoints of all stages, devices, cameras, videos. Outputs: results/{session}/pages/,
 results/{session}/takes/{take}/pages/, videos/, pose2sim/.

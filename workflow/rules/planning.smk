@@ -1,4 +1,4 @@
-"""Sessions that are only planned: how exact they will be, before anybody goes.
+"""Prediction of the calibration error of planned sessions.
 
 Inputs: config/plans/{plan}.yaml. Outputs: results/plans/{plan}/.
 Steps: plan_session.

@@ -1,4 +1,4 @@
-"""The report: one HTML file of all results, for a coach to read. Made only when asked for.
+"""The report: one HTML file of all results, for coaches. Made only on request.
 
 Inputs: measures, figures, checks, qualities of all sessions. Outputs: results/report.html.
 Steps: build_report.

@@ -1,4 +1,4 @@
-"""What happens when a run ends: provenance is written, results or faults are listed.
+"""The end of a run: write provenance, list results or faults.
 
 Inputs: all jobs that the run asked for. Outputs: results/run/: provenance.json of the run,
 checksums.json of the inputs, provenance/<file>.json beside each figure, table and exported file.

@@ -2,8 +2,8 @@
 
 Inputs: a session's `virtual` settings, its court, the virtual body. Outputs:
 results/virtual/{session}/.
-Steps: simulate_session (one rule per session, named after it, for its files bear its cameras'
-names), simulate_take (likewise, one per take).
+Steps: simulate_session (one rule per session, named after it, because its files are named after its
+cameras), simulate_take (likewise, one per take).
 """
 
 # Processes that render a long film. With two cores two films side by side keep them busier than one

@@ -41,7 +41,7 @@ def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, calibr
 
 
 def align(court, xyz_in_sfm, calibration):
-    """Return the similarity from a model to the court, and how well it is known."""
+    """Return the similarity from a model to the court, and its uncertainty."""
     if Calibration.parse(calibration).kind == "paper":
         frame = sfm_alignment.paper_frame(court, xyz_in_sfm)
         return frame.nearest, {"skew_deg": frame.skew_deg}
@@ -50,7 +50,7 @@ def align(court, xyz_in_sfm, calibration):
 
 
 def warnings_of(court, record, marked, **options):
-    """Return what is wrong with map, clicks or court; the bend that stays in this model is not."""
+    """Return warnings on map, clicks and court; the remaining bend of this model is no fault."""
     if doubt := quality.doubt(record.support):
         return [doubt]
     try:

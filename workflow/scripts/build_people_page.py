@@ -35,7 +35,7 @@ def main(paths, page_html, *, session, take, takes, subjects, stated, target, sh
 
 
 def earlier(told, found, seen, subjects):
-    """Return the names given before that still fit; the others are told in the log."""
+    """Return the earlier names that still fit; the log names the others."""
     named = []
     for one in told:
         try:

@@ -8,13 +8,13 @@ from courtside.study.execution.script import run
 
 
 def main(page_html, *, session, takes):
-    shown = [told(take) for take in log.progress(takes, len(takes), "takes")]
+    shown = [with_pictures(take) for take in log.progress(takes, len(takes), "takes")]
     page.write(page_html, quality_page.build(session, shown))
     count = sum(len(take["pictures"]) for take in shown)
     log.logger.info("%s: %d takes, %d pictures", page_html, len(shown), count)
 
 
-def told(take):
+def with_pictures(take):
     joints, who = skeleton.read(take["skeleton"]), people.read(take["people"])
     pictures = {}
     for pose2d, video in zip(take["pose2d"], take["videos"], strict=True):

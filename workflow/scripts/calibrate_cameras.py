@@ -49,7 +49,7 @@ def main(
 
 
 def calibrate(record, clicks_csv, court_yaml, **options):
-    """Return what `solve` does; of a doubtful map nothing is said of clicks, court or names."""
+    """Return the result of `solve`; a doubtful map gives no warnings on clicks, court or names."""
     doubt = quality.doubt(record.support)
     if record.outcome:
         raise InputError(record.outcome)
@@ -72,12 +72,14 @@ def solve(record, clicks_csv, court_yaml, *, pictures, search=None, **options):
     if not pictures:
         return quality.adjust_and_check(court, record.ties, marked, **options)
     shown = zip(record.ties.cameras, map(images.read, pictures), strict=True)
-    told = walk_and_lines.of_pictures(record.ties, marked, court, dict(shown), **search, **options)
-    found, checked = quality.adjust_and_check(
-        court, record.ties, marked, lines=told.knowledge, **options
+    constraints = walk_and_lines.of_pictures(
+        record.ties, marked, court, dict(shown), **search, **options
     )
-    warnings = [*checked["warnings"], *told.warnings]
-    return found, checked | told.said() | {"warnings": warnings}
+    found, checked = quality.adjust_and_check(
+        court, record.ties, marked, lines=constraints.knowledge, **options
+    )
+    warnings = [*checked["warnings"], *constraints.warnings]
+    return found, checked | constraints.summary() | {"warnings": warnings}
 
 
 if __name__ == "__main__":

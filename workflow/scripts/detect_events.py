@@ -1,4 +1,4 @@
-"""Detect what each source shows, by its own clock: motions -> T-poses, claps, wrist distance."""
+"""Detect T-poses and claps of each source: motions -> T-poses, claps, wrist distance."""
 
 from courtside.events import detect
 from courtside.records import tables

@@ -71,7 +71,7 @@ def report(picture, shown, recorded):
         log.logger.info("%s: they hardly move, and the picture is made of the take", found)
         return
     log.logger.warning(
-        "%s; film the `static` of the camera without people: clicks and bridging images rest on it",
+        "%s; film the `static` of the camera without people: clicks and bridging images use it",
         found,
     )
 

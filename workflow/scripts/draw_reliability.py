@@ -1,4 +1,4 @@
-"""Draw how far stated errors of joints hold: counts of takes -> figure, CSV."""
+"""Draw the coverage of stated joint errors: counts of takes -> figure, CSV."""
 
 from courtside.evaluation.tables import players
 from courtside.figures.comparison import reliability

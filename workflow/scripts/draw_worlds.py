@@ -1,4 +1,4 @@
-"""Draw what a wrong world costs: evaluations of its sessions, quality -> figure, CSV."""
+"""Draw the effect of unmodelled deviations: evaluations of sessions, quality -> figure, CSV."""
 
 import json
 from pathlib import Path

@@ -12,7 +12,7 @@ from courtside.study.execution.script import run
 
 def main(paths, offsets_csv, *, takes, about, step):
     shape, clips = skeleton.read(paths.skeleton), []
-    for seen, sex_of, truth in error_fit.seen_truly(paths, takes):
+    for seen, sex_of, truth in error_fit.footage_with_truth(paths, takes):
         raw = error_fit.triangulated(seen, shape, list(sex_of), step)
         clips += zip(raw.xyz, joints.true_places(raw, truth), sex_of.values(), strict=True)
     table = joint_correction.estimate(clips, raw.joints, truth.joints)

@@ -1,4 +1,4 @@
-"""Evaluate how far stated errors hold: joints of every stage, measures, truth -> counts."""
+"""Evaluate the coverage of stated errors: joints of every stage, measures, truth -> counts."""
 
 import pandas as pd
 

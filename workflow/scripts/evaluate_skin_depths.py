@@ -1,4 +1,4 @@
-"""Measure how deep joints lie behind development bodies' skin: lifted joints, truth -> depths."""
+"""Measure the depth of joints behind the skin of development bodies: joints, truth -> depths."""
 
 from courtside.evaluation import skin_depths
 from courtside.records import tables

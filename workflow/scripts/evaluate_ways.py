@@ -16,7 +16,7 @@ def main(table_csv, *, ways):
     rows = []
     for way in ways:
         row = {key: way[key] for key in ("session", "calibration", "base")}
-        row |= compared.said(read_json(way["quality"]))
+        row |= compared.from_quality(read_json(way["quality"]))
         if way["truth"]:
             real, court = session_truth.read(way["truth"]), court_files.read(way["court"])
             cameras = camera_models.read_toml(way["cameras"])

@@ -1,4 +1,4 @@
-"""Name the persons found in a take: people, what the user saw -> who is which subject."""
+"""Name the persons found in a take: people, the user's sightings -> subjects."""
 
 from courtside.calibration.court import court
 from courtside.reconstruction.association import naming

@@ -57,7 +57,7 @@ def main(
 
 
 def people_of(paths, base, takes, limits):
-    """Return what cameras see in each take; cameras that agree with nobody are found again."""
+    """Return the keypoints of each take; lost cameras are recovered."""
     filmed = {
         take["take"]: footage.read(paths.cameras, take["pose2d"], take["people"], take["sync"])
         for take in takes
@@ -84,7 +84,7 @@ def in_file(path, names, override, unit):
 
 
 def points(paths, base, weights):
-    """Return points at rest and the court's clicks; these are fitted where the base is a file."""
+    """Return points at rest and the court's clicks; the clicks are fitted if the base is a file."""
     names, static, court = [camera.name for camera in base], None, None
     if paths.static:
         _, by_camera = clicks.read_static(paths.static, names)

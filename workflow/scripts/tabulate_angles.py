@@ -1,4 +1,4 @@
-"""Tabulate how well joint angles are measured: evaluations of takes -> one CSV."""
+"""Tabulate the errors of joint angles: evaluations of takes -> one CSV."""
 
 from courtside.evaluation.tables import angles
 from courtside.records import tables

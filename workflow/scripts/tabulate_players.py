@@ -1,4 +1,4 @@
-"""Tabulate how well virtual players are measured: evaluations of takes -> one CSV."""
+"""Tabulate the errors of virtual players: evaluations of takes -> one CSV."""
 
 from courtside.evaluation.tables import players
 from courtside.records import tables

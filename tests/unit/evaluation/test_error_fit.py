@@ -76,7 +76,7 @@ def test_cameras_that_were_clicked_wrong_do_not_count(tmp_path):
         truth=[tmp_path / "take.npz"],
     )
     take = {"pose2d": pose2d, "sex_of": {"p1": "f"}}
-    ((seen, sex_of, truth),) = error_fit.seen_truly(paths, [take])
+    ((seen, sex_of, truth),) = error_fit.footage_with_truth(paths, [take])
     raw = error_fit.triangulated(seen, walker.SKELETON, list(sex_of), OPTIONS)
     apart = np.linalg.norm(raw.xyz - truth.xyz, axis=-1)
     assert sex_of == {"p1": "f"} and np.nanmax(apart) < 1e-6

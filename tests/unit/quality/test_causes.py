@@ -72,7 +72,7 @@ def test_poor_keypoints():
 
 def test_of_two_cameras_neither_is_blamed():
     cause = found(judged.turned(judged.footage(n_cameras=2), 1, 3.0), at=1)
-    assert cause.name == causes.UNKNOWN and "no third one" in cause.sentence
+    assert cause.name == causes.UNKNOWN and "no third camera" in cause.sentence
 
 
 def test_a_person_whom_the_others_do_not_place():

@@ -348,7 +348,7 @@ def test_a_knocked_camera_is_named_in_plain_lines():
     assert "leave it out" in knock and "\n" not in knock
     off = table().assign(shift_x_px=3.0, shift_y_px=4.0)
     _, moved = camera_shake.say(CAMERA_KNOCKS, off, PLAYER)
-    assert "stood 5.0 px off its static picture when the take began" in moved
+    assert "was 5.0 px off its static picture at the start of the take" in moved
     assert "mm" not in "".join(camera_shake.say(CAMERA_KNOCKS, off, np.full(3, np.nan)))
     assert len(camera_shake.say(CAMERA_KNOCKS, table(), PLAYER)) == 1
 

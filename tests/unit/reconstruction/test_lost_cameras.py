@@ -68,7 +68,7 @@ def test_a_camera_that_people_do_not_find_is_named():
     blind = replace(seen[3].tracklets, xy=np.full_like(seen[3].tracklets.xy, np.nan))
     seen = [*seen[:3], replace(seen[3], tracklets=blind)]
     found = lost_cameras.recover(base, {"a": seen}, LIMITS, SKELETON, None)
-    assert found.cameras is None and "people do not tell where it stands" in found.lines[0]
+    assert found.cameras is None and "people do not determine its pose" in found.lines[0]
 
 
 @pytest.fixture(autouse=True)

@@ -112,7 +112,7 @@ def test_points_that_are_not_in_the_set_do_not_count():
         ),
         (
             "",
-            "camera back: expected a camera from DLT, found a matrix that gives none; click",
+            "camera back: expected a valid camera from DLT, found none; click",
         ),
     ],
 )

@@ -227,7 +227,7 @@ def test_a_floor_seen_square_on_does_not_show_the_focal_length():
     true = cameras.Camera("top", SIZE, camera().K, np.zeros(5), overhead)
     floor = COURT.xyz[COURT.xyz[:, 2] == 0]
     with pytest.raises(
-        InputError, match=r"camera top: .* cannot be told apart; click points above the floor"
+        InputError, match=r"camera top: .* cannot be separated; click points above the floor"
     ):
         resection.nonlinear(floor, clicked(true, floor), SIZE, name="top")
 

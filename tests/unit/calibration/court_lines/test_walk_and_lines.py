@@ -70,7 +70,7 @@ def solved(court, seed, painting_m=0.01):  # as the module expects of this court
     tied, seen = ties(rng), measured(court, rng, painting_m)
     options = {**WEIGHTS, "max_iterations": 30}
     base = joint_adjustment.solve(tied, nothing, court, **options)
-    told = walk_and_lines.of_edges(base, tied, nothing, court, seen, **options)
+    told = walk_and_lines.from_edges(base, tied, nothing, court, seen, **options)
     return base, joint_adjustment.solve(tied, nothing, court, lines=told.knowledge, **options), told
 
 
@@ -107,12 +107,15 @@ def test_a_camera_whose_lines_contradict_the_walk_brings_none_and_is_named(court
     options = {**WEIGHTS, "max_iterations": 30}
     base = joint_adjustment.solve(tied, nothing, court, **options)
     other = replace(seen["back"], xy=seen["back"].xy + 14 * seen["back"].normal)
-    told = walk_and_lines.of_edges(base, tied, nothing, court, {**seen, "back": other}, **options)
+    told = walk_and_lines.from_edges(base, tied, nothing, court, {**seen, "back": other}, **options)
     (warning,) = told.warnings
     assert warning.startswith("camera back: expected its court lines within 4 sigmas")
     assert told.n_edges["back"] == 0 and told.n_edges["oblique"] > 60
-    none = walk_and_lines.of_edges(base, tied, nothing, court, {"back": other}, **options)
-    assert none.knowledge is None and none.said()["lines"]["n_edges"] == {"back": 0, "oblique": 0}
+    none = walk_and_lines.from_edges(base, tied, nothing, court, {"back": other}, **options)
+    assert none.knowledge is None and none.summary()["lines"]["n_edges"] == {
+        "back": 0,
+        "oblique": 0,
+    }
 
 
 def test_pictures_are_measured_near_where_the_walk_has_the_lines(court):

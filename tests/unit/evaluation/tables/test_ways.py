@@ -57,6 +57,6 @@ def test_accepted_views_are_counted_over_takes():
 
 def test_a_calibration_says_what_it_knows_of_itself():
     nothing = {"taken": None, "expected_before_cm": None, "expected_cm": None}
-    assert ways.said({"warnings": []}) == nothing
+    assert ways.from_quality({"warnings": []}) == nothing
     refined = {"taken": "refined", "expected_before_cm": 2.0, "expected_volume_rms_cm": 1.5}
-    assert ways.said(refined)["expected_cm"] == 1.5
+    assert ways.from_quality(refined)["expected_cm"] == 1.5

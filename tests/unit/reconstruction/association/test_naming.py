@@ -54,7 +54,7 @@ def test_one_subject_among_several_is_not_guessed():
     with pytest.raises(InputError) as fault:
         name(named_takes.take(2))
     assert str(fault.value) == (
-        "hall/walk: expected to be told who is p1, found person-1 (100% of the take, about x 0.0 "
+        "hall/walk: expected a statement who is p1, found person-1 (100% of the take, about x 0.0 "
         "y 0.0 m, seen by c0, c1), person-2 (100% of the take, about x 3.0 y 0.0 m, seen by c0, "
         "c1); say which of them is p1 on the page results/people.html (people.csv), or by `seen` "
         "in config/sessions/hall.yaml"
@@ -86,7 +86,7 @@ def test_the_last_subject_is_the_last_person():
     assert named.person_id.tolist() == ["a", "b"]
     assert (named.index["c1"] == [[1], [0]]).all()
     with pytest.raises(
-        InputError, match=r"expected to be told who is a, found person-2 .*person-3"
+        InputError, match=r"expected a statement who is a, found person-2 .*person-3"
     ):
         name(named_takes.take(3), [sighting("b", 0)], ("a", "b"))
 
@@ -94,7 +94,7 @@ def test_the_last_subject_is_the_last_person():
 @pytest.mark.parametrize("n_people", [1, 2])
 def test_several_subjects_need_names(n_people):
     with pytest.raises(
-        InputError, match=r"expected to be told who is a and who is b, found person"
+        InputError, match=r"expected a statement who is a and who is b, found person"
     ):
         name(named_takes.take(n_people), subjects=("a", "b"))
 

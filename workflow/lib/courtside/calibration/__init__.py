@@ -1,4 +1,4 @@
-"""Calibration of fixed cameras: files of other programs, chessboards, and the rooms below.
+"""Calibration of fixed cameras: court points and lines, walks, boards, people, imported files.
 
 The rooms: boards, court, court_lines, bundle, planning, click_proposals, file_check, foreign,
 people, records.

@@ -49,11 +49,11 @@ class Lens:
 def find(pictures: str | Path | Iterable[StrPath], inner_corners: Sequence[int]) -> Boards:
     """Find a chessboard in pictures of one camera, in the order of their file names.
 
-    OpenCV's sector-based detector (Duda & Frese 2018), which is sub-pixel by itself. It sometimes
-    takes other corners for the board's: those do not form a plane grid. Raises `InputError` if
-    there are no pictures, one is unreadable, or their sizes differ. `pictures` is a folder or
-    files; `inner_corners` counts where four squares meet, along both sides of the board, in either
-    order.
+    Uses OpenCV's sector-based detector (Duda & Frese 2018), which has sub-pixel accuracy. It
+    sometimes returns wrong corners; these do not form a plane grid and are rejected. Raises
+    `InputError` if there are no pictures, one is unreadable, or their sizes differ. `pictures` is a
+    folder or files; `inner_corners` counts where four squares meet, along both sides of the board,
+    in either order.
     """
     columns, rows = (int(count) for count in inner_corners)
     if min(columns, rows) < 3 or columns == rows:
@@ -140,9 +140,9 @@ def calibrate(boards: Boards, *, name: str = "camera") -> Lens:
     """Calibrate a lens from chessboards; `name` is the camera's, for messages.
 
     Zhang 2000, by OpenCV: one focal length, the principal point, k1 and k2. A handful of boards
-    does not tell decentering (p1, p2) from the principal point, nor k3 from k2. Boards that the
-    others contradict are left out one after another. The size of the squares does not matter to a
-    lens. Raises `InputError` if fewer than four boards are left, or these do not determine the
+    does not separate decentering (p1, p2) from the principal point, nor k3 from k2. Boards that
+    contradict the others are left out one after another. The size of the squares does not matter to
+    a lens. Raises `InputError` if fewer than four boards are left, or these do not determine the
     focal length (to 3 %).
     """
     paths, xy = list(boards.paths), list(boards.xy)

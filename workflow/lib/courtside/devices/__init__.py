@@ -1,4 +1,4 @@
-"""Files of devices and other programs, read into records: BVH, mocopi, Nuitrack, OpenPose, depth.
+"""Readers for files of devices and other programs: BVH, mocopi, Nuitrack, OpenPose, depth.
 
 bvh: `read`: any BVH file as a posed hierarchy; `read_text`: its checked content
 mocopi, nuitrack: `read`: the motion of one person as a `DeviceMotion`

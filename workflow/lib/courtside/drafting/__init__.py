@@ -1,4 +1,4 @@
-"""A session's YAML file drafted from a folder of recordings.
+"""Drafting of a session's YAML file from a folder of recordings.
 
 survey: `survey`: what every file of a folder is; `written`: its path as a session names it
 guess: `guess`: cameras, walks and takes, from the names of files

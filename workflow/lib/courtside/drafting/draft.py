@@ -98,7 +98,7 @@ def _pictures(guess: Guess, camera: str) -> tuple[list[str], list[str]]:
         keys.append(f"static: {_quoted(guess.static[camera].path)}")
         remarks.append(_described(guess.static[camera]))
     if camera in guess.stand_ins:
-        remarks = ["no recording of the empty court found, this take stands in for it"]
+        remarks = ["no recording of the empty court found, this take is used instead"]
     if camera in guess.boards:
         keys.append(f"chessboard: {{images: {_quoted(guess.boards[camera].path)}, {BOARD}}}")
         remarks.append("the chessboard's inner corners and the length of a square")
@@ -324,7 +324,7 @@ def write_study(path: Path, session: str, takes: Iterable[str]) -> str:
     """
     filmed = ", ".join(f"{session}/{take}" for take in takes)  # those with videos
     lines = [
-        f"# The study of {session} alone; what is not said here is as in config.yaml.",
+        f"# The study of {session} alone; keys not stated here are as in config.yaml.",
         f"sessions: [{session}]",
         "plans: []",
         "variations: []",
@@ -344,7 +344,7 @@ def to_check(guess: Guess, path: StrPath, court_points: str, study: StrPath) -> 
     `path` is the draft, `court_points` where clicked court points are expected, `study` the study
     that names the session.
     """
-    lines = [f"Look at {path}: every line with `{MARK}`, and what stands under `not used`."]
+    lines = [f"Look at {path}: every line with `{MARK}`, and everything under `not used`."]
     lines += [f"Odd: {line}" for line in _odd(guess)]
     lines += _translated(guess)
     if _synchronised(guess):
@@ -362,7 +362,9 @@ def to_check(guess: Guess, path: StrPath, court_points: str, study: StrPath) -> 
             f"Court points: the first run makes a page to click them on, for {court_points}."
         )
     if guess.cameras and not (guess.walks or guess.calibration or unfilmed(guess)):
-        lines.append("No walk was found: the cameras will rest on clicked court points alone.")
+        lines.append(
+            "No walk was found: the cameras will be calibrated from clicked court points alone."
+        )
     lines.append(
         f"`snakemake -n -q rules --configfile {study}` checks it and counts what will be made."
     )

@@ -28,10 +28,10 @@ from courtside.records.truth.take_truth import TakeTruth
 WEIGHT = {2: 0.25, 3: 0.4}
 
 
-def seen_truly(
+def footage_with_truth(
     paths: Any, takes: Sequence[Mapping[str, Any]]
 ) -> Iterator[tuple[list[Footage], Mapping[str, str | None], TakeTruth]]:
-    """Yield of each take its cameras as they truly are, the sexes of its persons, and its truth.
+    """Yield, for each take, its footage with the true cameras, its persons' sexes, and its truth.
 
     `paths` has `cameras` (the calibration that people were found with), `session_truth`, and
     `people`, `sync` and `truth` of each of the `takes`, which name their `pose2d` and `sex_of`.

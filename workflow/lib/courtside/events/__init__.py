@@ -1,4 +1,4 @@
-"""T-poses and claps: found in every source, timed by the contact of the hands.
+"""Detection of T-poses and claps in every source; the contact of the hands times a clap.
 
 tpose: `find`, `rest`, `measure`
 claps: `find`, `separation`, `wrist_distance`

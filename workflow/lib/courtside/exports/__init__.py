@@ -1,7 +1,7 @@
 """Files for other programs: TRC, C3D, BVH, GLB, CSV, Pose2Sim and OpenSim, cameras, videos.
 
 trc, c3d, bvh, tidy: `write`: one person or body in that form (`tidy`: CSV); `trc.read`.
-device: `points`, `named`, `performed`: what these need of an inertial suit.
+device: `points`, `named`, `performed`: data of an inertial suit for these formats.
 trees: joints as trees of bones; GLB.
 measures: `frames`, `summary`, `angles`: tables of kinematics.
 pose2sim, opensim, markers: `write_project`, `read_takes`, `write_markers`, `write_motion`: for

@@ -57,7 +57,7 @@ def write(path: StrPath, keypoints: Keypoints3D, person: int) -> None:
 
 
 def _check_whole(path: StrPath, content: bytes, n_bytes: int) -> None:
-    """Check what only a finished file has, because ezc3d does not notice a full disk.
+    """Check that the file is complete, because ezc3d does not notice a full disk.
 
     It writes last where the points begin.
     """

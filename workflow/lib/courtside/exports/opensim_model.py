@@ -122,7 +122,7 @@ def write(
     """Write one person's model (`.osim`): bodies, joints, and the network's joints as markers.
 
     Markers are named as in the TRC files, coordinates as in `coordinates`; all lengths are those of
-    the fit, their standard deviations stand in the credits. Shares of mass are those of de Leva
+    the fit, their standard deviations are in the credits. Shares of mass are those of de Leva
     (1996); each body is a cylinder along Y, from joint to joint where the segment has a next one,
     else as wide as long.
     """
@@ -245,7 +245,7 @@ def _add_body(
 
 
 def _add_joint(parent: Element, segment: str, above: str, place: NDArray) -> None:
-    """Add the joint by which a segment hangs on the body `above`, at a place in it."""
+    """Add the joint that connects a segment to the body `above`, at a position in that body."""
     own = turns(segment)
     joint = SubElement(parent, "CustomJoint", name=f"{body(segment)}_joint")
     _text(joint, "socket_parent_frame", "above")

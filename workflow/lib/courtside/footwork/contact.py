@@ -1,10 +1,10 @@
-"""Whether a foot stands: a hidden Markov model of speed and height of its heel and toe.
+"""Probability of foot contact: a hidden Markov model of the speed and height of heel and toe.
 
-The foot swings, or it stands on its heel, flat or on its toe. Speed and height of heel and toe
-tell events of gait from markers ([OConnor2007]; Zeni et al. 2008); here they are noisy, and feet
-also shuffle, so that no threshold serves: each state has a density for velocity and height of
-both points, widened by their stated variance, and the posterior of the states in time comes from
-the forward-backward algorithm (Rabiner 1989, sec. III).
+The foot swings, or it stands on its heel, flat or on its toe. With markers, thresholds on speed and
+height of heel and toe detect gait events ([OConnor2007]; Zeni et al. 2008). Here thresholds do not
+work, because joints are noisy and feet also shuffle. Instead, each state has a density for velocity
+and height of both points, widened by their stated variance. The posterior of the states over time
+comes from the forward-backward algorithm (Rabiner 1989, sec. III).
 """
 
 import numpy as np
@@ -32,10 +32,10 @@ START = np.array([0.1, 0.1, 0.7, 0.1])
 
 
 def probability(track: Track) -> NDArray:
-    """Return posterior probabilities (N, 3): that the foot, its heel and its toe stand.
+    """Return posterior probabilities (N, 3) of contact of the foot, its heel and its toe.
 
-    Errors of filtered points last: of the grid's times, two per period of the cut-off count as
-    independent.
+    Errors of filtered points are correlated over time: per period of the cut-off, only two times of
+    the grid count as independent.
     """
     step_s = float(np.mean(np.diff(track.time_s)))
     weight = min(1.0, 2 * track.cutoff_hz * step_s)
@@ -46,7 +46,7 @@ def probability(track: Track) -> NDArray:
 
 
 def _log_densities(track: Track) -> NDArray:
-    """Return the log densities (N, 4) of what is seen, in each state."""
+    """Return the log densities (N, 4) of the observations in each state."""
     still, moving, raised = _of_points(track)
     (heel, toe), (heel_up, toe_up), (heel_off, toe_off) = still.T, raised.T, moving.T
     return np.stack([heel_off + toe_off, heel + toe_up, heel + toe, heel_up + toe], axis=1)

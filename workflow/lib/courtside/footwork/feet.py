@@ -15,8 +15,8 @@ def find(
 ) -> tuple[footwork.Contacts, pd.DataFrame, pd.DataFrame]:
     """Return contacts, steps and events of every person.
 
-    `points` are filtered skeletons, `cutoff_hz` (J,) the cut-off of each joint. Of a skeleton
-    without heel and toe nothing is known.
+    `points` are filtered skeletons, `cutoff_hz` (J,) the cut-off of each joint. A skeleton without
+    heel and toe gives no contacts.
     """
     n_people, n_frames = points.xyz.shape[:2]
     probability = np.full((n_people, n_frames, 2, 3), np.nan)

@@ -1,4 +1,4 @@
-"""What a stance is: a step, a lunge, the landing of a split step or of a jump; tables of both."""
+"""Classification of stances (step, lunge, landing of a split step or jump), and their tables."""
 
 from collections.abc import Mapping, Sequence
 
@@ -52,7 +52,7 @@ def tables(people: Mapping[str, tuple[Feet, float]]) -> tuple[pd.DataFrame, pd.D
 
 
 def _since(stance: Stance) -> float:
-    """Return from when on a stance is known, s."""
+    """Return the time from which a stance is known, s."""
     known = [each for each in (stance.first_s, stance.onset_s) if np.isfinite(each)]
     return known[0] if known else -np.inf
 

@@ -1,4 +1,4 @@
-"""Heel and toe of one foot, between frames too: place, velocity, height and their variances."""
+"""Position, velocity and height of heel and toe of one foot, between frames too, with variances."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ class Track:
 
     @property
     def velocity_variance(self) -> NDArray:
-        """Of the velocity (N, 2, 3), m2/s2: of errors with a flat spectrum up to the cut-off."""
+        """Variance of the velocity (N, 2, 3), m2/s2; errors have a flat spectrum to the cut-off."""
         return self.variance * (2 * np.pi * self.cutoff_hz) ** 2 / 3
 
 
@@ -52,9 +52,9 @@ def tracks(
     """Return the tracks of a foot, one for each run of frames in which heel and toe are known.
 
     `points` are filtered skeletons with uniform times, `cutoff_hz` (J,) the filter's cut-offs. The
-    second value (2,) m is how high heel and toe stand above z = 0 while the foot is flat, NaN if
-    nothing is known of the foot: a quantile of their heights while they are slow, so that it also
-    holds what the cameras' common error adds to the floor.
+    second value (2,) m is the height of heel and toe above z = 0 while the foot is flat, NaN if the
+    foot is never known. It is a quantile of their heights while they are slow, so it includes the
+    common error of the cameras at the floor.
     """
     chosen = points_of(points.joints.tolist(), side)
     if not chosen or len(points.time_s) < 2:
@@ -86,7 +86,7 @@ def _track(
 
 
 def _floor(found: Sequence[Track]) -> NDArray:
-    """Return how high heel and toe (2,) m stand above z = 0; NaN without tracks."""
+    """Return the height of heel and toe (2,) m above z = 0; NaN without tracks."""
     if not found:
         return np.full(2, np.nan)
     height = np.concatenate([one.place[..., 2] for one in found])

@@ -3,9 +3,9 @@
 The angles lie between straight lines from joint to joint. They are not those of the International
 Society of Biomechanics (Wu et al. 2002, 2005), which are rotations between segment frames, split
 into flexion, abduction and axial rotation: a segment frame needs three points that are not in line,
-and a segment here has only the joints at its two ends. An angle here tells how far a joint is bent,
-not about which axis: abduction and flexion of the hip are one number, and axial rotation is not
-seen.
+and a segment here has only the joints at its two ends. An angle here measures how far a joint is
+bent, not about which axis: abduction and flexion of the hip are one number, and axial rotation is
+not measured.
 """
 
 from collections.abc import Callable, Sequence

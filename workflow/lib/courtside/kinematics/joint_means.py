@@ -1,4 +1,4 @@
-"""Means over a take of how joints move, in ways that networks can be compared by."""
+"""Means over a take of the motion of each joint, for the comparison of networks."""
 
 from collections.abc import Mapping
 
@@ -12,12 +12,12 @@ HIPS = ("left_hip", "right_hip")
 
 
 def table(points: Keypoints3D, label: Mapping[str, str]) -> pd.DataFrame:
-    """Measure every joint of a take in ways that do not depend on position or direction.
+    """Measure every joint of a take independently of its position and direction.
 
-    The points are filtered, because noise lengthens a path. `label` is as for `longitudinal.read`,
-    without model. `longitudinal.COLUMNS`: mean height above the floor (mm), mean speed (m/s,
-    between neighbouring frames), and mean distance to the middle of the hips (mm), over the frames
-    that have them.
+    The points must be filtered, because noise lengthens a path. `label` is as for
+    `longitudinal.read`, without model. `longitudinal.COLUMNS`: mean height above the floor (mm),
+    mean speed (m/s, between neighbouring frames), and mean distance to the middle of the hips (mm),
+    over the frames that have them.
     """
     names = list(map(str, points.joints))
     middle = points.xyz[:, :, [names.index(hip) for hip in HIPS]].mean(axis=2, keepdims=True)

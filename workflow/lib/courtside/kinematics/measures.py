@@ -73,7 +73,7 @@ class Person:
 
 @dataclass(frozen=True, eq=False)
 class _Take:
-    """One person's joints, filtered and before, and how they were filtered."""
+    """One person's joints before and after the filter, and the filter."""
 
     skeletons: Keypoints3D
     raw: Keypoints3D
@@ -135,18 +135,19 @@ def measure(
 ) -> list[Person]:
     """Measure all persons of a take on its filtered skeletons.
 
-    `skeletons`, of the named `skeleton`, are those that are exported, corrected or not: filtered
-    last, as `how` says (`skeleton_filter.smooth`). `raw` is what they were made from
-    (`skeleton_filter.prepare`): its noise is that of the measures. `sex_of` gives "m", "f" or None
-    for persons, `field` the errors of the cameras, where known.
+    `skeletons`, of the named `skeleton`, are the exported ones, corrected or not. Their last step
+    is the filter `how` (`skeleton_filter.smooth`). They were made from `raw`
+    (`skeleton_filter.prepare`), whose noise determines that of the measures. `sex_of` gives "m",
+    "f" or None for persons, `field` the errors of the cameras, where known.
 
     Nothing is filtered again. Points are means of the skeletons' joints, speeds and accelerations
-    the derivatives of their cubic splines, distances the integrals of the speeds. The keypoints'
-    noise is that of the raw joints that passes the filter, each joint's own. The network's errors
-    are alike in neighbouring joints and last for some frames, an offset that was not taken away
-    counts with the square of its derivative, and the cameras' errors are one field in space for the
-    whole take (`shared_errors`): a point that rests has none in its speed. In no uncertainty of a
-    derivative: what the filter removes of the motion.
+    the derivatives of their cubic splines, distances the integrals of the speeds. Four errors are
+    stated. The noise of keypoints is that of the raw joints after the filter, independent between
+    joints. The network's errors are correlated between neighbouring joints and last for some
+    frames. A known offset that was not subtracted contributes the square of its derivative. The
+    cameras' errors are one field in space for the whole take (`shared_errors`) and do not affect
+    the speed of a point at rest. Motion that the filter removes is not part of any stated
+    uncertainty.
     """
     made = []
     for at, person in enumerate(skeletons.person_id):

@@ -1,8 +1,9 @@
-"""What errors of joints have in common, with each other and from frame to frame.
+"""Errors that joints share with one another and from frame to frame.
 
-The keypoints' noise is each joint's own. Three other errors are not: the network's, which is alike
-for neighbouring joints of a limb and lasts for some frames; its known offset, where it was not
-taken away; and the cameras', one smooth field of errors for all joints and frames of a take.
+The noise of keypoints is independent between joints. Three other errors are not: the network's
+errors, which are correlated between neighbouring joints of a limb and last for some frames; the
+network's known offset, if it was not subtracted; and the errors of the cameras, one smooth field
+for all joints and frames of a take.
 """
 
 from collections.abc import Callable, Sequence
@@ -52,14 +53,14 @@ class Errors:
 
 
 def independent(covariance: NDArray) -> Errors:
-    """Return errors of which each joint has its own alone; `covariance` is (T, J, 3, 3) m2."""
+    """Return errors that are independent between joints; `covariance` is (T, J, 3, 3) m2."""
     n_frames, n_joints = covariance.shape[:2]
     nothing = np.zeros((n_frames, n_joints))
     return Errors(covariance, nothing, np.eye(n_joints), np.zeros((n_frames, n_joints, 3, 0)))
 
 
 def of_person(points: Keypoints3D, person: int, field: Field | None = None) -> Errors:
-    """Return the errors that a record states for one of its persons, by the person's index."""
+    """Return the stated errors of one person of a record, by the person's index."""
     network = NETWORK_SHARE * variances(points.covariance_network[person])
     shared = np.nan_to_num(points.offset[person])[..., None]
     if field is not None:

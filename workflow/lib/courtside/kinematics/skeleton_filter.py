@@ -1,4 +1,4 @@
-"""The filtered skeleton of a take: it is exported, and all kinematics are measured on it."""
+"""The filtered skeleton of a take, which is exported and used for all kinematics."""
 
 from dataclasses import replace
 
@@ -11,7 +11,7 @@ from courtside.study.errors import InputError
 
 
 def prepare(raw: Keypoints3D, max_gap_s: float) -> Keypoints3D:
-    """Return what is filtered: raw keypoints without uncertain frames, short gaps filled.
+    """Return the input of the filter: raw keypoints without uncertain frames, short gaps filled.
 
     See `filtering.leave_out_uncertain` and `filtering.fill_gaps`.
     """
@@ -36,8 +36,9 @@ def smooth(points: Keypoints3D, cutoff_hz: ArrayLike, order: int) -> Keypoints3D
     by one, and the same values stay missing; runs of one or two frames stay as they are.
     `covariance_2d` is that of the filtered noise, by the noise model of each joint's own path
     (`noise_propagation.estimate`); it stays unknown where it was, as in filled gaps.
-    `covariance_network` grows where the filter brings in errors of frames around that are larger
-    (`_spread`): it lessens none, for they last longer than its reach.
+    `covariance_network` grows where the filter spreads larger errors of neighbouring frames
+    (`_spread`). It never decreases, because these errors last longer than the filter's impulse
+    response.
     """
     if order < 2 or order % 2:
         raise InputError(
@@ -73,10 +74,10 @@ def smooth(points: Keypoints3D, cutoff_hz: ArrayLike, order: int) -> Keypoints3D
 
 
 def _spread(covariance: NDArray, rate_hz: float, cutoff_hz: float, order: int) -> NDArray:
-    """Return covariances (T, 3, 3) of errors, none smaller, after a filter that spreads them.
+    """Return covariances (T, 3, 3) of errors after a filter that spreads them; none decreases.
 
-    Isotropic: the standard deviation is the mean of those around by the filter's weights, as of
-    errors that agree.
+    They are isotropic. The standard deviation is the mean of the neighbouring ones with the
+    filter's weights, as for fully correlated errors.
     """
     variance = np.trace(covariance, axis1=1, axis2=2) / 3
     weights = noise_propagation.weights(rate_hz, cutoff_hz, order)

@@ -51,7 +51,7 @@ class Arc:
 
 
 def missing(body: BodyMotion) -> str:
-    """Return why a source has no arcs: without T-pose, or a clap after it; empty if it has."""
+    """Return why a source has no arcs (no T-pose, or no clap after it); empty if it has arcs."""
     start_s, stop_s = body.tpose_s
     if not np.isfinite(stop_s):
         return (

@@ -1,4 +1,4 @@
-"""Pages in one HTML file each: clicking, who is who, viewer, report.
+"""HTML pages in one file each: clicking court points, naming persons, viewer, report.
 
 page: `build`, `render`, `macro`, `write`: one page from templates, scripts, data and pictures
 pictures: `shrunk`: a PNG as small as a page needs it

@@ -24,7 +24,7 @@ PERSONS, OTHERS = (0, 200, 255), (200, 120, 0)  # BGR of joints: yellow, blue
 
 
 class Line(NamedTuple):
-    """What the page says of a camera, or of the take as a whole."""
+    """The page's entry for a camera, or for the take as a whole."""
 
     camera: str  # `ALL` for the take
     verdict: str

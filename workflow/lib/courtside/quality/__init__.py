@@ -1,4 +1,4 @@
-"""Verdicts on takes: shares, errors, and by test why a camera disagrees with the others.
+"""Verdicts on takes: shares, errors, and tests of why a camera disagrees with the others.
 
 seen: `gather`, `without`, `disagreement`: a take on common times, persons by the other cameras
 measures: `of_camera`, `of_person`: shares, errors in heights of the person, limb lengths

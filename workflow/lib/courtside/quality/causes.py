@@ -1,7 +1,7 @@
-"""Why a camera disagrees with the others: detection, identity, clock or calibration, by test.
+"""Tests of why a camera disagrees with the others: detection, identity, clock or calibration.
 
-Each test changes one thing of one camera and asks whether its keypoints then lie where the other
-cameras place the joints. Errors are in heights of the person in that picture.
+Each test changes one property of one camera and checks whether its keypoints then match the joints
+from the other cameras. Errors are in heights of the person in that picture.
 """
 
 from dataclasses import dataclass
@@ -39,7 +39,7 @@ class Cause:
 
 @dataclass(frozen=True, eq=False)
 class _Camera:
-    """What the tests of one camera share."""
+    """Data that the tests of one camera share."""
 
     seen: Seen
     at: int
@@ -59,9 +59,9 @@ class _Camera:
 def find(seen: Seen, camera: int, *, found_limit: float) -> Cause:
     """Return the likelier cause of a camera's disagreement with the others.
 
-    `found_limit` is the share of persons found below which detection alone explains it. Where the
-    other cameras do not place the person, or there are only two cameras, the cause of errors is not
-    known.
+    `found_limit` is the share of persons found below which detection alone explains it. If the
+    other cameras cannot triangulate the person, or there are only two cameras, the cause is
+    unknown.
     """
     there = np.isfinite(seen.others[camera]).all(axis=-1).mean(axis=-1) >= views.HALF
     expected = seen.expected(camera)
@@ -71,7 +71,9 @@ def find(seen: Seen, camera: int, *, found_limit: float) -> Cause:
     if absent > 1 - found_limit:
         return Cause(DETECTION, _absent(absent))
     if len(seen.cameras) < 3:
-        words = "two cameras contradict each other, and no third one tells which of them is wrong"
+        words = (
+            "two cameras contradict each other, and no third camera shows which of them is wrong"
+        )
         return Cause(UNKNOWN, words)
     if not (there & expected).any() and not seen.followed[camera].any():
         return Cause(IDENTITY, "people are found there, but none of them is followed")
@@ -94,7 +96,7 @@ def _of_camera(seen: Seen, camera: int, expected: NDArray) -> _Camera:
 
 
 def _by_tests(one: _Camera, absent: float) -> Cause:
-    """Return the cause whose test leaves least of the error."""
+    """Return the cause whose test leaves the smallest error."""
     own = one.left(one.followed)
     nearest = one.left(one.nearest)
     if np.isnan(own) and nearest <= FITS:
@@ -119,7 +121,7 @@ def _by_tests(one: _Camera, absent: float) -> Cause:
 
 
 def _is_other(one: _Camera) -> bool:
-    """Say whether the nearest tracklet is mostly somebody else than the one that is followed."""
+    """Return whether the nearest tracklet mostly belongs to another person than the tracked one."""
     apart_px = np.linalg.norm(one.nearest.mean(axis=2) - one.followed.mean(axis=2), axis=-1)
     apart = apart_px / one.seen.height_px[one.at][:, one.seen.at]
     known = np.isfinite(apart)
@@ -127,7 +129,7 @@ def _is_other(one: _Camera) -> bool:
 
 
 def _unexplained(one: _Camera, before: float, absent: float) -> Cause:
-    """Return what no test explains: nobody who fits was found, or the keypoints are poor."""
+    """Return the cause if no test succeeds: no matching person was found, or keypoints are poor."""
     if before > FITS:
         words = "nobody found in it is the person that the other cameras see"
         return Cause(DETECTION, words)
@@ -152,7 +154,7 @@ def _not_followed(one: _Camera) -> str:
 
 
 def _best_shift(one: _Camera, tested: NDArray) -> tuple[float, float]:
-    """Return the shift of the clock (s) that leaves least error, and that error."""
+    """Return the clock shift (s) with the smallest remaining error, and this error."""
     seen = one.seen
     step = max(1, round(FINEST_S * seen.points.rate_hz))
     most = int(MOST_S * seen.points.rate_hz) // step
@@ -175,7 +177,7 @@ def _best_shift(one: _Camera, tested: NDArray) -> tuple[float, float]:
 
 
 def _best_turn(one: _Camera, tested: NDArray) -> tuple[float, float]:
-    """Return by how many degrees a camera is turned that leaves least error, and that error."""
+    """Return the camera rotation (degrees) with the smallest remaining error, and this error."""
     camera, seen = one.seen.cameras[one.at], one.seen
     known = np.isfinite(seen.errors(one.at, tested)).all(axis=-1)
     if known.sum() < 10:

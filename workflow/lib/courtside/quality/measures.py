@@ -1,4 +1,4 @@
-"""What is measured of each camera and each person of a take, to be judged by limits."""
+"""Quality measures of each camera and each person of a take, to be compared with limits."""
 
 from itertools import pairwise
 
@@ -13,7 +13,7 @@ ROBUST = 1.4826  # a median absolute deviation times this is the standard deviat
 
 
 def of_camera(seen: Seen, camera: int) -> dict[str, float]:
-    """Return what is measured of a camera; NaN where nothing is known.
+    """Return the quality measures of a camera; NaN if unknown.
 
     `found`: of the persons who should be in its picture, the share that the network found, whoever
     they are; `followed`: the share that is followed as that person; `accepted`: share of its
@@ -39,7 +39,7 @@ def of_camera(seen: Seen, camera: int) -> dict[str, float]:
 
 
 def of_person(seen: Seen, person: int) -> dict[str, float]:
-    """Return what is measured of a person over all cameras; NaN where nothing is known.
+    """Return the quality measures of a person over all cameras; NaN if unknown.
 
     `views_2`, `views_3`: share of the limb joints that rest on two and three cameras or more;
     `accepted` and `reprojection` as of a camera, from the joints as all cameras place them;

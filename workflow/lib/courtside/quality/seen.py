@@ -1,9 +1,9 @@
-"""A take as its cameras saw it, on common times, and its persons placed by the other cameras.
+"""The keypoints of a take at common times, and its persons triangulated by the other cameras.
 
 C cameras, P persons, T frames, K middles between the same joint of both sides (shoulders, ...,
-ankles), R tracklets of a camera. S of the T frames are looked at. Lengths in pictures are in px, or
-in heights of the person there. Middles do not depend on which side is which, which fusion decides
-from all cameras, wrong ones too.
+ankles), R tracklets of a camera. S of the T frames are used. Lengths in pictures are in px, or in
+heights of the person there. Middles do not depend on left and right, which the fusion decides from
+all cameras, including wrong ones.
 """
 
 from collections.abc import Sequence
@@ -48,7 +48,7 @@ class Seen:
         return shown(self.xy)
 
     def expected(self, camera: int) -> NDArray:
-        """Return where a person should be in a picture, (P, S): there, or not known to be away."""
+        """Return whether a person is expected in a picture, (P, S): inside, or position unknown."""
         middle = np.ma.median(np.ma.masked_invalid(self.others[camera]), axis=2).filled(np.nan)
         unknown = np.isnan(middle).any(axis=-1)
         size = np.array(self.cameras[camera].size)
@@ -95,7 +95,7 @@ def gather(footage: Sequence[Footage], points: Keypoints3D, skeleton: Skeleton) 
 
 
 def without(seen: Seen, out: tuple[int, ...]) -> Seen:
-    """Return the same take with the cameras of `out` left out where others place the persons."""
+    """Return the same take with the cameras `out` left out of the triangulation of persons."""
     found = np.full(seen.others.shape, np.nan)
     xy, score = seen.xy[:, :, seen.at], seen.score[:, :, seen.at]
     for camera in range(len(seen.cameras)):
@@ -106,10 +106,10 @@ def without(seen: Seen, out: tuple[int, ...]) -> Seen:
 
 
 def disagreement(seen: Seen, used: Sequence[int]) -> float:
-    """Return how far some cameras, all used alike, are from showing the same persons, heights.
+    """Return the disagreement of some cameras with equal weights, in heights of the person.
 
-    The median over the middles of the root mean square error that is left per degree of freedom;
-    NaN where no two of them see one.
+    It is the median over the middles of the root mean square residual per degree of freedom; NaN if
+    no middle is seen by two of them.
     """
     xy = seen.xy[list(used)][:, :, seen.at].reshape(len(used), -1, 2)
     cameras = [seen.cameras[at] for at in used]
@@ -133,7 +133,7 @@ def _of_joints(points: Keypoints3D, chosen: list[int]) -> Keypoints3D:
 
 
 def _placed(seen: Seen, rest: list[int], xy: NDArray, score: NDArray) -> NDArray:
-    """Return middles (P, S, K, 3) m as some cameras place them."""
+    """Return middles (P, S, K, 3) m triangulated by some cameras."""
     limit_px = AGREED * seen.height_px[rest][:, :, seen.at]
     placed = triangulation.triangulate_robust(
         [seen.cameras[at] for at in rest],

@@ -18,7 +18,7 @@ AGREED = 0.02  # heights: usual takes have a disagreement of 0.007 to 0.012
 
 
 class Limit(NamedTuple):
-    """From where on a value is doubtful and failed, and in words what it is."""
+    """The limits from which a value is doubtful and failed, and its description in words."""
 
     doubtful: float
     failed: float
@@ -80,8 +80,8 @@ def judge(seen: Seen) -> pd.DataFrame:
 def _cameras(seen: Seen) -> list[list[dict]]:
     """Return the rows of each camera, that of the whole first.
 
-    A camera that is wrong moves the joints that the others are compared with. The one without
-    which the others agree is therefore left out, and the others are judged again.
+    A wrong camera shifts the joints that the other cameras are compared with. If the others agree
+    without it, it is left out and the others are judged again.
     """
     fixed: dict[int, list[dict]] = {}
     while True:
@@ -98,7 +98,7 @@ def _cameras(seen: Seen) -> list[list[dict]]:
 
 
 def _uncertain(judged: dict[int, list[dict]]) -> dict[int, list[dict]]:
-    """Say of several cameras that contradict each other that any of them may be the wrong one."""
+    """Mark cameras that contradict one another: any of them may be the wrong one."""
     wrong = [
         at
         for at, (whole, *rows) in judged.items()
@@ -145,14 +145,14 @@ def _judged(
             "failed_from": limits[name].failed,
             "verdict": level(limits[name], found[name]),
             "cause": "",
-            "sentence": _said(limits[name], found[name]),
+            "sentence": _sentence(limits[name], found[name]),
         }
         for name in limits
         if name in found
     ]
 
 
-def _said(limit: Limit, value: float) -> str:
+def _sentence(limit: Limit, value: float) -> str:
     words = "nothing is known of: " + limit.words.replace("{:.0%} of ", "").replace("{:.0%}", "")
     text = limit.words.format(value) if value == value else words.replace("{:.3f} of ", "")
     return text[:1].upper() + text[1:] + "."
@@ -167,8 +167,8 @@ def _whole(camera: str, person: str, verdict: str, cause: str, sentence: str) ->
 def _camera(seen: Seen, at: int, agreed: bool) -> list[dict]:
     """Judge a camera: its rows, that of the whole first.
 
-    `agreed`: all cameras agree but those that are left out or follow nobody. The errors are then
-    theirs, or those of joints placed by two cameras that face each other.
+    `agreed`: all cameras agree except those that are left out or track nobody. The errors are then
+    due to those cameras, or to joints triangulated by two cameras that face each other.
     """
     name = seen.cameras[at].name
     found = measures.of_camera(seen, at)

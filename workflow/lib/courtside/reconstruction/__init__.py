@@ -1,4 +1,4 @@
-"""From 2D keypoints of several cameras to 3D: clocks applied, sides, fusion, shake, correction.
+"""From the 2D keypoints of several cameras to 3D: clocks, sides, fusion, shake, correction.
 
 resampling: `common_times`, `resample`, `nearest`: each camera's clock applied
 common_views: `of_takes`: limb joints of everybody in several takes

@@ -1,7 +1,7 @@
 """Camera shake and knocks: removed from keypoints, put back for pictures, found and described.
 
-Tables are those of `courtside.records.cameras.shake_table`; cameras are as calibrated, standing as
-in their static picture.
+Tables are those of `courtside.records.cameras.shake_table`. Cameras have their calibrated pose,
+which is that of their static picture.
 """
 
 from collections.abc import Mapping, Sequence
@@ -33,7 +33,7 @@ DONE_RAD = 1e-10  # far below any measurement
 def camera_turns(camera: Camera, table: DataFrame) -> NDArray:
     """Return the rotation vector (T, 3), radians, of the camera in each frame.
 
-    It leads from the camera axes as calibrated to those in the frame, and is NaN where the shake is
+    It rotates the calibrated camera axes to those of the frame, and is NaN where the shake is
     unknown. The model is a pure rotation: when the picture moves by ten pixels, the camera's centre
     moves by about a millimetre. The rotation is the one that moves the picture's centre, and turns
     the content there, as measured (Newton's method through the lens). Zoom is ignored.
@@ -80,13 +80,13 @@ def steady(view: Keypoints2D, camera: Camera, table: DataFrame) -> Keypoints2D:
 
 
 def still(time_s: NDArray) -> DataFrame:
-    """Return the table of a camera that stood still, of frames at times (T,) of its own clock."""
+    """Return the shake table of a camera at rest, for frames at times (T,) of its own clock."""
     whole = DataFrame({"frame_idx": np.arange(len(time_s)), "time_s": np.asarray(time_s, float)})
     return whole.assign(**dict.fromkeys(shake_table.MEASURED, 0.0), n_matches=0)
 
 
 def knocked(camera: Camera, table: DataFrame, knocks: Sequence[tuple[float, NDArray]]) -> DataFrame:
-    """Return a table with knocks in it: times, s, and turns (3,), radians, on top of its shake."""
+    """Return a table with knocks added to its shake: times, s, and rotations (3,), radians."""
     if not knocks:
         return table
     vectors, time_s = camera_turns(camera, table), table.time_s.to_numpy(float)
@@ -103,7 +103,7 @@ def knocked(camera: Camera, table: DataFrame, knocks: Sequence[tuple[float, NDAr
 
 
 def frame_turns(camera: Camera, table: DataFrame, time_s: NDArray) -> NDArray:
-    """Return how a camera was turned in frames at times (T,) of its own clock: what `steady` undid.
+    """Return the rotation of a camera that `steady` removed, for frames at times (T,) of its clock.
 
     Rotation vectors (T, 3), radians, from the camera as calibrated; 0 where the shake is unknown
     for longer than 0.2 s. Raises `InputError` if a frame is not in the table.
@@ -113,10 +113,10 @@ def frame_turns(camera: Camera, table: DataFrame, time_s: NDArray) -> NDArray:
 
 
 def put_back(seen: Sequence[Footage], tables: Mapping[str, DataFrame]) -> list[Footage]:
-    """Return footage with cameras turned as in their pictures, by the `tables` of their names.
+    """Return footage whose cameras have the shake of their pictures again, from `tables` by name.
 
-    Skeletons then reproject onto the persons in the shaken pictures. A camera without a table
-    stood still.
+    Skeletons then project onto the persons in the shaken pictures. A camera without a table did not
+    move.
     """
     return [
         replace(one, turns=frame_turns(one.camera, tables[one.camera.name], one.view.time_s))
@@ -135,7 +135,7 @@ def read_as_filmed(
     videos: Sequence[StrPath] = (),
     wanted: Sequence[str] | None = None,
 ) -> list[Footage]:
-    """Read footage as `footage.read` does, with cameras turned as in their pictures."""
+    """Read footage as `footage.read` does, with the shake of the pictures in the cameras."""
     seen = footage.read(cameras_toml, pose2d_npz, people_npz, sync_json, videos, wanted)
     return put_back(seen, shake_table.read_all(shake_csv))
 
@@ -226,8 +226,8 @@ def find(camera: Camera, table: DataFrame) -> list[Knock]:
 
     A step counts if the median rotations of the second before and after differ by more than 1 px at
     the picture's centre, by five times their uncertainty, five times their typical difference in
-    this take, and three times the root mean square of the tremor beside it. Only what stands out of
-    the tremor is found, and nothing within 0.4 s of the ends of a take.
+    this take, and three times the root mean square of the tremor beside it. Only knocks that exceed
+    the tremor are found, and none within 0.4 s of the ends of a take.
     """
     table = table[np.isfinite(table.shift_x_px)]
     if len(table) < 2:
@@ -295,7 +295,7 @@ def say(camera: Camera, table: DataFrame, xyz: NDArray) -> list[str]:
     start_px = np.hypot(*np.median(parts[0], axis=0))
     if start_px > max(LEAST_PX, tremor):
         lines.append(
-            f"{name} stood {start_px:.1f} px off its static picture when the take began"
+            f"{name} was {start_px:.1f} px off its static picture at the start of the take"
             f"{_at_player(scale * start_px)}: steady its keypoints, "
             "or film the static picture again"
         )

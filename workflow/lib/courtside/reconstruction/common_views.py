@@ -1,4 +1,4 @@
-"""The limb joints of everybody in several takes, at common times, as all cameras see them."""
+"""The limb keypoints of all persons in several takes and all cameras, at common times."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -16,7 +16,7 @@ from courtside.study.errors import StrPath
 def of_takes(
     cameras_toml: StrPath, names: Sequence[str], takes: Sequence[Mapping[str, Any]]
 ) -> Seen | None:
-    """Return what the cameras `names` saw of everybody in takes, None without takes.
+    """Return the keypoints of all persons in takes, by the cameras `names`; None without takes.
 
     `takes` have the files `pose2d` (a list), `people` and `sync`, as for `footage.read`. A camera
     that does not film a take sees nobody there.
@@ -26,14 +26,14 @@ def of_takes(
 
 
 def of_take(cameras_toml: StrPath, names: Sequence[str], take: Mapping[str, Any]) -> Seen:
-    """Return what they saw in one take, of the files above."""
+    """Return the keypoints of one take from the files above."""
     return of_footage(
         names, footage.read(cameras_toml, take["pose2d"], take["people"], take["sync"])
     )
 
 
 def of_footage(names: Sequence[str], seen: Sequence[Footage]) -> Seen:
-    """Return what they saw in one take, whose people are associated."""
+    """Return the keypoints of one take, whose people are associated."""
     each, clocks = [one.view for one in seen], [one.clock for one in seen]
     time_s = resampling.common_times(each, clocks)
     joints = [list(each[0].joints).index(name) for name in skeleton.JOINTS]

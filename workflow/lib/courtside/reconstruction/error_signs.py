@@ -1,7 +1,7 @@
-"""Signs of a wrong joint that a method sees: views, residuals, lengths, motion, the other side.
+"""Observable indicators of a wrong joint: views, residuals, lengths, motion, the other side.
 
 P persons, T frames, J joints, C cameras. Every sign is (P, T, J) without a unit, finite, and grows
-with the errors that it warns of (`reconstruction.joint_errors` weighs them).
+with the errors that it indicates (`reconstruction.joint_errors` weights the signs).
 """
 
 import warnings
@@ -85,7 +85,7 @@ def _log(length_m: NDArray, scale_m: float) -> NDArray:
 
 
 def _of_views(cameras: Sequence[Camera], points: Keypoints3D, score: NDArray) -> dict[str, NDArray]:
-    """Return the signs of single frames that number, scores and residuals of views give."""
+    """Return the signs from number, scores and residuals of the views in single frames."""
     used, seen = points.accepted, np.moveaxis(score, 0, -1)
     focal_px = np.array([epipolar.focal_px(camera) for camera in cameras])
     error_m = points.reproj_error_px / focal_px * _distances(cameras, points)
@@ -107,7 +107,7 @@ def _distances(cameras: Sequence[Camera], points: Keypoints3D) -> NDArray:
 
 
 def _centres(cameras: Sequence[Camera]) -> NDArray:
-    """Return where cameras stand, (C, 3) m."""
+    """Return the positions of cameras, (C, 3) m."""
     poses = np.stack([camera.cam_from_world for camera in cameras])
     return -np.einsum("cji,cj->ci", poses[:, :, :3], poses[:, :, 3])
 
@@ -115,7 +115,7 @@ def _centres(cameras: Sequence[Camera]) -> NDArray:
 def _without_one(
     cameras: Sequence[Camera], points: Keypoints3D, xy: NDArray, score: NDArray
 ) -> NDArray:
-    """Return how far (P, T, J) m a joint moves at most without one of its views; 0 with two."""
+    """Return the largest shift (P, T, J) m of a joint without one of its views; 0 with two."""
     flat, n_cameras = points.xyz.reshape(-1, 3), len(cameras)
     used = np.moveaxis(points.accepted, -1, 0).reshape(n_cameras, -1)
     weight = np.where(used, np.nan_to_num(score.reshape(n_cameras, -1)), 0.0)
@@ -169,7 +169,7 @@ def _frames(seconds: float, points: Keypoints3D) -> int:
 
 
 def _clear_views(cameras: Sequence[Camera], points: Keypoints3D) -> NDArray:
-    """Return in how many (P, T, J) of a joint's views no trunk, the own or another, hides it."""
+    """Return the number (P, T, J) of a joint's views in which no person's trunk hides it."""
     place = dict(zip(points.joints.tolist(), np.moveaxis(points.xyz, 2, 0), strict=True))
     top, bottom = (
         (place[f"left_{part}"] + place[f"right_{part}"]) / 2 for part in ("shoulder", "hip")

@@ -1,4 +1,4 @@
-"""Fusion of views into one 3D skeleton: all views, half bodies, the cameras' part of the error."""
+"""Fusion of views into one 3D skeleton: all views, half bodies, covariance of the cameras."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -165,8 +165,8 @@ def merge(left: Keypoints3D, right: Keypoints3D, cameras: Sequence[str]) -> Keyp
     `left` is from the centre and the left camera, `right` from the centre and the right camera;
     `cameras` are those of the result. Left joints are those of `left`, right joints those of
     `right`; joints of neither side are the mean of both, or the one that exists. The paper does not
-    tell how head and neck are merged; the mean is ours. A `ValueError` if the records differ in
-    times, joints or persons.
+    state how head and neck are merged; the mean is our choice. A `ValueError` if the records differ
+    in times, joints or persons.
     """
     for key in SHARED:
         if not np.array_equal(getattr(left, key), getattr(right, key)):

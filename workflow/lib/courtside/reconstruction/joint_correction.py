@@ -1,4 +1,4 @@
-"""Correction of a network's joints: offsets by body part and view, and limbs of constant length."""
+"""Correction of a network's joints: joint offsets, and limbs of nearly constant length."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -40,7 +40,7 @@ OUTLIER = 1.5  # ASSUME: times the median error: beyond it a frame loses weight 
 ROUNDS = 15  # of reweighting
 NORMAL_MEDIAN = 1.5382  # median length of a vector of three standard normal numbers
 COLUMNS = ["joint", "vector", "share", "sigma_m", "n"]
-REMAKE = "make it anew with the rule evaluate_joint_offsets"
+REMAKE = "make it again with the rule evaluate_joint_offsets"
 
 
 def vectors(
@@ -167,12 +167,13 @@ def correct_then_filter(
     """Return skeletons that are corrected (`correct`, `keep`) and then filtered, once.
 
     `raw` is of `skeleton_filter.prepare`, `filtered` the same after `skeleton_filter.smooth` with
-    this `cutoff_hz` (J,) and `order`. The filter is last because limbs of constant length move
-    joints faster than the filter lets through: corrected after it, the neck of two development
-    players had three times the error of acceleration, and a quarter more of speed.
+    this `cutoff_hz` (J,) and `order`. The filter comes last because the adjustment to constant limb
+    lengths adds movements faster than its cut-off. With the correction after the filter, the neck
+    of two development players had three times the error of acceleration, and a quarter more error
+    of speed.
 
-    The covariance is that of `filtered` and the scatter of the offsets, which is slow: the filter
-    does not lessen it.
+    The covariance is that of `filtered` plus the scatter of the offsets. This scatter is slow, so
+    the filter does not reduce it.
     """
     moved = keep(correct(raw, table, sex_of))
     xyz = skeleton_filter.smooth(moved, cutoff_hz, order).xyz
@@ -251,11 +252,11 @@ def keep(points: Keypoints3D) -> Keypoints3D:
     """Move joints, as far as their uncertainty allows, so that limbs keep their length.
 
     `xyz` of shoulders, elbows, wrists, hips, knees and ankles changes; missing joints and limbs
-    without a length (`lengths`) stay. In each frame these are the most probable places of a chain's
-    three joints given their measured places, their covariance (of keypoints and cameras) and the
-    lengths: Gauss-Newton on the squared Mahalanobis distances and the squared relative errors of
-    length over `LENGTH_SIGMA`. The covariance stays as an upper bound: the lengths come from the
-    same joints, so wrong joints give wrong lengths.
+    without a length (`lengths`) stay. In each frame the result is the most probable position of a
+    chain's three joints given their measured positions, their covariance (of keypoints and cameras)
+    and the lengths: Gauss-Newton on the squared Mahalanobis distances and the squared relative
+    errors of length over `LENGTH_SIGMA`. The covariance stays as an upper bound: the lengths come
+    from the same joints, so wrong joints give wrong lengths.
     """
     joints, xyz = list(points.joints), points.xyz.copy()
     covariance = points.covariance_2d + np.nan_to_num(points.covariance_camera)

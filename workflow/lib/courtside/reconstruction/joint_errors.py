@@ -1,10 +1,11 @@
-"""Errors of 3D joints that residuals do not show: a mixture of good places and outliers.
+"""Errors of 3D joints that residuals do not show: a mixture of good positions and outliers.
 
-The error of a joint, less the network's known offset, comes from one of two normal distributions,
-each added to the keypoints' own covariance: of a good place, or of an outlier (a wrong part of the
-person, an exchanged side, a hidden limb). The signs of `reconstruction.error_signs` say how wide
-the first is and how probable the second. Their weights are a network's, fitted on development
-players (`evaluate_joint_errors`); views share these errors, so that a filter does not remove them.
+The error of a joint, minus the network's known offset, is modelled by a mixture of two normal
+distributions: for good positions, and for outliers (a wrong part of the body, an exchanged side, a
+hidden limb). The keypoints' own covariance is added to both. The signs of
+`reconstruction.error_signs` determine the width of the first and the probability of the second.
+Their weights were fitted for each network on development players (`evaluate_joint_errors`). All
+views share these errors, and a filter does not remove them.
 """
 
 from collections.abc import Mapping, Sequence
@@ -34,7 +35,7 @@ JOINTS = skeleton.LIMBS[1:]  # those with a constant of their own, added to the 
 SIGNS = ("constant", *JOINTS, *error_signs.NAMES)
 LAST = "sigma_m"  # the row of standard deviations: the most of a good place, an outlier's
 COLUMNS = ["sign", "mean", "spread", "good", "outlier"]
-REMAKE = "make it anew with the rule evaluate_joint_errors"
+REMAKE = "make it again with the rule evaluate_joint_errors"
 
 
 @dataclass(frozen=True)
@@ -69,8 +70,8 @@ def design(signs: Mapping[str, NDArray], joints: Sequence[str]) -> NDArray:
 def state(points: Keypoints3D, model: Model, signs: Mapping[str, NDArray]) -> Keypoints3D:
     """State the errors that residuals do not show: `outlier` and `covariance_network`.
 
-    `points` are raw and `signs` theirs. Joints other than the limbs' stay unknown: the fit has no
-    truth of them.
+    `points` are raw, with their `signs`. Errors of joints other than those of limbs stay unknown,
+    because the fit has no truth for them.
     """
     at = [points.joints.tolist().index(joint) for joint in skeleton.JOINTS]
     good, share = model.of(design(signs, points.joints.tolist()))

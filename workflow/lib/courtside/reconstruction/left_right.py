@@ -1,4 +1,4 @@
-"""Left and right sides confused by a pose network: found by the other views and over time."""
+"""Detection of left-right swaps of a pose network, from the other views and over time."""
 
 from collections.abc import Sequence
 
@@ -39,10 +39,10 @@ def swapped_views(
 
     For each group, the cheapest path over time through the hypotheses (Viterbi 1967). A hypothesis
     costs the disagreement of the views (`disagreement`) and a little for each view it exchanges; a
-    change in a view costs the additional movement of its joints (`jumps`) and a little more. All
-    views exchanged are as consistent as none: the hypothesis with fewer exchanges is kept, so each
-    view must be right more often than not. A view that errs only while its sides cross in the
-    picture is found by the others alone.
+    change in a view costs the additional movement of its joints (`jumps`) and a little more. If all
+    views are exchanged, they are as consistent as if none is. The hypothesis with fewer exchanges
+    is kept, so each view must be right in most frames. If a view is wrong only while its sides
+    cross in the picture, only the other views can detect this.
     """
     mirror = np.asarray(mirror)
     straight = np.stack([epipolar.straight_px(c, at) for c, at in zip(cameras, xy, strict=True)])
@@ -187,7 +187,7 @@ def disagreement(
     swapped: NDArray,
     limit_px: NDArray,
 ) -> NDArray:
-    """Return how far views are from showing one body, (R, T), for R hypotheses of their sides.
+    """Return the disagreement of views (R, T) for R hypotheses of their sides.
 
     `straight` (C, T, K, 2, 2) is `epipolar.straight_px` of the left and the right joint of K pairs,
     NaN where unseen; `weight` (C, T, K) that of a pair in a view, such as the lower score of its

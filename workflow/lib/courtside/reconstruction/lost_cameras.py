@@ -1,4 +1,4 @@
-"""Cameras in which nobody is associated: found again by people, and people associated again."""
+"""Recovery of lost cameras: their poses are computed from people, who are then associated again."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ from courtside.study.errors import InputError
 
 @dataclass(frozen=True, eq=False)
 class Recovered:
-    """What cameras see of people in each take, lost cameras found again."""
+    """Keypoints of people in each take, with recovered cameras."""
 
     parts: dict[str, Seen]
     cameras: list[Camera] | None  # None where none was lost, or found again
@@ -35,7 +35,7 @@ def recover(
     joints: Skeleton,
     court: Court | None,
 ) -> Recovered:
-    """Find cameras again that agree with nobody in any take, and associate people with them."""
+    """Recover cameras that agree with nobody in any take, and associate people with them."""
     names = [camera.name for camera in cameras]
     parts = {take: common_views.of_footage(names, seen) for take, seen in takes.items()}
     which, lines = _lost(cameras, takes, parts, limits)
@@ -43,7 +43,7 @@ def recover(
     lines = [] if which else lines  # a wrong camera disturbs the others, too
     lines += [
         f"camera {names[at]}: expected people in its pictures where the others see them, found "
-        "next to none, and people do not tell where it stands: check its calibration"
+        "almost none, and people do not determine its pose: check its calibration"
         for at in which
         if found[at] is cameras[at]
     ]
@@ -65,7 +65,7 @@ def _lost(
     parts: Mapping[str, Seen],
     limits: Limits,
 ) -> tuple[list[int], list[str]]:
-    """Return the cameras that agree with nobody in all takes, and lines on those lost in some."""
+    """Return the cameras lost in all takes, and log lines on those lost in some takes."""
     filming = {take: {one.camera.name for one in seen} for take, seen in takes.items()}
     lost = {take: resection.lost(cameras, part, limits) for take, part in parts.items()}
     which, lines = [], []
@@ -98,9 +98,9 @@ def found_again(
     parts: Mapping[str, Seen],
     limits: Limits,
 ) -> list[Camera]:
-    """Return the cameras, lost ones where people say that they stand; others as they were.
+    """Return the cameras, lost ones with poses computed from people, the others unchanged.
 
-    `parts` are what cameras see of the people in each take, by the others.
+    `parts` are the keypoints of the people in each take, associated by the other cameras.
     """
     found = list(cameras)
     for at in which:
@@ -112,7 +112,7 @@ def found_again(
 
 
 def _of_take(cameras, at: int, seen: Sequence[Footage], part: Seen, limits: Limits):
-    """Return the camera by one take's people, and how many joints agree; None where it cannot."""
+    """Return the camera from one take's people and the number of agreeing joints, or None."""
     views = [one for one in seen if one.camera.name == cameras[at].name]
     if not views:
         return None

@@ -1,4 +1,4 @@
-"""The height that a person has in each picture: what limits of pixels are shares of."""
+"""The height of a person in each picture, in px: limits in pixels are shares of this height."""
 
 from collections.abc import Sequence
 
@@ -24,7 +24,7 @@ def in_pictures(
     where unseen, `joints` (J,) are their names. The height is that of a person of `STATURE_M` at
     the depth of the trunk, which is triangulated robustly; between frames in which views agree on
     it, it is interpolated. Where they never do, it is the usual extent of the keypoints in each
-    picture. Posture does not change it, and neither does a view that follows somebody else.
+    picture. Neither posture nor a view that tracks somebody else changes this height.
     """
     extent_px = extents(xy)
     trunk = [list(joints).index(joint) for joint in limbs.TRUNK if joint in joints]

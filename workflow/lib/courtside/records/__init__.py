@@ -1,4 +1,4 @@
-"""What rules hand to each other: files with their units, checked when read.
+"""The files that rules pass to one another, with units, checked when read.
 
 npz: `read`, `write`: arrays with stated keys, shapes and kinds; `read_record`,
     `write_record`: records

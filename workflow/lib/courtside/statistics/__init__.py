@@ -1,4 +1,4 @@
-"""Statistics of measures: agreement of two ways, change over sessions, dependent samples.
+"""Statistics: agreement of two methods, change over sessions, dependent samples.
 
 agreement: `pair`, `compare`, `verdict`, `limits`, `smallest_detectable_change`
 longitudinal: `read`, `of_subject`, `over_sessions`, `errors_of_measurement`, `changes`,

@@ -1,8 +1,8 @@
-"""What each published hypothesis says of the time of a stroke, one by one.
+"""The time of a stroke from each published hypothesis.
 
-Sagawa et al. 2023 take extrema of the first two principal component scores of the skeleton, in a
-short window, for hits. Others are the farthest wrist and extrema of the wrist's speed. Here each is
-the extremum nearest to a stroke, so that its error can be compared with the truth.
+Sagawa et al. 2023 estimate hits from extrema of the first two principal component scores of the
+skeleton, in a short window. Others are the farthest wrist and extrema of the wrist's speed. Here
+each is the extremum nearest to a stroke, so that its error can be compared with the truth.
 """
 
 import numpy as np
@@ -44,7 +44,7 @@ def _components(path: NDArray) -> tuple[NDArray, NDArray]:
 
 
 def _nearest(lines: NDArray, clock: NDArray, time_s: float) -> float:
-    """Return the time of the maximum of any line that is nearest to a time."""
+    """Return the time of the local maximum, over all lines, that is nearest to a time."""
     peaks = np.concatenate([scipy.signal.find_peaks(line)[0] for line in lines])
     found = clock[peaks.astype(int)]
     found = found[np.abs(found - time_s) <= NEAR_S]

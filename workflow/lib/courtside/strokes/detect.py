@@ -1,9 +1,9 @@
-"""Find strokes: a wrist far from the waist, by a player who moved there or swings over the head.
+"""Detect strokes: the wrist is far from the waist, after a run or in a swing above the head.
 
-The time of an overhead stroke is that at which the wrist is farthest from the waist; that of a low
-stroke, played in a lunge, is taken from the instant at which the trunk stops. Both are hypotheses
-(`courtside.strokes.cues` tests them); how far they miss the hit was estimated on virtual players,
-whose strokes were written by hand.
+The time of an overhead stroke is the time at which the wrist is farthest from the waist. The time
+of a low stroke, played in a lunge, is derived from the instant at which the trunk stops. Both are
+hypotheses (`courtside.strokes.cues` tests them). Their errors were estimated on virtual players
+with scripted strokes.
 """
 
 from collections.abc import Mapping
@@ -42,7 +42,7 @@ COLUMNS = [
 
 @dataclass(frozen=True)
 class Stroke:
-    """One stroke: its time, the frame nearest to it, the hand that plays it."""
+    """One stroke: its time, the nearest frame, and the racket hand."""
 
     time_s: float
     sigma_s: float
@@ -89,7 +89,7 @@ def _swings(found: Signals, arm: Arm) -> list[int]:
 
 
 def _lunges(found: Signals, arm: Arm) -> list[int]:
-    """Return the frames at which the trunk stops after a way while the wrist is far."""
+    """Return the frames at which the trunk stops after a run while the wrist is far."""
     speed, rate_hz, chosen = found.trunk.speed, found.rate_hz, []
     stops, _ = scipy.signal.find_peaks(-np.nan_to_num(speed, nan=np.inf))
     before, after = (round(part_s * rate_hz) for part_s in REACHED_S)
@@ -125,10 +125,10 @@ def _most(speed: NDArray, at: int, rate_hz: float, before_s: float, after_s: flo
 def _extremum(
     found: Signals, values: NDArray, at: int, sigma_m_s: float, order: int
 ) -> tuple[float, float] | None:
-    """Return the time of the least value near a frame, and its sigma, s.
+    """Return the time of the smallest value near a frame, and its sigma, s.
 
-    `values` are a distance (order 1) or the square of a speed (order 2): either's second derivative
-    tells by how much an error of the velocity, `sigma_m_s`, shifts the time.
+    `values` are a distance (order 1) or the square of a speed (order 2). Their second derivative
+    determines the shift of the time by an error of the velocity, `sigma_m_s`.
     """
     half = max(2, round(PEAK_S * found.rate_hz))
     near = _around(at, half, half, len(values))
@@ -145,9 +145,9 @@ def _extremum(
 
 
 def playing_hand(found: Signals) -> str | None:
-    """Return the hand that is ahead where the trunk stops; None where the player goes nowhere.
+    """Return the hand that is in front when the trunk stops; None if the player does not move.
 
-    The racket hand reaches the way that the player came. It is tested on all virtual players.
+    The racket hand reaches in the direction of movement. Tested on all virtual players.
     """
     speed, rate_hz = found.trunk.speed, found.rate_hz
     stops, _ = scipy.signal.find_peaks(

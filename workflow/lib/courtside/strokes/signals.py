@@ -1,4 +1,4 @@
-"""What strokes are found in: both wrists against the waist, and the trunk, over time."""
+"""Signals for the detection of strokes: both wrists relative to the waist, and the trunk."""
 
 from dataclasses import dataclass
 from itertools import pairwise

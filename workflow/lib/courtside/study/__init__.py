@@ -1,4 +1,4 @@
-"""The study itself: its configuration, its execution, where results come from.
+"""The study itself: configuration, jobs and targets, execution, provenance of results.
 
 errors: `InputError`, an error that a user can mend; `reading`, which raises it on damaged files;
     `StrPath`, the type of paths

@@ -1,4 +1,4 @@
-"""Offsets and drifts of clocks: cameras by what they see, devices by claps and motion.
+"""Clock offsets and drifts: of cameras from their views, of devices from claps and motion.
 
 cameras: `synchronise`: all fixed cameras against the first; `place`: coarse offsets
 devices: `synchronise`: all sources against the first; `pair`: claps of two devices

@@ -1,4 +1,4 @@
-"""What is wrong with recordings, found before any job: sizes, rates, copies, exchanged cameras.
+"""Checks of recordings before any job: sizes, rates, copies, exchanged cameras.
 
 check: `check`: all sessions of a study; every fault in one `InputError`
 calibrated: `faults`: cameras and sizes against the calibration file, sizes of a camera's recordings

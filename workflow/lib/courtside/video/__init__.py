@@ -1,4 +1,4 @@
-"""Moving pictures: reading, writing, frames of a walk, static pictures, movement of a fixed camera.
+"""Video: reading, writing, frames of a walk, static pictures, movement of a fixed camera.
 
 reader: probe, frame_times, frames, extract_frames, read_frame, write_png, sharpness.
 packets, decoder: list_packets, pictures (every frame checked, damage reported).

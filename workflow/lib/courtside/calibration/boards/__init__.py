@@ -1,4 +1,4 @@
-"""Cameras from a board of known size that several of them see.
+"""Calibration of several cameras from a board of known size that they see.
 
 board: `Board`: a ChArUco board, chessboard or grid of tags: its corners, found in a picture
 corners: `Corners`, `of_pictures`, `of_videos`, `of_table`: where cameras see a board's corners

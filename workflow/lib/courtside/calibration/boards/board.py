@@ -1,4 +1,4 @@
-"""A flat board of known size: where its corners are, and where a picture shows them."""
+"""A flat calibration board of known size: its corners, and their detection in a picture."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ class Board:
     corners are numbered row by row from the bottom left, x to the right and y up from there
     (`GridCalibrationTargetAprilgrid`).
 
-    Raises `InputError` for one that is impossible or looks the same when it is turned round.
+    Raises `InputError` if the board is impossible or rotationally symmetric.
     """
 
     kind: str  # one of `KINDS`
@@ -75,7 +75,7 @@ class Board:
 
     @cached_property
     def corners(self) -> NDArray:
-        """The corners (N, 3) m by their numbers: x to the right, y up, z towards who looks."""
+        """The corners (N, 3) m by their numbers: x to the right, y up, z towards the viewer."""
         if self.kind == "tags":
             return np.concatenate(self._printed.getObjPoints()).reshape(-1, 3) * Y_UP
         if self.kind == "aprilgrid":
@@ -98,11 +98,11 @@ class Board:
 
     @property
     def side_m(self) -> float:
-        """How far neighbouring corners are apart."""
+        """Distance between neighbouring corners."""
         return self.marker_m if self.kind in ("tags", "aprilgrid") else self.square_m
 
     def find(self, image: NDArray) -> tuple[NDArray, NDArray]:
-        """Return the numbers (K,) and px (K, 2) of corners in a grey picture, none without any."""
+        """Return the numbers (K,) and px (K, 2) of the corners in a grey picture; K may be 0."""
         image = 255 - image if self.inverted else image
         found = {"charuco": self._charuco, "chessboard": self._chessboard, "tags": self._tags}
         found["aprilgrid"] = self._tags
@@ -140,7 +140,7 @@ class Board:
     def _numbers(self, tag: int) -> NDArray:
         """Return the numbers of a tag's corners in OpenCV's order: from its top left, clockwise.
 
-        Kalibr prints OpenCV's tags turned by half a turn.
+        Kalibr prints OpenCV's tags rotated by 180 degrees.
         """
         if self.kind == "tags":
             return 4 * tag + np.arange(4)
@@ -167,7 +167,7 @@ class Board:
 
 
 def _saddles(image: NDArray, square: NDArray) -> NDArray:
-    """Return the corners (4, 2) px of a tag where four squares meet, from nearby."""
+    """Refine the corners (4, 2) px of a tag to the nearby points where four squares meet."""
     side_px = np.linalg.norm(np.roll(square, 1, axis=0) - square, axis=1).min()
     reach = max(2, round(SADDLE_SHARE * float(side_px)))
     stop = cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 40, 0.01

@@ -1,7 +1,8 @@
-"""Where cameras see the corners of a board, picture after picture.
+"""Corners of a board as seen by several cameras, picture by picture.
 
-A picture is one place of the board: pictures of one name by several cameras, which need not be
-taken at one time if the board is at rest; or frames of synchronised videos at one time.
+A *picture* is one position of the board. It is either the pictures with one name from several
+cameras, which need not be simultaneous if the board is at rest, or the frames of synchronised
+videos at one time.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -40,7 +41,7 @@ class Corners:
 
 
 def of_pictures(folders: Mapping[str, StrPath], board: Board) -> Corners:
-    """Find a board in folders of pictures, one for each camera: one name is one place of it."""
+    """Find a board in folders of pictures, one per camera; one name is one position of it."""
     found, sizes = {}, {}
     for name, folder in folders.items():
         size: list[tuple[int, int]] = []
@@ -50,7 +51,7 @@ def of_pictures(folders: Mapping[str, StrPath], board: Board) -> Corners:
 
 
 def _grey(paths: Sequence[Path], size: list[tuple[int, int]]) -> Iterator[tuple[str, NDArray]]:
-    """Yield pictures of one size by their names; put it, px, into the empty list `size`."""
+    """Yield pictures of one size by name; append the size, px, to the empty list `size`."""
     for path in paths:
         image = images.read(path, cv2.IMREAD_GRAYSCALE, advice="delete or replace it")
         size[:] = [chessboard.same_size(path, image, size[0] if size else None)]
@@ -58,7 +59,7 @@ def _grey(paths: Sequence[Path], size: list[tuple[int, int]]) -> Iterator[tuple[
 
 
 def of_videos(paths: Mapping[str, StrPath], board: Board, *, every_s: float) -> Corners:
-    """Find a board in synchronised videos, in frames so far apart."""
+    """Find a board in synchronised videos, in one frame every `every_s`."""
     found, sizes = {}, {}
     for name, path in paths.items():
         sizes[name] = reader.probe(path).size
@@ -74,7 +75,7 @@ def of_table(path: StrPath, cameras: Mapping[str, str], board: Board) -> Corners
     """Read corners from a CSV: `OURS`, or `THEIRS` of Caliscope, whose cameras are `cam_<id>`.
 
     `cameras` maps the name in the session to that in the table. Raises `InputError` if a number is
-    none, or the table's own places of corners contradict the board.
+    invalid, or the table's own coordinates of corners contradict the board.
     """
     try:
         rows, names = table(path, OURS), OURS
@@ -109,7 +110,7 @@ def of_table(path: StrPath, cameras: Mapping[str, str], board: Board) -> Corners
 
 
 def _corner(where: str, key: str, row: Mapping[str, str], board: Board) -> int:
-    """Return the number of a row's corner; its own place has to be the board's."""
+    """Return the number of a row's corner; check its coordinates against the board."""
     corner = number(where, key, row[key])
     if corner not in range(len(board.corners)):
         raise InputError(
@@ -150,7 +151,7 @@ def _seen(source: StrPath, name: str, grey: Iterable[tuple[str, NDArray]], board
 
 
 def _other(pictures: Sequence[NDArray], board: Board) -> str:
-    """Return in words another dictionary whose markers the pictures show, or nothing."""
+    """Name another dictionary whose markers the pictures show; empty if there is none."""
     if board.dictionary is None:
         return ""
     counts = {}

@@ -1,4 +1,4 @@
-"""Lenses, cameras and boards before they are adjusted: each from few views, wrong ones outvoted."""
+"""Initial lenses, cameras and boards for the adjustment, each from a few views, robustly."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -37,8 +37,8 @@ class Poses:
 def flat(board: Board, seen: Corners) -> NDArray:
     """Return which corners (M,) lie on one plane with the others of their picture, bool.
 
-    A misread corner does not; what the lens bends of a board is less than a tenth of a square.
-    Raises `InputError` where most do not: they are not of such a board.
+    A misread corner does not; lens distortion bends a board by less than a tenth of a square.
+    Raises `InputError` if most corners do not, because the stated board is then wrong.
     """
     found = np.zeros(len(seen.xy), dtype=bool)
     for rows in (view for c in range(len(seen.cameras)) for view in _views(seen, c)):
@@ -60,7 +60,7 @@ def flat(board: Board, seen: Corners) -> NDArray:
 
 
 def lens(name: str, size: Sequence[int], board: Board, seen: Corners, camera: int) -> Camera:
-    """Return a camera without a place: K, k1 and k2 of its own views of the board (Zhang 2000).
+    """Return a camera without a pose: K, k1 and k2 from its own views of the board (Zhang 2000).
 
     Raises `InputError` if it has fewer than four views of six corners.
     """
@@ -90,9 +90,9 @@ def lens(name: str, size: Sequence[int], board: Board, seen: Corners, camera: in
 def poses(board: Board, seen: Corners, ideal: NDArray, world: str | None) -> Poses:
     """Return cameras and boards from views of few corners; `ideal` (M, 2) are directions, z = 1.
 
-    `world` names the picture whose board is the world; None: that most cameras see, of most
-    corners. Raises `InputError` if a group of cameras shares no picture of the board with the
-    others, or that picture shows none.
+    `world` names the picture whose board defines the world; None: the picture that most cameras
+    see, with most corners. Raises `InputError` if a group of cameras shares no picture of the board
+    with the others, or that picture shows none.
     """
     views = _posed(board, seen, ideal)
     from_root = _from_root(board, seen, views)
@@ -127,7 +127,7 @@ def _views(seen: Corners, camera: int) -> list[NDArray]:
 
 
 def _posed(board: Board, seen: Corners, ideal: NDArray) -> dict[tuple[int, int], View]:
-    """Return of each camera and picture the rows and the pose of the board, where they tell it."""
+    """Return, by camera and picture, the rows and the pose of the board where they determine it."""
     found = {}
     for camera in range(len(seen.cameras)):
         for rows in _views(seen, camera):
@@ -148,7 +148,7 @@ def _posed(board: Board, seen: Corners, ideal: NDArray) -> dict[tuple[int, int],
 
 
 def _from_root(board: Board, seen: Corners, views: dict[tuple[int, int], View]) -> list[NDArray]:
-    """Return all cameras from the one that shares most pictures: along the best-filled pairs."""
+    """Return all cameras relative to the one that shares most pictures, along a spanning tree."""
     count = len(seen.cameras)
     of = [{picture for camera, picture in views if camera == c} for c in range(count)]
     shared = np.array(
@@ -175,7 +175,7 @@ def _from_root(board: Board, seen: Corners, views: dict[tuple[int, int], View]) 
 
 
 def _between(board: Board, pairs: Sequence[tuple[NDArray, NDArray]]) -> NDArray:
-    """Return `other_from_one` of two cameras: the one of their pictures that fits most others."""
+    """Return `other_from_one` of two cameras from the picture that fits most other pictures."""
     candidates = [product(other, rotations.invert(one)) for one, other in pairs]
     corners = np.column_stack([board.corners, np.ones(len(board.corners))])
     in_one = np.stack([corners @ one.T for one, _ in pairs])
@@ -207,5 +207,5 @@ def _world(seen: Corners, views: dict[tuple[int, int], View], wanted: str | None
 
 
 def _same(name: str, wanted: str) -> bool:
-    """Return whether two names of a picture are one, numbers with or without zeros before them."""
+    """Return whether two picture names are equal; leading zeros of numbers do not count."""
     return name.lstrip("0") == wanted.lstrip("0")

@@ -131,7 +131,7 @@ def without_points(
 def with_points(
     network: Network, xyz: NDArray, image_idx: NDArray, point_idx: NDArray, xy: NDArray
 ) -> Network:
-    """Return a network with other points (N, 3), of which nothing is known but where they are seen.
+    """Return a network with other points (N, 3) that have observations but no prior.
 
     All M observations, `xy` (M, 2) px, have a sigma of 1 px and no loss.
     """
@@ -207,7 +207,7 @@ def _by_lens(lens: NDArray, normalised: NDArray, distorted: NDArray) -> NDArray:
 def _see(network: Network) -> tuple[NDArray, NDArray, NDArray, NDArray]:
     """Return the points in the camera frame, (M, 3), at mid-exposure and when their row is read.
 
-    And on the plane z = 1, without and with lens distortion, (M, 2) each.
+    Also return them on the plane z = 1, without and with lens distortion, (M, 2) each.
     """
     pose = network.cam_from_world[network.image_idx]
     still = np.einsum("mij,mj->mi", pose[:, :, :3], network.xyz[network.point_idx]) + pose[:, :, 3]

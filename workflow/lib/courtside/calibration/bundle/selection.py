@@ -123,9 +123,10 @@ def add_control_points(
 ) -> Network:
     """Return a network with control points appended to its own points.
 
-    Their places `xyz` (P, 3) m, in the network's frame, are known with `xyz_sigma` (P,). The clicks
-    (P, 2) px, NaN where not clicked, and their sigma are by index of the image; points without a
-    click are left out. A sigma is a number or one for each axis; `loss_scale` is in sigmas.
+    Their coordinates `xyz` (P, 3) m, in the network's frame, are known with `xyz_sigma` (P,). The
+    clicks (P, 2) px, NaN where not clicked, and their sigma are by index of the image; points
+    without a click are left out. A sigma is a number or one for each axis; `loss_scale` is in
+    sigmas.
     """
     clicked = [
         (v, p) for v, xy in clicks.items() for p in np.flatnonzero(np.isfinite(xy).all(axis=1))
@@ -217,7 +218,7 @@ def fixed_cameras(
 ) -> list[Camera]:
     """Return the fixed cameras of a network, in its frame.
 
-    `fixed` has the index of each fixed camera's image, `sizes` the size of its pictures, px.
+    `fixed` contains the index of each fixed camera's image, `sizes` the size of its pictures, px.
     """
     return cameras(
         images_only(network, list(fixed.values())), list(fixed), [sizes[name] for name in fixed]

@@ -30,7 +30,7 @@ class Quadratic:
 def mean(knowledge: Sequence[Quadratic]) -> Quadratic:
     """Return the mean of several `Quadratic` of the same parameters, about the first's reference.
 
-    It is no more certain than one of them: their errors may be the same.
+    The mean is as uncertain as one of them, because their errors may be the same.
     """
     return scaled(total(knowledge), 1 / len(knowledge))
 
@@ -72,8 +72,8 @@ def adjust(
 
     Triggs et al. 2000. The Cauchy loss is applied by weights of Triggs's first order (IRLS).
     Without a prior on points or images the world frame is free: damping keeps it where it starts,
-    and the information is singular. `quadratic` is knowledge that is not in the observations; the
-    `tolerance` is the fall of the cost, a fraction of it, below which the adjustment stops.
+    and the information matrix is singular. `quadratic` is a prior besides the observations. The
+    adjustment stops when the relative decrease of the cost is below `tolerance`.
     """
     damping = 1e-4
     normal = normal_equations(network, quadratic)
@@ -90,10 +90,10 @@ def adjust(
 
 
 def _fall(network, normal, quadratic, damping) -> tuple[Network, float | None, float]:
-    """Return the network after a step that lowers the cost, the cost, and the damping used.
+    """Return the network after a step that lowers the cost, with the cost and the damping used.
 
-    Points are not damped: a step may put one behind an image however small the images' steps are.
-    Where no damping helps, such points stay where they were, because one alone would stop all
+    Points are not damped: however small the images' steps are, a step may move a point behind an
+    image. If no damping helps, these points are not moved, because one of them alone would stop all
     others.
     """
     for hold in (False, True):

@@ -1,12 +1,13 @@
-"""Variance factors of clicks and ties from what their residuals say.
+"""Variance factors of clicks and tie points, estimated from their residuals.
 
-Förstner 1979; Koch 1999, sec. 3.6: the weighted squared residuals of a group, over its redundancy
-(the part of its observations that its residuals show), estimate how far its variances are wrong.
-Few redundant observations say little. A prior carries the rest: a scaled inverse chi-squared
-distribution of the factor, as if `*_PRIOR` more redundant observations had shown a factor of 1. The
-posterior's scale is the mean of prior and estimate, weighted by their redundancy, and its degrees
-of freedom are the sum of both. Errors of a variance that is known so badly follow Student's t:
-`Factors.widening` is what its 90 % ellipsoid needs over a normal one of the same scale.
+Förstner 1979; Koch 1999, sec. 3.6: the weighted sum of squared residuals of a group, divided by the
+redundancy of the group, estimates the factor by which its stated variances are wrong. A few
+redundant observations determine the factor poorly. Therefore it has a prior: a scaled inverse
+chi-squared distribution, as if `*_PRIOR` more redundant observations had shown a factor of 1. The
+scale of the posterior is the mean of prior and estimate, weighted by their redundancy; its degrees
+of freedom are the sum of both. With a poorly known variance, errors follow Student's t.
+`Factors.widening` is the ratio of its 90 % ellipsoid to that of a normal distribution of the same
+scale.
 """
 
 from dataclasses import dataclass
@@ -38,8 +39,8 @@ class Factors:
     ----------
     clicks : (V, 2) float; of the scatter of each image's clicks along x and y
     ties : of all ties
-    clicks_redundancy : (V, 2) float; observations that tell the first; 0: the prior alone
-    ties_redundancy : the same of the ties
+    clicks_redundancy : (V, 2) float; redundancy of the clicks; 0: the prior alone
+    ties_redundancy : the same for the ties
     """
 
     clicks: NDArray
@@ -49,16 +50,16 @@ class Factors:
 
     @property
     def bias(self) -> float:
-        """Of the clicks' bias, which residuals hardly show: the harmonic mean of the scatters'.
+        """Factor of the clicks' bias: the harmonic mean of the factors of the scatter.
 
-        Scatter is large along edges that cross at a small angle, and there it says nothing of the
-        person, whose hand is seen best where it is small.
+        Residuals hardly show the bias. Along edges that cross at a small angle the scatter is large
+        for geometric reasons; where it is small, it shows the accuracy of the person.
         """
         return float(1 / np.mean(1 / self.clicks))
 
     @property
     def widening(self) -> float:
-        """On the covariance of the cameras, whose size is that of the clicks' scatter.
+        """Factor on the covariance of the cameras, because the scatter of the clicks is uncertain.
 
         The 90 % ellipsoid of Student's t with as many degrees of freedom as the clicks' prior and
         redundancy, over that of a normal distribution: 4 at 1.2 redundant observations, 1.1 at 20.
@@ -81,8 +82,8 @@ def estimate(
 ) -> Factors:
     """Estimate the factors of a network of clicks adjusted with the `quadratic` of its ties.
 
-    `factors` are those that the network's sigmas and the quadratic contain; `lines` is what else is
-    known, whose weight stays.
+    `factors` are those already contained in the network's sigmas and in the quadratic; `lines` is
+    additional information, whose weight stays.
     """
     sigma = network.axis_sigma_px
     residual, rows = _rows(network)
@@ -170,7 +171,7 @@ def _consistency(loss_scale: NDArray) -> NDArray:
 
 
 def _of_ties(network, quadratic, covariance) -> tuple[float, float]:
-    """Return how far the ties are from their own minimum, squared, in sigmas; their redundancy."""
+    """Return the ties' squared distance from their own minimum, in sigmas, and their redundancy."""
     information = quadratic.information
     size = len(information)
     own = point_covariance.pseudo_inverse(information, GAUGE)

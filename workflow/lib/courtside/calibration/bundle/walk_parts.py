@@ -1,8 +1,8 @@
 """A network in parts: each has the fixed cameras and images spread over the whole walk.
 
-Views a fraction of a degree apart have correlated errors, and an adjustment of all views takes
-their agreement for evidence. The images of one part lie farther apart, and the mean over the parts
-has less noise than any of them.
+Views a fraction of a degree apart have correlated errors, but an adjustment of all views treats
+them as independent. The images of one part are farther apart, and the mean over the parts has less
+noise than each part.
 """
 
 from collections.abc import Sequence
@@ -26,10 +26,10 @@ class Part:
 
 
 def split(network: Network, fixed: Sequence[int], images_per_part: int) -> list[Part]:
-    """Share the images of a walk out among one or more parts, in turn.
+    """Distribute the images of a walk in turn among one or more parts.
 
-    Every part has all images of the `fixed` cameras. The number of parts is taken whose number of
-    images of the walk comes nearest to `images_per_part`.
+    Every part has all images of the `fixed` cameras. The number of parts is chosen so that the
+    number of walk images per part is nearest to `images_per_part`.
     """
     walked = np.setdiff1d(np.arange(len(network.cam_from_world)), fixed)
     n_parts = max(1, round(len(walked) / images_per_part))

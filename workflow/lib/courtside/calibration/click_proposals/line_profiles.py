@@ -18,7 +18,7 @@ LEAST_SAMPLES = 6  # ASSUME: fewer do not separate a shift from a slope
 
 @dataclass(frozen=True, eq=False)
 class Stretch:
-    """What is seen across a stretch of a line, and what was expected."""
+    """Measured and expected brightness across a stretch of a line."""
 
     xy: NDArray  # (N, 2): where the line's middle is expected, px
     normal: NDArray  # (N, 2): unit, across the line, towards its edge of the higher coordinate
@@ -38,12 +38,12 @@ def sample_stretch(
     reach_px: float,
     blur_px: float,
 ) -> Stretch | None:
-    """Sample a picture across a stretch of a line; None where too little of it is in the picture.
+    """Sample a picture across a stretch of a line; None if too little of it is in the picture.
 
-    The stretch of an expected line, which may be `reach_px` off, has its ends (2, 3) on the line's
-    middle, and shifts are wanted at the origin (3,), on the same straight line. `half_width_m` (3,)
-    leads from the middle to the edge of the higher coordinate; `blur_px` is the standard deviation
-    of the picture's blur.
+    The true line may be up to `reach_px` from the expected one. The ends (2, 3) of the stretch are
+    on the line's middle; the shift is measured at the origin (3,), on the same straight line.
+    `half_width_m` (3,) leads from the middle to the edge of the higher coordinate; `blur_px` is the
+    standard deviation of the picture's blur.
     """
     xyz = ends_m[0] + np.linspace(0, 1, 400)[:, np.newaxis] * (ends_m[1] - ends_m[0])
     xy = project(camera, xyz)

@@ -1,4 +1,4 @@
-"""How far a painted line is from where it was expected, and how surely it was seen."""
+"""The shift of a painted line from its expected position, with its uncertainty."""
 
 from dataclasses import dataclass
 
@@ -17,7 +17,7 @@ HUBER = 1.5  # standard deviations; 95 % efficiency for normal errors is at 1.34
 
 @dataclass(frozen=True)
 class Shift:
-    """How far a line is from where it was expected."""
+    """The shift of a line from its expected position."""
 
     low_px: float  # of its lower edge, along the normal, at the origin
     high_px: float  # of its higher edge; the same where the line is too thin to separate them
@@ -32,7 +32,7 @@ class Shift:
 def shift(
     stretch: Stretch, *, polarity: int = 1, near_px: float = 8.0, blur_px: float = 0.8
 ) -> Shift | None:
-    """Find how far a line is off; None where nothing like the line is seen.
+    """Measure the shift of a line; None if the line is not found.
 
     First the best place and slope by correlation summed along the line, then linearised least
     squares: in each sample the floor's brightness and its gradient, the contrast of the expected
@@ -105,7 +105,7 @@ def _best_line(match, along_px, width_px) -> tuple[float, float, float, float]:
 
 
 def _refine(stretch, offset, slope, polarity, sides, blur_px):
-    """Return the edges' moves at the origin, slope, (sigma, kept); None where lost."""
+    """Return the shifts of the edges at the origin, slope, (sigma, kept); None if lost."""
     n, width = stretch.paint.shape
     moved_px = (offset + slope * stretch.along_px)[:, None]
     columns = (stretch.seen.shape[1] - 1) / 2 + moved_px / STEP_PX
@@ -168,7 +168,7 @@ def _moves(seen, floor, paint, parts, contrast, noise):
 
 
 def _line(moved, spread, along_px, kept) -> tuple[NDArray, float, float]:
-    """Fit shifts (N, E) by one for each edge and a slope; return these and the first's sigma."""
+    """Fit one shift per edge and a slope to shifts (N, E); also return the first shift's sigma."""
     n, sides = moved.shape
     extent = max(np.abs(along_px).max(), 1.0)
     design = np.zeros((n, sides, sides + 1))

@@ -1,4 +1,4 @@
-"""Posts of a net in a picture: their axes, and where these end."""
+"""Posts of a net in a picture: their axes and upper ends."""
 
 from collections.abc import Sequence
 
@@ -16,7 +16,7 @@ from courtside.geometry.camera import Camera, project
 WIDTH_M = 0.04
 LOWER, UPPER = (0.04, 0.6), (0.4, 0.985)  # parts of a post's height that give its foot and its tip
 SEARCH_PX = 3.0  # across the axis
-LEAST_SCORE, LEAST_SHARE = 0.3, 0.4  # from which an axis is believed
+LEAST_SCORE, LEAST_SHARE = 0.3, 0.4  # from which an axis is reliable
 OWN_PX = 0.15  # error of an axis that is not in the fit of its profiles
 END_SEARCH = 0.008  # of the picture's width: lines on the floor determine heights badly
 END_PX = 10.0  # of the axis beyond that, on each side
@@ -114,7 +114,7 @@ def _covered(view: View, post: int, share: float) -> bool:
 
 
 def _end(view: View, post: int, ray: Ray) -> tuple[float, float] | None:
-    """Return how far along its axis a post's end is off, and its sigma; None if unseen."""
+    """Return the shift of a post's end along its axis, and its sigma; None if unseen."""
     reach = END_SEARCH * view.camera.size[0]
     steps = np.arange(-reach - END_PX, reach + END_PX, END_STEP_PX)
     normal = np.array([-ray.direction[1], ray.direction[0]])
@@ -133,7 +133,7 @@ def _end(view: View, post: int, ray: Ray) -> tuple[float, float] | None:
 
 
 def _sides(view: View, post: int, normal: NDArray) -> tuple[int, ...]:
-    """Return on which sides the background beside the tip is free of the net: of -1 and 1."""
+    """Return the sides (-1, 1) on which the background beside the tip is free of the net."""
     at = _places(view.court, post, 1.0)
     outwards = np.array([0.1 if post else -0.1, 0, 0])
     shown = (project(view.camera, at + outwards) - project(view.camera, at)) @ normal

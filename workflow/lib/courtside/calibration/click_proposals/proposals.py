@@ -1,4 +1,4 @@
-"""Propose where the named points of a court are in a picture, by its painted lines."""
+"""Propose the positions of the named court points in a picture, from the painted lines."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -18,7 +18,7 @@ from courtside.geometry.camera import Camera, project
 STRETCH_M = 1.6  # of line that is measured at once
 SHARES = (1.0, 0.5, 0.25, 0.25)  # of the search, in successive rounds
 LEAST_PX = 2.0  # of search
-LEAST_SCORE, MOST_RIVAL, LEAST_SHARE = 0.25, 0.85, 0.5  # from which a stretch is believed
+LEAST_SCORE, MOST_RIVAL, LEAST_SHARE = 0.25, 0.85, 0.5  # from which a stretch is reliable
 FEWEST = 5  # stretches by which a camera is moved
 SIDE_PX, SIDE_M = 45.0, (0.5, 2.5)  # of line on each side of a point
 NEAR_PX = 2.5  # search around a point, once the camera is moved
@@ -52,16 +52,16 @@ def propose(
 ) -> Proposals:
     """Propose the points of a court in one camera's picture.
 
-    First the camera is moved so that all painted lines lie where they are seen, stretch by stretch.
-    Then each point is measured by the lines it names, near it: their edges are fitted and
-    intersected; along lines that meet at an acute angle the moved camera helps. A post's tip is
-    where its axis, fitted likewise, ends. A point that is not seen is not proposed, even where the
-    camera predicts it.
+    First the camera is moved until all painted lines project onto the lines in the picture, stretch
+    by stretch. Then each point is measured from its own lines nearby: their edges are fitted and
+    intersected. Where lines meet at an acute angle, the camera adds information. The tip of a post
+    is the end of its axis, which is fitted in the same way. A point that is not visible is not
+    proposed, even if the camera predicts it.
 
-    The camera is known from two or three clicks: the court it expects may be `search_px` off in its
-    static picture (H, W, 3) uint8. A point whose expected error is above `max_sigma_px` is not
-    proposed. Against the floor the lines are "light", "dark" or "any". Raises `ValueError` if the
-    picture has not the camera's size.
+    The camera is known from two or three clicks: in its static picture (H, W, 3) uint8, the
+    predicted court may be wrong by up to `search_px`. A point whose expected error is above
+    `max_sigma_px` is not proposed. Against the floor the lines are "light", "dark" or "any". Raises
+    `ValueError` if the picture has not the camera's size.
     """
     if image.shape[1::-1] != tuple(camera.size):
         raise ValueError(f"expected a picture of {camera.size} px, found {image.shape[1::-1]}")
@@ -81,13 +81,13 @@ def register(view: View, search_px: float) -> tuple[View, str]:
     for share in SHARES:
         reach = max(share * search_px, LEAST_PX)
         shifts = [view.shift(*each, reach) for each in zip(line, ends, middle, strict=True)]
-        good = np.array([believed(shift) for shift in shifts])
+        good = np.array([is_reliable(shift) for shift in shifts])
         if good.sum() < FEWEST or len({line[at] for at in np.flatnonzero(good)}) < 3:
             return view, "too few painted lines are seen where they are expected"
         halves = np.array([line_edges.middle_line(view.court, at)[1] for at in line[good]])
         along = ends[good, 1] - ends[good, 0]
         normal = line_profiles.tangent_and_normal(view.camera, middle[good], along, halves)[1]
-        used = [shift for shift in shifts if shift is not None and believed(shift)]
+        used = [shift for shift in shifts if shift is not None and is_reliable(shift)]
         offset = np.array([(shift.low_px + shift.high_px) / 2 for shift in used])
         sigma = np.array([shift.sigma_px for shift in used])
         moved, _ = refine_pose.refine(view.camera, middle[good], normal, offset, sigma)
@@ -95,8 +95,8 @@ def register(view: View, search_px: float) -> tuple[View, str]:
     return view, ""
 
 
-def believed(shift: Shift | None) -> bool:
-    """Say whether a stretch is surely a painted line."""
+def is_reliable(shift: Shift | None) -> bool:
+    """Return whether a stretch is reliably a painted line."""
     return (
         shift is not None
         and shift.score > LEAST_SCORE
@@ -125,7 +125,7 @@ def _point(view: View, at: int) -> _Found:
         return *NO_PLACE, "fewer than two edges meet here"
     one, other = rays[:2]
     if one is None or other is None:
-        return *NO_PLACE, "a line it names is not seen near it"
+        return *NO_PLACE, "one of its lines is not seen near it"
     return _meet(one, other)
 
 
@@ -164,7 +164,7 @@ def _meet(one: Ray, other: Ray) -> _Found:
 
 
 def _checked(view: View, found: Sequence[_Found], max_sigma_px: float) -> Proposals:
-    """Return proposals without those that are uncertain or far from where the camera has them."""
+    """Return proposals without those that are uncertain or far from the camera's prediction."""
     expected = project(view.camera, view.court.xyz)
     n = len(found)
     xy, sigma_px, confidence = np.full((n, 2), np.nan), np.full(n, np.nan), np.zeros(n)
@@ -194,9 +194,9 @@ def _model_error(view: View, at: int) -> float:
 
 
 def _why_not(off: NDArray, allowed: NDArray, sigma: float, max_sigma_px: float) -> str:
-    """Return why a place is not proposed, empty where it is."""
+    """Return the reason why a point is not proposed, empty if it is."""
     if sigma > max_sigma_px:
         return f"uncertain by {sigma:.1f} px"
     if off @ np.linalg.solve(allowed, off) > OFF_SIGMA**2:
-        return f"{np.linalg.norm(off):.1f} px from where the other lines put it"
+        return f"{np.linalg.norm(off):.1f} px from the position that the other lines predict"
     return ""

@@ -1,4 +1,4 @@
-"""Move a camera a little so that the lines of a court lie where they are seen."""
+"""Adjust a camera slightly so that the projected court lines match those in the picture."""
 
 from dataclasses import replace
 
@@ -34,7 +34,7 @@ def moved(camera: Camera, change: NDArray) -> Camera:
 def refine(
     camera: Camera, xyz: NDArray, normal: NDArray, offset_px: NDArray, sigma_px: NDArray
 ) -> tuple[Camera, NDArray]:
-    """Move a camera so that points of lines appear shifted across these lines as was seen.
+    """Adjust a camera so that points on lines shift across these lines by the measured offsets.
 
     The given camera is the start and the prior. The points `xyz` (M, 3) m lie on lines, `normal`
     (M, 2) is across these in the picture, of unit length. `offset_px` (M,) is along the normal,

@@ -16,7 +16,7 @@ NO_PLACE = np.full(2, np.nan), np.full((2, 2), np.nan), 0.0  # px, covariance, s
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """A picture and its camera, with what all measurements in it have in common."""
+    """A picture and its camera, with data shared by all measurements in the picture."""
 
     grey: NDArray  # (H, W) float32
     camera: Camera
@@ -34,7 +34,7 @@ class View:
     def shift(
         self, line: int, ends_m: NDArray, origin_m: NDArray, reach_px: float
     ) -> line_shift.Shift | None:
-        """Return how far a stretch of a row of the court's `lines_m` is off; see `measure`."""
+        """Return the shift of a stretch of a row of the court's `lines_m`; see `measure`."""
         _, half = line_edges.middle_line(self.court, line)
         paint = line_edges.paint(self.camera, self.court)
         return self.measure(paint, ends_m, origin_m, half, reach_px, self.polarity)
@@ -48,10 +48,10 @@ class View:
         reach_px: float,
         polarity: int,
     ) -> line_shift.Shift | None:
-        """Return how far a stretch of an expected line is off, None where it is not seen.
+        """Return the shift of a stretch of an expected line, None if it is not seen.
 
-        The ends (2, 3) lie on its middle. The shift is wanted at the origin (3,), on the same
-        straight line, which may be up to `reach_px` off.
+        The ends (2, 3) are on the line's middle. The shift is measured at the origin (3,), on the
+        same straight line, and is at most `reach_px`.
         """
         seen = line_profiles.sample_stretch(
             self.grey, self.camera, ends_m, origin_m, half_width_m, paint, reach_px, self.blur_px
@@ -83,7 +83,7 @@ class View:
 
 @dataclass(frozen=True, eq=False)
 class Ray:
-    """A straight edge or axis as it was seen in the picture."""
+    """A straight edge or axis, as measured in the picture."""
 
     start: NDArray  # (2,): on it, px, where it is needed
     direction: NDArray  # (2,): unit length

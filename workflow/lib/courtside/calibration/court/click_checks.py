@@ -1,4 +1,4 @@
-"""Find wrong clicks of court points, and tell them from line centres clicked in place of edges."""
+"""Find wrong clicks of court points, and clicks on line centres in place of edges."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -52,7 +52,7 @@ class LeaveOneOut:
 
     @property
     def edge_error_px(self) -> NDArray:
-        """The same in px across the edges: along edges that cross flat, a click is less exact."""
+        """The same across the edges, px; clicks are inaccurate along edges that cross flat."""
         off = self.clicked_px - self.projected_px
         seen = np.isfinite(off).all(axis=-1) & np.isfinite(self.crossing).all(axis=(-2, -1))
         error = np.full(seen.shape, np.nan)
@@ -62,7 +62,7 @@ class LeaveOneOut:
 
 @dataclass(frozen=True)
 class WrongClick:
-    """One click that the others contradict."""
+    """One click that contradicts the others."""
 
     camera: str
     point: str
@@ -81,12 +81,11 @@ class WrongClick:
 
 
 def leave_one_out(cameras: Sequence[Camera], clicks: ClickedPoints, court: Court) -> LeaveOneOut:
-    """Compare each court point with where all the other points put it.
+    """Compare each court point with its prediction from all the other points.
 
-    The cameras, in one frame of structure from motion or the world, stay. The similarity to the
-    world is found again without the point (robustly, so that another wrong click does not spread).
-    Raises `InputError` if the others cannot be aligned without one point: too few, collinear,
-    mirrored.
+    The cameras, in one frame of structure from motion or the world, stay fixed. The similarity to
+    the world is estimated again without the point, robustly against other wrong clicks. Raises
+    `InputError` if the others cannot be aligned without one point: too few, collinear, mirrored.
     """
     xyz = sfm_alignment.reconstruct(cameras, clicks)
     residual = np.full_like(xyz, np.nan)
@@ -122,11 +121,11 @@ def crossing_of(camera: Camera, xyz: NDArray) -> NDArray:
 
 
 def find_wrong_clicks(table: LeaveOneOut, *, sigma_px: float = 1.0) -> list[WrongClick]:
-    """Return the clicks that the others contradict, the worst first.
+    """Return the clicks that contradict the others, the worst first.
 
-    The `table` needs six points or more: with fewer, one wrong click spoils what the others say.
-    `sigma_px` is that of a good click across an edge; where a camera's clicks scatter more, that
-    counts.
+    The `table` needs six points or more: with fewer, one wrong click corrupts the prediction from
+    the others. `sigma_px` is that of a good click across an edge; if the clicks of a camera scatter
+    more, their scatter is used.
     """
     error, by_edge = table.error_px, table.edge_error_px
     wrong = []
@@ -148,13 +147,13 @@ def find_wrong_clicks(table: LeaveOneOut, *, sigma_px: float = 1.0) -> list[Wron
 def inward_shift_of_points(court: Court, xyz_in_sfm: NDArray) -> tuple[float, float]:
     """Find how far, in half line widths, all points lie inwards of the edges that the court names.
 
-    Least squares of the residuals over one shift along `court.to_line_centres` and a small
-    similarity together. The scale absorbs most of the shrinking; lines within the court determine
-    the rest.
+    Fits the residuals by one shift along `court.to_line_centres` and a small similarity together,
+    by least squares. The scale absorbs most of the shrinking; lines within the court determine the
+    rest.
 
-    The reconstructed court points (P, 3) may be in any frame, NaN where missing. The shift is 0
-    where edges were clicked, 1 where line centres were. Its standard deviation, the second number,
-    comes from how far the points fit; it is inf where too few do.
+    The reconstructed court points (P, 3) may be in any frame, NaN where missing. The shift is 0 if
+    edges were clicked, 1 if line centres were. Its standard deviation, the second number, comes
+    from the residuals of the fit; it is inf if there are too few points.
     """
     world_from_sfm, accepted = sfm_alignment.align(court, xyz_in_sfm)
     inwards = to_line_centres(court)

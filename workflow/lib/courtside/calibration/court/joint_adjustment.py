@@ -227,7 +227,7 @@ def click_sigma(sigma_px_at_3840: float, size: tuple[int, int]) -> float:
 
 
 def found_click_sigma(sigma_px_at_3840: float, solved: Solution) -> float:
-    """Return the sigma of a click that the residuals say, px; of the picture where it is largest.
+    """Return the sigma of clicks from the residuals, px, in the picture where it is largest.
 
     Over both axes: the root of their mean variance.
     """
@@ -262,12 +262,12 @@ def solve(
     Parameters
     ----------
     click_sigma_px, click_loss : as for `condense`
-    click_bias_px : what all clicks in one picture have in common, standard deviation per axis, at a
+    click_bias_px : bias that all clicks in one picture share, standard deviation per axis, at a
         width of 3840 px
     points : (P,) bool; court points to use; by default all
     factors : on the variances of clicks (scatter and bias) and ties; by default none
     start : network of another solution, where the search starts; by default the ties' own
-    lines : what the court's painted lines tell, `court_lines.walk_and_lines.Told.knowledge`
+    lines : from painted lines, `court_lines.walk_and_lines.LineConstraints.knowledge`
     """
     factors = factors or variance_components.none(len(ties.cameras))
     network = _with_bias(ties, click_bias_px, factors)
@@ -297,11 +297,11 @@ def solve(
 
 
 def solve_with_factors(ties: Ties, clicks: ClickedPoints, court: Court, **options: Any) -> Solution:
-    """Do as `solve`, with weights and covariance by the residuals: `variance_components`.
+    """Do as `solve`, with weights and covariance from the residuals (`variance_components`).
 
-    The sigmas of clicks and ties say what is expected of them before their residuals are known. Few
-    clicks tell little of their scatter: the covariance is widened for it (`Factors.widening`).
-    `**options` are those of `solve`, without `factors`.
+    The given sigmas of clicks and ties are priors. A few clicks determine their scatter poorly; the
+    covariance is enlarged for this (`Factors.widening`). `**options` are those of `solve`, without
+    `factors`.
     """
     solved = solve(ties, clicks, court, **options)
     for _ in range(FACTOR_ROUNDS):
@@ -317,9 +317,9 @@ def solve_with_factors(ties: Ties, clicks: ClickedPoints, court: Court, **option
 
 
 def _with_bias(ties: Ties, click_bias_px: float, factors: Factors) -> Network:
-    """Return the network of the fixed cameras, free to shift their clicks.
+    """Return the network of the fixed cameras with a free shift of their clicks.
 
-    The flex stands for the clicks' bias: the ties are marginalised and have no flex of their own.
+    The flex parameters model the bias of the clicks; the marginalised ties do not use them.
     """
     network = ties.knowledge.reference
     flex_sigma = np.zeros((len(ties.cameras), len(FLEX)))

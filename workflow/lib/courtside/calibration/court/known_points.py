@@ -29,7 +29,7 @@ class Method:
 
 
 def method(name: str, court: Court) -> Method:
-    """Return the `Method` that a calibration's name means.
+    """Return the `Method` that the name of a calibration denotes.
 
     `known18`, `known8-board`, `dlt18`: the number is that of the court's points or of a set of
     them. Raises `InputError` if the court has no set of that many points.
@@ -82,7 +82,7 @@ def calibrate(
 
 
 def _fitted(xyz: NDArray, *clicks: Any, name: str, **options: Any) -> resection.Fitted:
-    """Fit a camera by least squares; where that fails, say whether its points are mirrored."""
+    """Fit a camera by least squares; if this fails, the error names mirrored points."""
     try:
         return resection.nonlinear(xyz, *clicks, name=name, **options)
     except InputError as fault:
@@ -107,7 +107,7 @@ def cameras(found: Mapping[str, Found]) -> list[Camera]:
             reason = result.reason if isinstance(result, resection.Linear) else ""
             raise InputError(
                 reason
-                or f"camera {name}: expected a camera from DLT, found a matrix that gives none; "
+                or f"camera {name}: expected a valid camera from DLT, found none; "
                 "click more points, more exactly, or calibrate by least squares"
             )
         calibrated.append(result.camera)

@@ -1,4 +1,4 @@
-"""Which edges of which painted lines meet at each named point of a court, and where paint is."""
+"""The edges of painted lines that meet at each named point of a court, and the painted areas."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -85,7 +85,7 @@ def stretches(court: Court, length_m: float) -> tuple[NDArray, NDArray]:
 
 @dataclass(frozen=True)
 class Paint:
-    """What a camera expects to be painted where."""
+    """Areas that a camera expects to be painted."""
 
     place: Callable[[NDArray], NDArray]  # from px (..., 2) to places (..., 2), smooth
     shows: Callable[[NDArray], NDArray]  # from places (..., 2) to whether there is paint (...)

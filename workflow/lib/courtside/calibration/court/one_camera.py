@@ -66,7 +66,7 @@ class Clicks:
 def start(
     clicks: Clicks, size: tuple[int, int], K: ArrayLike | None, dist: NDArray
 ) -> State | None:
-    """Find a camera within the reach of `descend`, None if no pose has all points before it.
+    """Find a start for `descend`, None if no pose has all points in front of the camera.
 
     If the lens is free, several focal lengths are tried, with the principal point at the centre of
     the picture of this size (px). Of all poses by SQPnP, that of least median error is taken.
@@ -118,8 +118,8 @@ def residuals(state: State, clicks: Clicks) -> tuple[NDArray, NDArray, NDArray]:
 def whitened(state: State, clicks: Clicks) -> tuple[NDArray, NDArray] | tuple[None, None]:
     """Return residuals (P, 2) in sigmas and their derivatives (P, 2, 6 or 8) by a step.
 
-    None, None where a point lies behind the camera or rounding errors exceed a click's own. A
-    point's own covariance is projected into the picture and added to the click's: the residual is
+    Returns None, None if a point lies behind the camera or rounding errors exceed those of a click.
+    A point's own covariance is projected into the picture and added to the click's: the residual is
     divided by the Cholesky factor of the sum.
     """
     off, by_point, depth = residuals(state, clicks)

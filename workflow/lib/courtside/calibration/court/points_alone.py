@@ -1,8 +1,8 @@
 """All fixed cameras from points at known places alone, weighted together, with their covariance.
 
-Each camera is found by itself (`resection`). Then all are adjusted together: a point's place is one
-unknown for all cameras that see it, and the scatter of clicks is estimated from all residuals.
-Clicks that contradict a camera lose weight and are named.
+First each camera is calibrated alone (`resection`). Then all are adjusted together: the position of
+a point is one unknown for all cameras that see it, and the scatter of clicks is estimated from all
+residuals. Clicks that contradict their camera lose weight and are named.
 """
 
 from collections.abc import Mapping, Sequence
@@ -87,7 +87,7 @@ def calibrate(
 
 
 def said(found: Found) -> dict[str, Any]:
-    """Return for a JSON file how well the points fit, and the lenses with their uncertainty.
+    """Return the fit of the points, and the lenses with their uncertainty, for a JSON file.
 
     By camera: `n_points`; `rms_px`, per axis; `f_px` and `k1` with their standard deviations.
     """
@@ -146,7 +146,7 @@ def _solved(lenses: Ties, clicks: ClickedPoints, court: Court, weights: dict) ->
 
 
 def _scattered(solved: Solution, click_sigma_px: float) -> list[str]:
-    """Name the cameras whose clicks scatter far more than those of the others."""
+    """Return a warning for each camera whose clicks scatter far more than those of the others."""
     share = np.sqrt(solved.factors.clicks.mean(axis=1))
     found = []
     for at, camera in enumerate(solved.cameras):

@@ -67,10 +67,10 @@ def dlt(
     """Calibrate a camera linearly from known points: a projection matrix of eleven free numbers.
 
     Hartley & Zisserman 2004, alg. 7.1 without its last step; normalised by their sec. 4.4. No lens
-    distortion. `degenerate` comes from the covariance of the linear solution. It shows points in
-    one plane, and, which the residuals do not show, the layout with a camera in the plane of the
-    net: of the only points above the floor, the tips of the posts, one then stands behind the
-    other. Raises `InputError` if fewer than six points are clicked.
+    distortion. `degenerate` comes from the covariance of the linear solution. It detects points in
+    one plane. It also detects a camera in the plane of the net, which the residuals do not show:
+    the only points above the floor, the tips of the posts, are then behind one another. Raises
+    `InputError` if fewer than six points are clicked.
 
     Known places `xyz` (P, 3) are m, clicks `xy` (P, 2) px, NaN where missing. The picture's size is
     for `camera` only.
@@ -189,20 +189,19 @@ def nonlinear(
 ) -> Fitted:
     """Calibrate a camera by robust least squares of the pixel errors, without a start value.
 
-    Start: for each of several focal lengths the pose by SQPnP (Terzakis & Lourakis 2020); the one
-    with the least median error. Then Levenberg-Marquardt with a Cauchy loss, and once more without
-    on the accepted clicks: the covariance is that of this last fit, for errors as large as
-    `sigma_px` and `xyz_sigma` say. Raises `InputError` if the points are too few (8, or 4 with K),
-    on one line, leave the camera undetermined, or fit no camera near them.
+    Start: the pose by SQPnP (Terzakis & Lourakis 2020) for each of several focal lengths; the one
+    with the least median error is kept. Then Levenberg-Marquardt with a Cauchy loss, and again
+    without it on the accepted clicks. The covariance is that of this last fit, for errors of
+    `sigma_px` and `xyz_sigma`. Raises `InputError` if the points are too few (8, or 4 with K), on
+    one line, leave the camera undetermined, or fit no camera near them.
 
     Parameters
     ----------
     xyz : (P, 3) float; known places, m
     xy : (P, 2) float; clicks, px; NaN where missing
     size : of the picture, px
-    K : (3, 3) float; known from a lens calibration: then the pose alone is found. Otherwise also
-        the focal length, equal along both axes, and k1, with the principal point at the picture's
-        centre
+    K : (3, 3) float; from a lens calibration: only the pose is estimated. Without K also the focal
+        length, equal along both axes, and k1, with the principal point at the picture's centre
     dist : (5,) float; only with K; zeros by default
     sigma_px : of a good click per axis
     xyz_sigma : (P,) float; how far the points are from `xyz`, standard deviation per axis, m
@@ -239,8 +238,8 @@ def nonlinear(
 def _agree(distance: NDArray, shown: float) -> NDArray:
     """Return which clicks (P,) bool agree with the fit of all, by residuals (P,) in sigmas.
 
-    Where the clicks scatter more than their sigma, their scatter counts. Residuals are smaller than
-    errors by what the unknowns absorb: by a third where eight clicks give pose and lens.
+    If the clicks scatter more than their sigma, their scatter is used. Residuals are smaller than
+    errors because the unknowns absorb a part: a third if eight clicks give pose and lens.
     """
     return distance <= OUTLIER * max(1.0, np.median(distance) / MEDIAN_2D / shown)
 
@@ -248,7 +247,7 @@ def _agree(distance: NDArray, shown: float) -> NDArray:
 def _check_agreement(clicks, agree, off_px, size, name) -> None:
     """Raise `InputError` if too few clicks agree, or most are far off.
 
-    One may be wrong of as few as there must be, if the others leave equations to notice it.
+    With the fewest clicks that are allowed, one may be wrong if the others are enough to detect it.
     """
     fewest = FEWEST["lens" if clicks.free_lens else "pose"]
     least = max(min(fewest, len(agree) - 1), 4)  # three clicks fit any pose
@@ -280,7 +279,7 @@ def _covariance(columns: NDArray, name: str) -> NDArray:
     if extent[-1] < MIN_EXTENT * extent[0]:
         raise InputError(
             f"camera {name}: expected points that determine the camera, found that its focal "
-            "length and distance cannot be told apart; click points above the floor too, or give "
+            "length and distance cannot be separated; click points above the floor too, or give "
             "its lens calibration"
         )
     root = vectors.T / extent / scale[:, None]

@@ -70,9 +70,9 @@ def paper_frame(court: Court, xyz_in_sfm: NDArray) -> PaperFrame:
 
     # ASSUME: S_z, a point on the z axis, is S_o + e_x x e_y: no court point lies above the origin,
     # and the paper does not say how it is found.
-    # ASSUME: the scale, "known length over SfM length", is that of both sides together,
-    # (6.1 + 13.4 m) over the sum of their SfM lengths: the paper names both lengths and one scale.
-    # It multiplies R and t.
+    # ASSUME: the scale, "known length over SfM length", is for both sides together, (6.1 + 13.4 m)
+    # over the sum of their SfM lengths: the paper names both lengths and one scale. It multiplies R
+    # and t.
 
     Parameters
     ----------
@@ -204,9 +204,9 @@ def stretch(
     Parameters
     ----------
     xyz_in_sfm : (P, 3) float; NaN where missing
-    causes_m : (P, 3, R) float; how far errors of the cameras, independent and each of one standard
-        deviation, move the points (`point_covariance.field`). They bend all points together, which
-        the points' scatter does not show
+    causes_m : (P, 3, R) float; displacement of points by independent errors of the cameras, each
+        of one standard deviation (`point_covariance.field`). These errors bend all points together,
+        which the points' scatter does not show
 
     Returns
     -------
@@ -262,9 +262,9 @@ def refuse_exchanged_cameras(
     Parameters
     ----------
     cameras : in one frame, of structure from motion: clicks must not have shaped it
-    adjust : from clicks to the fixed cameras after a joint adjustment with them. Structure from
-        motion of few pictures is bent by more than clicks scatter: points that such a bend can
-        explain are judged after it
+    adjust : function from clicks to the fixed cameras after a joint adjustment with them. With few
+        pictures, structure from motion is bent by more than the scatter of clicks: points that
+        this bend can explain are judged after the adjustment
     """
     near_m = FITTING * np.max(court.size_m)
     if not misses_court(court, cameras, clicks):
@@ -286,9 +286,9 @@ def refuse_exchanged_cameras(
 
 
 def misses_court(court: Court, cameras: Sequence[Camera], clicks: ClickedPoints) -> bool:
-    """Return whether most court points miss the court by more than clicks scatter.
+    """Return whether most court points miss the court by more than the scatter of clicks.
 
-    The model is bent, or clicks are wrong. Arguments are those of `refuse_exchanged_cameras`.
+    Then the model is bent, or clicks are wrong. Arguments as for `refuse_exchanged_cameras`.
     """
     return _off_m(court, cameras, clicks) >= FITTING * np.max(court.size_m)
 

@@ -1,4 +1,4 @@
-"""Where a picture shows the painted lines of a court, stretch by stretch."""
+"""The painted lines of a court measured in a picture, stretch by stretch."""
 
 from dataclasses import dataclass
 
@@ -18,7 +18,7 @@ REACH_PX = 2.5  # of the search across a line, once the camera is moved
 
 @dataclass(frozen=True, eq=False)
 class Edges:
-    """M stretches of painted lines in one picture. Only their place across the line is seen."""
+    """M stretches of painted lines in one picture, measured only across the line."""
 
     line: NDArray  # (M,) int: row of the court's `lines_m`
     xyz: NDArray  # (M, 3): the stretch's middle by the court's file, m
@@ -33,9 +33,9 @@ def measure(
 ) -> tuple[Edges | None, str]:
     """Measure a court's lines in the picture (H, W, 3) uint8 of a camera known roughly.
 
-    As in `click_proposals.proposals.propose`, lines may be `search_px` off; the camera is moved so
-    that they fit, which tells where to look once more. Where too few are seen, the reason is
-    returned in place of edges.
+    As in `click_proposals.proposals.propose`, lines may be up to `search_px` from their predicted
+    positions. The camera is adjusted to them, and its new predictions are used for a second search.
+    If too few lines are found, the reason is returned in place of edges.
     """
     view = View.of(image, camera, court, lines)
     view, reason = proposals.register(view, search_px)
@@ -45,7 +45,7 @@ def measure(
     for line, ends in zip(*line_edges.stretches(court, STRETCH_M), strict=True):
         middle, half = ends.mean(axis=0), line_edges.middle_line(court, line)[1]
         shift = view.shift(line, ends, middle, REACH_PX)
-        if shift is None or not proposals.believed(shift):
+        if shift is None or not proposals.is_reliable(shift):
             continue
         along = ends[1] - ends[0]
         _, (normal,) = line_profiles.tangent_and_normal(view.camera, middle[None], along, half)

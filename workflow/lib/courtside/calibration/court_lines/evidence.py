@@ -1,4 +1,4 @@
-"""How much of a court's lines is seen where cameras expect them."""
+"""The share of a court's lines that a picture shows where cameras predict them."""
 
 from dataclasses import dataclass
 
@@ -30,7 +30,7 @@ class Fields:
 
     @property
     def width(self) -> int:
-        """Of the picture, px."""
+        """Width of the picture, px."""
         return self.distance.shape[2]
 
     def chance(self, tolerance_px: float) -> NDArray:
@@ -41,7 +41,7 @@ class Fields:
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """Of cameras (B)."""
+    """Evidence for cameras (B)."""
 
     score: NDArray  # (B,): log likelihood ratio against chance; -1 where too little is in view
     share: NDArray  # (B,): closeness of ridges to the lines in view, 0..1
@@ -64,8 +64,8 @@ def fields(ridges: Ridges) -> Fields:
 def score(seen: Fields, views: Views, along: Samples, tolerance_px: float) -> Evidence:
     """Score cameras by ridges at most `tolerance_px` from the court's lines, of their direction.
 
-    The log likelihood ratio of lines against chance: the share of the lines in view that ridges are
-    close to, against the share of ridges of these directions anywhere.
+    The score is the log likelihood ratio of lines against chance. It compares the share of the
+    lines in view that are close to ridges with the share of ridges of these directions anywhere.
     """
     parts = [
         _score(seen, views[at : at + AT_ONCE], along, tolerance_px)

@@ -25,10 +25,11 @@ class FloorFrame:
 
 
 def find(ends: NDArray, width: float, rng: np.random.Generator) -> list[FloorFrame]:
-    """Find frames that many straight pieces are parallel to, some for each focal length.
+    """Find frames whose axes are parallel to many line segments, some for each focal length.
 
-    `ends` (N, 4) px are relative to the principal point and without distortion. Three pieces give a
-    frame: two parallel ones a direction, a third the other. Walls parallel to the court help.
+    `ends` (N, 4) px are relative to the principal point and without distortion. Three segments give
+    a frame: two parallel ones give one direction, a third gives the other. Walls parallel to the
+    court help.
     """
     ends = ends[:MOST_SEGMENTS]
     length = np.hypot(*(ends[:, 2:] - ends[:, :2]).T)

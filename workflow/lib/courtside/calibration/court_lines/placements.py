@@ -1,4 +1,4 @@
-"""Places of cameras that put lines of a court on lines of the picture."""
+"""Camera positions that project lines of a court onto lines of the picture."""
 
 from dataclasses import dataclass
 
@@ -23,7 +23,7 @@ GRID_STEPS, PER_GRID = 240, 1  # places along an axis whose lines are not found 
 
 @dataclass(frozen=True, eq=False)
 class _Axis:
-    """Lines across one axis: of the picture, for a camera 1 m high, and of the court."""
+    """Lines across one axis: in the picture, for a camera 1 m high, and on the court."""
 
     at: NDArray  # (L,): where lines of the picture are
     tolerance: NDArray  # (L,)
@@ -67,10 +67,11 @@ class _Axis:
 def find(
     frame: FloorFrame, ends: NDArray, court: Court, width: float, k1: float, principal: NDArray
 ) -> list[Views]:
-    """Return cameras with a floor frame that see lines of a court where there are lines.
+    """Return cameras with a floor frame that project lines of a court onto lines of the picture.
 
-    Two lines of the picture on two of the court give the height and one coordinate; the other comes
-    from one line on one, or for the best from a grid. `ends` as for `floor_frames.find`.
+    Two lines of the picture, matched to two of the court, give the height and one coordinate. The
+    other coordinate comes from one matched line or, for the best, from a grid. `ends` as for
+    `floor_frames.find`.
     """
     found = []
     for quarter in (0, 1) if views.is_symmetric(court) else (0, 1, 2, 3):

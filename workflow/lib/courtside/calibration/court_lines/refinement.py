@@ -1,4 +1,4 @@
-"""A camera moved until a court's lines lie on ridges of the picture."""
+"""Refinement of a camera until the court's lines project onto ridges of the picture."""
 
 from dataclasses import dataclass
 
@@ -31,7 +31,7 @@ class Uncertainty:
 
 
 def refine(seen: Fields, view: Views, along: Samples) -> Views | None:
-    """Fit a camera, as `Views` of one, to the ridges near its lines; None if they are too few."""
+    """Fit a camera (`Views` of one) to the ridges near its lines; None if they are too few."""
     scale, k1 = seen.width / 1280, float(view.k1[0])
     for reach in REACH_PX:
         for _ in range(2):
@@ -59,7 +59,7 @@ def moved(view: Views, change: NDArray) -> Views:
 
 
 def uncertainty(seen: Fields, view: Views, along: Samples, middle_m: NDArray) -> Uncertainty | None:
-    """Return how surely the lines determine a fitted camera; `middle_m` (3,) is the court's."""
+    """Return the uncertainty of a camera fitted to lines; `middle_m` (3,) is the court's middle."""
     found = _targets(seen, view, along, REACH_PX[-1] * seen.width / 1280)
     if found is None:
         return None

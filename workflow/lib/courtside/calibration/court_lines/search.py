@@ -40,7 +40,7 @@ class Candidate:
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """What a picture shows of a court."""
+    """Candidates found in a picture."""
 
     candidates: list[Candidate]  # best first; different ones, but for half turns
     seen: Fields
@@ -53,10 +53,10 @@ def find(
 ) -> Found:
     """Find cameras that explain the lines of a court in a picture (H, W, 3) uint8.
 
-    The principal point is taken as the picture's centre. `k1` is the lens's if it is known; else
-    some are tried. Directions of the floor and focal lengths come from straight pieces of lines,
-    places from matching lines of the picture with lines of the court; the whole court's lines then
-    decide, and the best are refined.
+    The principal point is assumed to be the picture's centre. `k1` is the lens's if it is known;
+    otherwise several values are tried. Line segments give directions of the floor and focal
+    lengths. Matches of lines in the picture with lines of the court give positions. The lines of
+    the whole court then decide, and the best candidates are refined.
     """
     scale = max(1.0, image.shape[1] / WIDEST_PX)
     if scale > 1:

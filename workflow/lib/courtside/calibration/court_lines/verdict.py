@@ -44,11 +44,12 @@ class Verdict:
 
 
 def judge(found: Found, court: Court, name: str, size: tuple[int, int], lines: str) -> Verdict:
-    """Say whether the best candidate is the camera of a picture of a size (width, height) px.
+    """Judge whether the best candidate is the camera of a picture of a size (width, height) px.
 
-    A court is found where most lines in view are seen, in both directions, and no other place of
-    the camera explains nearly as much. Lines asked for as "light" are white: of like courts side by
-    side the whiter one is meant, and if both are alike, it is ambiguous which.
+    A court is found if the picture shows most of the predicted lines, in both directions, and no
+    other camera position explains nearly as much. Lines requested as "light" are white: of similar
+    courts side by side the whiter one is chosen; if both are equally white, the result is
+    ambiguous.
     """
     symmetric = views.is_symmetric(court)
     if not found.candidates:
@@ -67,7 +68,10 @@ def judge(found: Found, court: Court, name: str, size: tuple[int, int], lines: s
     elif lines == "light" and paint[first] < LEAST_WHITE:
         outcome, reason = AMBIGUOUS, "the lines that fit the court are not white"
     elif _has_like(found.candidates, best, paint, court):
-        outcome, reason = AMBIGUOUS, "a like court beside it fits as well: which one is meant"
+        outcome, reason = (
+            AMBIGUOUS,
+            "a similar court beside it fits as well: it is ambiguous which one is meant",
+        )
     elif rival > MOST_RIVAL * best.score or best.score - rival < LEAST_MARGIN:
         outcome, reason = AMBIGUOUS, "another place of the camera explains the lines nearly as well"
     camera = views.to_camera(best.view, name, size, found.scale)
@@ -77,7 +81,7 @@ def judge(found: Found, court: Court, name: str, size: tuple[int, int], lines: s
 
 
 def _fault(best: Candidate, court: Court) -> str:
-    """Return why a candidate is not believed, empty if it is."""
+    """Return why a candidate is rejected, empty if it is accepted."""
     if best.score < LEAST_SCORE:
         return f"the best camera explains too little (score {best.score:.0f} of {LEAST_SCORE:.0f})"
     low, high = court.line_corners()
@@ -94,7 +98,7 @@ def _fault(best: Candidate, court: Court) -> str:
 
 
 def _has_like(candidates: list[Candidate], best: Candidate, paint: NDArray, court: Court) -> bool:
-    """Say whether a court beside the best one fits too, and its lines are nearly as white."""
+    """Return whether a court beside the best one fits too, with lines nearly as white."""
     own = paint[candidates.index(best)]
     return any(
         one.score > LIKE_SCORE * best.score
@@ -118,9 +122,9 @@ def _is_beside(one: Candidate, other: Candidate, court: Court) -> bool:
 
 
 def whiteness(found: Found, one: Candidate, court: Court) -> float:
-    """Return how much of the way from the floor's colour to white lines go, median over them.
+    """Return the median whiteness of lines: 0 is the colour of the floor, 1 is white.
 
-    The least of the three colours: yellow paint leaves blue as it is.
+    It is the smallest of the three colour channels: yellow paint does not change blue.
     """
     along, image = views.samples(court, search.FINE_M / 2), found.image.astype(np.float32)
     place = one.view.project(along.place)[0]
@@ -156,10 +160,10 @@ def proposed(
     max_sigma_px: float = 1.0,
     lines: str = "light",
 ) -> Proposals:
-    """Propose the court's points where the camera was found, else nothing, and say why.
+    """Propose the court's points if the camera was found; otherwise give the reason for each point.
 
-    As `click_proposals.proposals.propose`. Of a symmetric court each reason is `EITHER`: a point
-    may as well be that which half a turn brings there.
+    As `click_proposals.proposals.propose`. For a symmetric court each reason is `EITHER`, because
+    the court looks the same after half a turn.
     """
     n = len(court.points)
     if verdict.outcome != FOUND or verdict.camera is None:
@@ -175,7 +179,7 @@ def proposed(
 
 
 def report(verdict: Verdict, found: Proposals) -> dict:
-    """Return a verdict as a table of JSON: the camera with how surely floor lines give it."""
+    """Return a verdict for JSON: the camera and its uncertainty from floor lines."""
     said: dict = {
         "outcome": verdict.outcome,
         "reason": verdict.reason,

@@ -1,12 +1,12 @@
-"""Cameras of a walk adjusted together with a court's painted lines: what the lines tell of them.
+"""Adjust the cameras of a walk together with the court's painted lines.
 
-An edge counts across its line alone. Its error has three parts. A line is painted some millimetres
-off the court's file, one number for all its stretches in all cameras. A line that is thin in the
-picture is seen off by blur, pixels and what lies beside it, alike in stretches that are near each
-other. The rest is noise of each stretch. The first two are in the covariance of the edges, so that
-many stretches of one line tell no more than they know.
-How far lines are painted off is estimated from the lines themselves, about what the court's file
-states.
+An edge is measured only across its line. Its error has three parts. First, a painted line deviates
+by some millimetres from the court's file, by one value for all its stretches in all cameras.
+Second, a thin line in the picture has a bias from blur, pixels and its surroundings, which is
+similar in neighbouring stretches. Third, each stretch has noise. The covariance of the edges
+contains the first two parts, so that many stretches of one line are not treated as independent. The
+deviation of the painted lines is estimated from the lines themselves, with the court's file as
+prior.
 """
 
 from collections.abc import Mapping
@@ -24,35 +24,36 @@ from courtside.calibration.court.joint_adjustment import Solution, Ties
 from courtside.calibration.court_lines import edges
 from courtside.calibration.court_lines.edges import Edges
 
-# Of an edge, standard deviation. Chosen on development halls, so that the ellipsoids of the cameras
-# hold what they state: with two thirds of these the cameras are a tenth better, and too sure.
+# Standard deviations of an edge, chosen on development halls so that the ellipsoids of the cameras
+# have the stated coverage. With two thirds of these values the cameras are a tenth better, but
+# their ellipsoids are too small.
 FINE_PX = 0.05  # of a stretch of a wide line
-THIN_PX = 0.1  # of a line of 1 px, alike along it; more in proportion as the line is thinner
-ALIKE_M = 4.0  # ASSUME: of line, over which these errors become different
+THIN_PX = 0.1  # bias of a line 1 px wide; inversely proportional to the width
+ALIKE_M = 4.0  # ASSUME: correlation length of this bias along a line
 LOSS = 3.0  # ASSUME: sigmas; scale of the Cauchy loss of a stretch
-# How far lines are off, in standard deviations that the court's file states of its points on the
-# floor: chosen as those above, on halls whose lines are 3 to 10 mm off.
+# Deviation of the painted lines, in standard deviations of the floor points in the court's file;
+# chosen as above, on halls whose lines deviate by 3 to 10 mm.
 PAINTING = 2.0
-PAINTING_PRIOR = 6.0  # ASSUME: lines that the court's file counts for, on how far lines are off
+PAINTING_PRIOR = 6.0  # ASSUME: weight of the court's file, in lines, for the painting deviation
 MAX_ITERATIONS = 30  # of each adjustment
-ROUNDS = 4  # of adjusting, weighing again, and estimating how far lines are off
-# ASSUME: sigmas, root mean square over a camera's edges, by which they may be off where the walk
-# has them; 0.4 to 1 in development sessions. Those of another court or of other lines are farther.
+ROUNDS = 4  # of adjusting, reweighting, and estimating the painting deviation
+# ASSUME: limit in sigmas for the root mean square distance of a camera's edges from the walk's
+# prediction: 0.4 to 1 in development sessions, far more for another court or other lines.
 CONTRADICTED = 4.0
 
 
 @dataclass(frozen=True, eq=False)
-class Told:
-    """What lines tell of the fixed cameras of a walk."""
+class LineConstraints:
+    """Constraints of court lines on the fixed cameras of a walk."""
 
     knowledge: solver.Quadratic | None  # for `joint_adjustment.solve`; None where no line is seen
     n_edges: dict[str, int]  # by camera
-    off_sigmas: dict[str, float]  # by camera: root mean square off where the walk has them
-    painting_m: float  # standard deviation of a line, across it
+    off_sigmas: dict[str, float]  # by camera: root mean square distance from the walk's prediction
+    painting_m: float  # standard deviation of the painting deviation, across the line
     warnings: list[str]  # cameras whose lines are not seen, or contradict the walk
 
-    def said(self) -> dict[str, Any]:
-        """Return it for a JSON file."""
+    def summary(self) -> dict[str, Any]:
+        """Return a summary for a JSON file."""
         off = {name: round(value, 2) for name, value in self.off_sigmas.items()}
         painting = {"painting_mm": round(1000 * self.painting_m, 2)}
         return {"lines": {"n_edges": self.n_edges, "off_sigmas": off, **painting}}
@@ -67,11 +68,11 @@ def of_pictures(
     search_share: float,
     lines: str,
     **weights: Any,
-) -> Told:
-    """Measure a court's lines in the fixed cameras' pictures, near where walk and clicks have them.
+) -> LineConstraints:
+    """Measure a court's lines in the fixed cameras' pictures, near their predicted positions.
 
-    `search_share` is how far they may be off, of the picture's width; `**weights` are those of
-    `joint_adjustment.solve`.
+    The prediction comes from walk and clicks; `search_share` is the search range as a share of the
+    picture's width. `**weights` are those of `joint_adjustment.solve`.
     """
     weights = {**weights, "max_iterations": MAX_ITERATIONS}
     base = joint_adjustment.solve_with_factors(ties, clicks, court, **weights)
@@ -83,22 +84,22 @@ def of_pictures(
             warnings.append(f"camera {camera.name}: court lines not used: {reason}")
         else:
             found[camera.name] = seen
-    told = of_edges(base, ties, clicks, court, found, **weights)
-    return replace(told, warnings=[*warnings, *told.warnings])
+    constraints = from_edges(base, ties, clicks, court, found, **weights)
+    return replace(constraints, warnings=[*warnings, *constraints.warnings])
 
 
-def of_edges(
+def from_edges(
     base: Solution,
     ties: Ties,
     clicks: ClickedPoints,
     court: Court,
     measured: Mapping[str, Edges],
     **weights: Any,
-) -> Told:
-    """Return what edges, by camera, tell about the cameras that they give.
+) -> LineConstraints:
+    """Compute the constraints from the edges `measured` in each camera.
 
-    `base` is the solution of ties and clicks alone. Edges of a camera that contradict it are left
-    out, and a warning names the camera.
+    `base` is the solution from ties and clicks alone. If the edges of a camera contradict this
+    solution, they are left out, and a warning names the camera.
     """
     off = {name: _off_sigmas(base, name, seen, court) for name, seen in measured.items()}
     found = {name: seen for name, seen in measured.items() if off[name] <= CONTRADICTED}
@@ -112,7 +113,7 @@ def of_edges(
     n_edges = {c.name: len(found[c.name].line) if c.name in found else 0 for c in base.cameras}
     stated_m = painting_m = _painting_m(court)
     if not found:
-        return Told(None, n_edges, off, stated_m, warnings)
+        return LineConstraints(None, n_edges, off, stated_m, warnings)
     solved, trust = base, np.ones(sum(n_edges.values()))
     known = _linearised(base, found, court).knowledge(painting_m, trust)
     for _ in range(ROUNDS):
@@ -125,16 +126,16 @@ def of_edges(
         lines_and_prior = PAINTING_PRIOR + len(squares)
         painting_m = np.sqrt((PAINTING_PRIOR * stated_m**2 + squares.sum()) / lines_and_prior)
         known = seen.knowledge(painting_m, trust)
-    return Told(known, n_edges, off, float(painting_m), warnings)
+    return LineConstraints(known, n_edges, off, float(painting_m), warnings)
 
 
 def _painting_m(court: Court) -> float:
-    """Return how far a line is painted off the court's file, standard deviation, m."""
+    """Return the standard deviation of a painted line from the court's file, m."""
     return PAINTING * float(court.sigma_m[court.xyz[:, 2] == 0].mean())
 
 
 def _off_sigmas(base: Solution, name: str, seen: Edges, court: Court) -> float:
-    """Return by how many sigmas, root mean square, a camera's edges are off where it has them."""
+    """Return the root mean square distance, in sigmas, of edges from a camera's prediction."""
     one = _linearised(base, {name: seen}, court)
     spread = np.einsum("mk,kl,ml->m", one.rows, base.covariance, one.rows)
     spread += np.diag(one.covariance(_painting_m(court), 1.0))
@@ -154,13 +155,13 @@ class _Linearised:
     alike: NDArray  # (M, M): px2, of stretches of one line in one picture
 
     def covariance(self, painting_m: float, trust: NDArray | float) -> NDArray:
-        """Return the covariance of `off_px` with each stretch's noise so far trusted, (M, M)."""
+        """Return the covariance of `off_px` (M, M); `trust` weights the noise of each stretch."""
         same = self.line[:, None] == self.line
         painted = same * np.outer(self.px_of_m, self.px_of_m) * painting_m**2
         return np.diag(self.variance / trust) + self.alike + painted
 
     def knowledge(self, painting_m: float, trust: NDArray | float) -> solver.Quadratic:
-        """Return what the edges tell of images and lenses, all else eliminated."""
+        """Return the information of the edges on images and lenses, all else eliminated."""
         weighed = np.linalg.solve(self.covariance(painting_m, trust), self.rows)
         return solver.Quadratic(self.network, self.rows.T @ weighed, weighed.T @ self.off_px)
 
@@ -172,7 +173,7 @@ class _Linearised:
     def painted_squares(
         self, painting_m: float, trust: NDArray | float, spread: NDArray
     ) -> NDArray:
-        """Return the expected square of how far each line is off, m2.
+        """Return the expected square of each line's painting deviation, m2.
 
         `spread` is the covariance of the network's columns. The step of expectation maximisation
         (Dempster, Laird & Rubin 1977).

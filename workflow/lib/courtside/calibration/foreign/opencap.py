@@ -129,7 +129,7 @@ def _content(data: bytes) -> dict[str, Any]:
         if operation.name not in HARMLESS:
             raise ValueError(f"a pickle that uses {operation.name}")
         if operation.name == "LONG_BINPUT" and (argument or 0) > len(data):
-            raise ValueError("a pickle that remembers more than it holds")
+            raise ValueError("a pickle with a memo index beyond its length")
     content = _Unpickler(io.BytesIO(data)).load()
     if not isinstance(content, dict) or not set(KEYS) <= set(content):
         found = list(content) if isinstance(content, dict) else type(content).__name__

@@ -6,5 +6,5 @@ calibration: read, tidy, table: errors of calibrations; pick, summary, spread, s
 networks: `in_space`, `table`: networks on the same frames, with intervals
 players: `read`, `together`, `table`: errors of simulated players
 racket: `read`, `table`: lengths of a racket
-ways: `said`, `against_truth`, `accepted`: all calibrations of sessions side by side
+ways: `from_quality`, `against_truth`, `accepted`: all calibrations of sessions side by side
 """

@@ -1,4 +1,4 @@
-"""Ways to calibrate beside each other: predicted and true errors, and views that are accepted."""
+"""Comparison of calibrations: predicted and true errors, and the share of accepted views."""
 
 from collections.abc import Sequence
 
@@ -19,15 +19,15 @@ COLUMNS = (
 )  # fmt: skip
 
 
-def said(quality_json: dict) -> dict:
-    """Return what a calibration says of itself: which cameras were taken, predicted errors (cm)."""
+def from_quality(quality_json: dict) -> dict:
+    """Return the columns from a quality file: refined cameras in use, predicted errors (cm)."""
     keys = {"taken": "taken", "expected_before_cm": "expected_before_cm"}
     keys["expected_cm"] = "expected_volume_rms_cm"
     return {name: quality_json.get(key) for name, key in keys.items()}
 
 
 def against_truth(cameras: Sequence[Camera], truth: Sequence[Camera], court: Court) -> dict:
-    """Return the error over the court's volume, and what the best similarity leaves of it (cm).
+    """Return the error over the court's volume, before and after the best similarity (cm).
 
     Nothing where cameras of the truth are missing. Root mean squares of points that all see.
     """
@@ -42,7 +42,7 @@ def against_truth(cameras: Sequence[Camera], truth: Sequence[Camera], court: Cou
 
 
 def accepted(takes: Sequence[Keypoints3D]) -> dict:
-    """Return the share (%) of the views of limb joints that skeletons rest on, of how many."""
+    """Return the share (%) of views of limb joints that triangulation used, and their number."""
     used = [_views(found) for found in takes]
     every = np.concatenate(used) if used else np.zeros(0)
     share = 100 * float(every.mean()) if len(every) else None

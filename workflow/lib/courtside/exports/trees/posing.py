@@ -61,8 +61,8 @@ def of_joints(time_s: NDArray, xyz: NDArray, skeleton: Skeleton) -> PosedHierarc
     A bone has its median length and points to the measured joint; where several hang on a joint, it
     turns as they do together (Kabsch 1976), and each has a node of its own there (`hip_to_knee`).
     Turns about a bone are not measured: they are its parent's. Where an end is missing, its bone
-    goes on with its parent. Frames without the root are left out. At rest it stands as in the frame
-    with most joints.
+    goes on with its parent. Frames without the root are left out. Its rest pose is that of the
+    frame with most joints.
     """
     nodes = _tree(skeleton)
     parents = np.array([node.parent for node in nodes])

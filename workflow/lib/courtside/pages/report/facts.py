@@ -1,4 +1,4 @@
-"""What the report says of a take and a session, read from the files of the study."""
+"""The facts on a take and a session for the report, read from the files of the study."""
 
 from collections.abc import Sequence
 from pathlib import Path

@@ -94,7 +94,7 @@ def moved(row: dict, max_shift_px: float, max_zoom_percent: float) -> Warned | N
 
 
 def shaken(line: str) -> Warned:
-    """Return what a line about the shake of a camera says, now that the shake is corrected."""
+    """Return the text of a line about the shake of a camera whose shake is corrected."""
     text = line.rpartition("): ")[0] + ")" if "): " in line else line
     text = text[:1].upper() + text[1:]
     if "too little" in line or "no frame" in line:
@@ -220,7 +220,7 @@ def distance(person: str, measures: dict) -> Warned | None:
 
 
 def true_path(row: dict) -> Warned | None:
-    """Return a warning if an error bar does not hold the true distance of a simulated take."""
+    """Return a warning if an error bar does not contain the true distance of a simulated take."""
     off, sigma = row["distance_error_percent"], row["distance_sigma_percent"]
     if row["point"] != "neck" or math.isnan(off) or abs(off) <= WITHIN_90 * sigma:
         return None

@@ -79,7 +79,7 @@ def of_points(name: str, points: Keypoints3D, skeleton: Skeleton, *, shown: bool
 
 
 def _covers(points: Keypoints3D) -> str:
-    """Return what a record's covariance includes, and what is taken as exact, in words."""
+    """Return in words what a record's covariance includes, and what is assumed to be exact."""
     known = {
         "keypoints": True,
         "network": np.isfinite(points.covariance_network).any(),

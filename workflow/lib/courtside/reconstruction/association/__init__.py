@@ -2,11 +2,11 @@
 
 scale: `check`: whether people have the size of people
 rows: `Rows`, `describe`: one camera's tracklets: body centres, sizes, cuts
-candidates: `Candidates`, `find`, `rays`: places that rows of several views agree on; rays of others
-appearance: `learn`, `Looks`: how colours of clothes tell people apart
+candidates: `Candidates`, `find`, `rays`: positions on which rows of several views agree; rays
+appearance: `learn`, `Looks`: colours of clothes as evidence of identity
 linking: `link`, `costs`, `follow`: candidates over time to persons, frames of rows to persons
-identity: `doubts`, `confidence`: where somebody could have been exchanged, and how likely
-lengths: `of_people`, `bones`: lengths of bones, by which people of different size differ
+identity: `doubts`, `confidence`: where persons could have been exchanged, and the probability
+lengths: `of_people`, `bones`: bone lengths, which distinguish people of different size
 associate: `associate`: everybody found; `on_frames`: rows on a camera's own frames
 everybody: `find`: everybody in the footage of a take
 marks: `locate`, `timelines`: sightings of subjects, found again among the persons

@@ -1,8 +1,8 @@
-"""Colours of clothes as evidence of who is who.
+"""Colours of clothes as evidence of identity.
 
-Cameras show one shirt in different colours (light, exposure, white balance). How far, and how much
-one person's colours scatter, is learned from places of which the geometry is sure. Where people
-dress alike, colours say nothing, and cost nothing.
+Cameras show the same shirt in different colours (light, exposure, white balance). These differences
+between cameras, and the scatter of one person's colours, are learned from positions where the
+geometry is unambiguous. If people dress alike, colours have no effect.
 """
 
 from collections.abc import Sequence

@@ -28,7 +28,7 @@ COUNTS = 0.1  # share of the take from which somebody counts as a person in it
 
 @dataclass(frozen=True)
 class Association:
-    """Which row of which camera shows which person: everybody found, most often seen first."""
+    """The row of each camera that shows each person; persons in descending order of frames seen."""
 
     # Of each camera (K, T): row of each person in each frame; -1 where it does not show the person
     index: list[NDArray]
@@ -65,17 +65,18 @@ def associate(
     `xy` has the tracklet rows (P, T, J, 2) of each camera at common, uniform times `time_s` (T,),
     distorted px, NaN where missing; P may differ. `trunk` are the indices of shoulders and hips.
     With `mirror` (J,), the index of the same joint of the other side, views with confused sides
-    still agree. If the `court` has a net, changing halves is taken as rare; people far from it are
-    left out. `bones`, pairs of joints of constant distance, tell two people of different size apart
-    in `doubts`. `clothing` are the colours of the rows' clothes (P, T, 2, 3) in each camera.
+    still agree. If the `court` has a net, changing halves is assumed to be rare; people far from
+    the court are left out. `bones`, pairs of joints of constant distance, distinguish people of
+    different size in `doubts`. `clothing` are the colours of the rows' clothes (P, T, 2, 3) in each
+    camera.
 
     At instants 0.1 s apart, rows of several views that meet in space become candidates
     (`candidates`). They are linked over time by a search that keeps several histories (`linking`);
     then each frame of a row gets the person whose path it follows. A row may change its person,
     because a tracker may swap two people where they overlap.
 
-    An `InputError` if nobody can be placed. Only where each camera has one row, it is returned as
-    one person who is never placed: a calibration can be checked with it.
+    Raises `InputError` if nobody can be triangulated. If each camera has only one row, these rows
+    are returned instead as one person without positions, so that the calibration can be checked.
     """
     alone = all(len(view) == 1 for view in xy)
     xy = [v if len(v) else np.full((1, *v.shape[1:]), np.nan) for v in xy]
@@ -130,7 +131,7 @@ def _slots(rows: Sequence[Rows]) -> int:
 
 
 def _unplaced(cameras, xy, time_s, instants, alone: bool) -> Association:
-    """Return one person in the single rows of all cameras, whom nothing confirms."""
+    """Return the single rows of all cameras as one person without positions."""
     if not alone:
         raise InputError(nowhere(camera.name for camera in cameras))
     return Association(
@@ -166,7 +167,7 @@ def _instants(time_s: NDArray) -> NDArray:
 
 
 def _looks(cameras, xy, rows, instants, mirror, clothing) -> appearance.Looks | None:
-    """Return what colours tell, learned where geometry is sure; frames are numbered by instant."""
+    """Return the model of colours, learned where geometry is unambiguous; frames are instants."""
     if clothing is None:
         return None
     few = np.arange(0, len(instants), max(1, len(instants) // LEARNED_FROM))

@@ -1,4 +1,4 @@
-"""Candidate places of a person: rows of two or more cameras that agree, and rays of single rows."""
+"""Candidate positions of a person: agreeing rows of two cameras or more, rays of single rows."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -69,7 +69,7 @@ def find(
     mirror: Sequence[int] | None = None,
     more: ViewCost | None = None,
 ) -> Candidates:
-    """Find all places where rows of two or more views meet.
+    """Find all positions where rows of two or more views meet.
 
     `xy` has keypoints (P, N, J, 2) of each camera at N instants, distorted px, NaN where missing;
     `rows` and `height_px` the centres and standard deviations, and heights (P, N), of `rows.Rows`
@@ -125,12 +125,12 @@ def _judge(
 
 
 def is_sure(places: Candidates) -> NDArray:
-    """Return which places (M,) three views or more agree on."""
+    """Return the positions (M,) on which three views or more agree, bool."""
     return ((places.row >= 0).sum(axis=1) >= 3) & (places.view_cost.sum(axis=1) < SURE)
 
 
 def rays(cameras: Sequence[Camera], rows: ViewRows, places: Candidates) -> Candidates:
-    """Return as rays all rows that no place of three or more views explains."""
+    """Return as rays all rows that no position from three or more views explains."""
     parts = []
     sure = places.subset(is_sure(places))
     for c, (camera, (centre, sigma_px)) in enumerate(zip(cameras, rows, strict=True)):

@@ -1,4 +1,4 @@
-"""How sure it is that a followed person is one person: where somebody could have been exchanged."""
+"""The probability that a tracked person is one person, and possible exchanges of persons."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -39,7 +39,7 @@ class Followed:
 
 
 def doubts(people: Followed, time_s: NDArray, lengths_m: NDArray) -> NDArray:
-    """Return where a person could have become another one: (D, 5), by person and time.
+    """Return the possible exchanges of persons (D, 5), by person and time.
 
     Each row holds: person; start and stop, s of the reference clock; the other person, -1 where
     nobody came near; the probability that the person is still the same. `time_s` (N,) is of the
@@ -67,7 +67,7 @@ def confidence(doubts_: NDArray, n_persons: int) -> NDArray:
 
 
 def _occasions(path: NDArray, time_s: NDArray, person: int) -> list[tuple[int, int, int]]:
-    """Return instants around meetings and gaps of a person, with the other one or -1."""
+    """Return the instants around meetings and gaps of a person, and the other person or -1."""
     placed = np.isfinite(path[..., 0])
     own = np.flatnonzero(placed[person]).tolist()
     found = []

@@ -1,4 +1,4 @@
-"""Lengths of bones of followed people, in space: what tells two people of different size apart."""
+"""Bone lengths of tracked people, in 3D; they distinguish people of different size."""
 
 from collections.abc import Sequence
 

@@ -63,15 +63,15 @@ def link(
 
     `piece` (M, C) is the uncut piece of each candidate's row in each camera, -1 without one;
     `time_s` (N,) is of the instants; `slots` the largest number S of persons followed. With
-    `net_y_m`, the position of a net, crossing it has a cost. With `looks`, people are known again
+    `net_y_m`, the position of a net, crossing it has a cost. With `looks`, people are re-identified
     by the colours of their clothes.
 
     A multiple-hypothesis tracker (Reid 1979): at each instant candidates are assigned to persons,
     and the best histories are kept. A history costs its candidates, their distance from a
     constant-velocity prediction, and a price for each uncut tracklet piece that changes its owner,
     so that a view without a crossing carries identities through a crossing in another view. While
-    only one view sees a person, its rays continue the history and leave the place along them open.
-    Of two people behind one another both may use the one visible row; its cost counts once.
+    only one view sees a person, its rays continue the history; the position along a ray is free. If
+    two people are behind one another, both may use the one visible row; its cost counts once.
     """
     colours = looks.middle(candidates) if looks else np.zeros((len(piece), 0))
     state = _Histories(slots, piece.shape[1], colours.shape[1])
@@ -142,7 +142,7 @@ def _own_cost(state, offered, now_s, net_y_m) -> NDArray:
 def _move_cost(state: _Histories, offered: Candidates, now_s: float) -> NDArray:
     """Return (H, S, n) negative log-likelihoods of candidates about the predicted places.
 
-    A person whom only one view saw lately is less certain along its ray than across.
+    A person recently seen by only one view is less certain along its ray than across.
     """
     gone_s = np.maximum(now_s - state.time_s, 0.0)[..., None]
     ahead = state.place + state.velocity * np.minimum(gone_s, COAST_S)

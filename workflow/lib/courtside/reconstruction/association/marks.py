@@ -1,4 +1,4 @@
-"""Sightings of subjects, found again among the persons; who is who over time by them."""
+"""Match the user's sightings of subjects with the persons found, and assign subjects over time."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -34,14 +34,14 @@ class Mark:
 
     @property
     def bounded(self) -> bool:
-        """Whether it states from when or until when it holds."""
+        """Whether the mark states from when or until when it is valid."""
         return self.from_s is not None or self.to_s is not None
 
 
 def locate(
     sighting: Sighting, found: People, seen: Sequence[Footage], subjects: Sequence[str]
 ) -> Mark:
-    """Return whom a sighting is of; an `InputError` of one line if nobody is there."""
+    """Return the person at a sighting; raise a one-line `InputError` if nobody is there."""
     by_name = {one.camera.name: one for one in seen}
     if sighting.camera not in by_name:
         raise InputError(
@@ -137,12 +137,12 @@ def off_body(xy: NDArray, at_px: tuple[float, float]) -> NDArray:
 
 
 def timelines(found: People, marks: Sequence[Mark], n_subjects: int) -> tuple[NDArray, NDArray]:
-    """Return whose each person is, (K, N), and which person each subject is, (S, N); -1 for none.
+    """Return the subject of each person (K, N), the person of each subject (S, N); -1 for none.
 
-    Several marks of one subject on different persons join these: the subject goes over from one to
-    the next where the two are nearest. Marks of different subjects on one person split it: at
-    `from_s` and `to_s` where stated, else where somebody came near or nobody was placed; an
-    `InputError` where neither was.
+    Several marks of one subject on different persons join these persons: the subject changes from
+    one to the next when the two are nearest. Marks of different subjects on one person split the
+    person: at `from_s` and `to_s` if stated, otherwise where somebody came near or the person has
+    no position. Raises `InputError` if neither happened.
     """
     count, n = found.path.shape[:2]
     owner, used = np.full((count, n), -1), np.full((n_subjects, n), -1)
@@ -165,7 +165,7 @@ def timelines(found: People, marks: Sequence[Mark], n_subjects: int) -> tuple[ND
 
 
 def _leave(owner: NDArray, time_s: NDArray, own: Sequence[Mark]) -> None:
-    """Take away what lies outside the bounds of a person whose every mark has bounds."""
+    """Remove times outside the bounds of a person if every mark of the person has bounds."""
     if own and all(mark.bounded for mark in own):
         owner[~np.logical_or.reduce([_span(time_s, mark) for mark in own])] = -1
 
@@ -199,7 +199,7 @@ def _split_of(found: People, person: int) -> Change:
 
 
 def _bound_s(before: Mark, after: Mark) -> float | None:
-    """Return when one mark gives way to the next as they state it, None if neither does."""
+    """Return the stated time between one mark and the next, None if neither states one."""
     return before.to_s if after.from_s is None else after.from_s
 
 
@@ -237,7 +237,7 @@ def _one_place(found: People, before: Mark, after: Mark) -> None:
 
 
 def _join_of(found: People) -> Change:
-    """Return when a subject goes over from one person to another."""
+    """Return the time at which a subject changes from one person to another."""
 
     def change(before: Mark, after: Mark) -> float:
         if before.person == after.person:

@@ -1,4 +1,4 @@
-"""Which of the persons found is which subject: by where the user saw them, never by a guess."""
+"""Assign the subjects to the persons found, from the user's sightings and never by a guess."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -40,10 +40,9 @@ def name(
 ) -> People:
     """Return the subjects (S,) among the persons found, with the rows that show each one.
 
-    A person is a subject where a sighting says so (`marks`). The last subject without a sighting is
-    the last person without a name, if there is only one who was followed for a tenth of the take
-    and is not beside the `court`. An `InputError` of one line if subjects are not told from others,
-    or a sighting is wrong.
+    Sightings assign persons to subjects (`marks`). If one subject has no sighting, it is the only
+    person without a name who was tracked for a tenth of the take and is not beside the `court`.
+    Raises a one-line `InputError` if a subject is ambiguous or a sighting is wrong.
     """
     if not (found.placed > 0).any():
         raise InputError(nowhere(found.index))
@@ -72,7 +71,7 @@ def others(found: People, named: People) -> list[str]:
 
 
 def lines(named: People) -> list[str]:
-    """Return a log line for each subject: how often placed, how sure, its gaps and doubts."""
+    """Return a log line for each subject: share of frames, probability, gaps and doubts."""
     return [_line(named, at) for at in range(len(named.person_id))]
 
 
@@ -115,7 +114,7 @@ def _beside(path: NDArray, court: Court | None) -> bool:
 def _not_told(
     found: People, seen: Sequence[Footage], open_: list[str], free: list[int], words: Wording
 ) -> str:
-    """Return the line of subjects who are not told from others."""
+    """Return the error line that asks who the ambiguous subjects are."""
     shares = found.shares()
     people = []
     for k in free:
@@ -128,14 +127,14 @@ def _not_told(
     who = "which of them is" if len(free) != 1 else "whether this is"
     page = f"on the page {words.page} (people.csv), or " if words.page else ""
     return (
-        f"{words.take}: expected to be told who is {' and who is '.join(open_)}, found "
+        f"{words.take}: expected a statement who is {' and who is '.join(open_)}, found "
         f"{', '.join(people) or 'nobody'}; say {who} {' or '.join(open_)} {page}by `seen` in "
         f"{words.file}"
     )
 
 
 def _sighting(found: People, seen: Sequence[Footage], person: int) -> str:
-    """Return the entry of `seen` that means a person, for who has no page with pictures."""
+    """Return an entry of `seen` for a person, for takes without pictures."""
     for one in seen:
         rows = found.index[one.camera.name][person]
         xy = one.tracklets.xy[rows, np.arange(len(rows))]

@@ -1,6 +1,6 @@
-"""Whether the people whom cameras see have the size of people: the scale of a calibration.
+"""Check the scale of a calibration from the size of the people whom the cameras see.
 
-A calibration in feet, or of a world without a scale, is right but for its lengths: all views agree.
+In a calibration in feet, or without a scale, only lengths are wrong: all views still agree.
 """
 
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""What the persons of a session have agreed to, and what is left out of its results."""
+"""Consent of the persons of a session, and the results that are left out without it."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
@@ -20,7 +20,7 @@ NEEDS = {"export": "analysis", "pictures": "analysis", "faces": "pictures"}
 
 
 def stated(subject: Mapping[str, Any], virtual: bool) -> tuple[str, ...]:
-    """Return what a person, as the session's file has it, has agreed to: words of `WORDS`.
+    """Return what a person has agreed to according to the session's file: words of `WORDS`.
 
     Empty for somebody who has withdrawn; everything in a virtual session, where nobody can object.
     """
@@ -28,7 +28,7 @@ def stated(subject: Mapping[str, Any], virtual: bool) -> tuple[str, ...]:
 
 
 def withdrawn(subjects: Mapping[str, Any], virtual: bool) -> set[str]:
-    """Return who, of a session's file, has not agreed to be measured."""
+    """Return the persons of a session's file who have not agreed to be measured."""
     return {
         name
         for name, subject in subjects.items()
@@ -46,7 +46,7 @@ def refusing(session: "Session", take: "Take", word: str) -> tuple[str, ...]:
 def withheld(
     takes: Mapping[str, "Take"], subjects: Mapping[str, "Subject"]
 ) -> dict[str, tuple[str, ...]]:
-    """Return the takes that may not be measured, and by whose refusal.
+    """Return the takes that may not be measured, each with the persons who refused.
 
     A recording of several persons cannot be measured without one of them.
     """
@@ -58,7 +58,7 @@ def withheld(
 
 
 def left_out(session: "Session", wanted: Iterable[str] = ("export", "pictures")) -> list[str]:
-    """Say what is not made of a session for want of consent, or of videos.
+    """List what is not made of a session because consent or videos are missing.
 
     One line for each thing left out (analysis, and the words `wanted`) and each set of persons, and
     one for the takes of which there are keypoints alone.

@@ -1,4 +1,4 @@
-"""What is wrong with the entries of models.yaml and detectors.yaml, beyond their schemas."""
+"""Faults in models.yaml and detectors.yaml that their schemas cannot detect."""
 
 from collections.abc import Iterable, Iterator
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The JSON schemas of YAML files, and what they find wrong in words: a line for each fault."""
+"""Check YAML files against JSON schemas, with one line for each fault."""
 
 import difflib
 import functools
@@ -39,7 +39,7 @@ def read(path: StrPath, schema: str) -> Content:
 
 
 def faults(content: Content, schema: str, file: StrPath) -> list[str]:
-    """Return what a schema finds wrong, one line each: `file: key: expected ..., found ...`.
+    """Return the faults that a schema finds, one line each: `file: key: expected ..., found ...`.
 
     `schema` is the name of a file in workflow/schemas/, without `.schema.yaml`.
     """

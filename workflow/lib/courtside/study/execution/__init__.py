@@ -1,4 +1,4 @@
-"""Running the study: logs, whole files, artefacts, digests of code, resources, the last words.
+"""Execution of the study: logs, atomic files, artefacts, digests of code, resources, summary.
 
 files: `atomic`, `atomic_folder`, `write_json`, `read_json`, `sha256`, `seen_from`
 script: `run`: one job
@@ -7,7 +7,7 @@ artefacts: `fetch` and `unpack` pinned files
 registries: `wheel` and `npm_package`, downloaded, not installed
 digest: `code_digest` and `Remembered`, which rerun rules whose code changed
 checksums: `Checksums` of large files, kept between runs
-future_dates, machine_resources: what is checked before any work
-summary: the words at the end of a run
-verdicts: `told`, `read`, `failed`: verdicts on takes, at the end of a run
+future_dates, machine_resources: checks before any work
+summary: the text at the end of a run
+verdicts: `summary`, `read`, `failed`: verdicts on takes, at the end of a run
 """

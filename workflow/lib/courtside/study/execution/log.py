@@ -1,4 +1,4 @@
-"""Where a script's messages go, and how its errors look."""
+"""Log files of scripts, and the form of their errors."""
 
 import logging
 import sys

@@ -1,4 +1,4 @@
-"""What the machine lacks, in one line: room on the disk, permission to write, memory."""
+"""Missing resources, reported in one line: disk space, permission to write, memory."""
 
 import errno
 import os
@@ -48,9 +48,10 @@ def _is_writable(folder: Path) -> bool:
 
 
 def in_words(error: BaseException | None) -> str | None:
-    """Return one line on an error that comes of what the machine lacks, None for any other.
+    """Return one line on an error caused by a missing resource, None for any other error.
 
-    Errors that it followed are looked at too: libraries that tidy up fail on a full disk again.
+    The errors before it are examined too, because libraries that clean up fail on a full disk
+    again.
     """
     while error is not None:
         line = _of_memory(error) or _of_disk(error)

@@ -1,6 +1,6 @@
 """Downloading pinned packages from registries: wheels by pip, npm packages by npm.
 
-Nothing is installed. Which registries are asked is what the user has told pip and npm.
+Nothing is installed. The registries are those that the user has configured for pip and npm.
 """
 
 import os
@@ -37,7 +37,7 @@ def wheel(requirement: str, sha256: str, folder: Path) -> tuple[Path | None, str
 def npm_package(package: str, folder: Path, npm_lock: StrPath) -> tuple[Path | None, str]:
     """Download an npm package `name@version` into a folder; return its path, or None and why not.
 
-    By the npm on the PATH; where there is none, by that of the wheel that `npm_lock` pins, with a
+    It uses the npm on the PATH or, without one, the npm of the wheel that `npm_lock` pins, with a
     checksum for each platform.
     """
     npm, said = _npm(folder, npm_lock)
@@ -66,7 +66,7 @@ def _npm(folder: Path, npm_lock: StrPath) -> tuple[list[str], str]:
         return [own], ""
     downloaded, said = _locked_wheel(npm_lock, folder, [])
     if downloaded is None:
-        return [], f"no npm on the PATH, nor a wheel that holds it: {said}"
+        return [], f"no npm on the PATH, and no wheel that contains it: {said}"
     with zipfile.ZipFile(downloaded) as archive:  # its checksum is the lock's
         names = [name for name in archive.namelist() if name in NODE or NPM.fullmatch(name)]
         for name in names:

@@ -1,4 +1,4 @@
-"""How a script is run by its rule: each argument of `main` by the name that the rule gives it."""
+"""Run a script from its rule: the names in the rule are the argument names of `main`."""
 
 import inspect
 from collections.abc import Callable, Iterator

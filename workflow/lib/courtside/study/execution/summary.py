@@ -1,4 +1,4 @@
-"""The words at the end of a run: what was made and how long it took, or what to do."""
+"""The text at the end of a run: what was made and how long it took, or what to do."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -66,8 +66,8 @@ def failed(
     if len(faults) > N_FAULTS:
         lines.append(f"  and {len(faults) - N_FAULTS} more jobs")
     lines.append(
-        "What is finished is kept: mend the fault and give the same command again. If it says that "
-        "the folder is locked and no other run is going on in it: snakemake --unlock."
+        "Finished files are kept: correct the fault and run the same command again. If it reports "
+        "a locked folder and no other run uses this folder: snakemake --unlock."
     )
     return "\n".join(lines)
 

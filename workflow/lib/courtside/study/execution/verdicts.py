@@ -1,4 +1,4 @@
-"""Verdicts on takes as files: read back, and told at the end of a run."""
+"""Verdicts on takes: read from their files, and summarised at the end of a run."""
 
 import csv
 from collections.abc import Iterable
@@ -49,8 +49,8 @@ def failed(path: StrPath) -> bool:
         return True  # it must be made again
 
 
-def told(files: Iterable[str]) -> tuple[list[str], int]:
-    """Return the verdicts on some takes in lines, and how many takes failed.
+def summary(files: Iterable[str]) -> tuple[list[str], int]:
+    """Return lines that summarise the verdicts on some takes, and the number of failed takes.
 
     A line counts them; one follows for each that is not good, those that failed last.
     """

@@ -1,12 +1,12 @@
-"""Which files and settings belong to a job: input functions of the rules, without Snakemake.
+"""Files and settings of each job: the input functions of the rules, without Snakemake.
 
-job: the study and the wildcards of a job, of which all others ask
+job: the study and the wildcards of a job, used by all others
 recordings: videos, folders of pictures, networks, virtual bodies
 calibration: structure from motion, cameras, clicking
 takes: keypoints, skeletons, measures, exports
 devices: devices of their own, their sources, clocks and figures
-evaluation: truth, and what is compared with it
+evaluation: truth, and the results compared with it
 figures: figures of the calibration study and of the badminton paper
 pages: layers and settings of viewers and videos
-report_page: everything that the report is made of
+report_page: the inputs of the report
 """

@@ -27,12 +27,12 @@ def clocks(job: Job, names: Any) -> dict[str, dict]:
 
 
 def keypoints_2d(job: Job) -> list[str]:
-    """Return the 2D keypoints of each camera of a take, steadied where shake is taken out."""
+    """Return the 2D keypoints of each camera of a take, steadied where shake is removed."""
     return each_camera(job, paths.POSE2D_STEADIED if _steadied(job) else paths.POSE2D)
 
 
 def shake(job: Job) -> list[str]:
-    """Return what is taken out of the keypoints of the job's camera or of all cameras of a take."""
+    """Return the shake to remove from the keypoints of the job's camera, or of all cameras."""
     if not _steadied(job):
         return []
     pattern = paths.SHAKE_TAKEN_OUT
@@ -165,7 +165,7 @@ def judged_files(job: Job) -> list[str]:
 
 
 def failed_before(job: Job) -> float:
-    """Return another number in each run for a take that failed: no run then has nothing to say."""
+    """Return a different number in each run for a failed take, so that it is judged again."""
     return time.time() if verdicts.failed(job.fill(paths.QUALITY)) else 0.0
 
 

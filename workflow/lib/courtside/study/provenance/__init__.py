@@ -2,9 +2,9 @@
 
 run: a run of Snakemake as plain values
 provenance: `record` writes a sidecar for each result
-verification: `report` says which results would differ if made now
+verification: `report` lists the results that are out of date
 comparison: `compare` two trees of results within stated tolerances
-stage_checksums: where two machines' results part
+stage_checksums: the first stage at which the results of two machines differ
 environment: commit, lock, interpreter, packages
 sbom: `of_study`, the bill of materials
 """

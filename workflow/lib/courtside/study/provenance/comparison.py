@@ -32,8 +32,8 @@ TOLERANCES = (
     ("*/evaluation/*", 2e-2, 2e-2, "errors are differences: 0.2 mm, or 2 %"),
     ("*/figures/*", 2e-2, 2e-2, "the numbers drawn, as in evaluations"),
     ("*/kinematics/*", 2e-2, 2e-2, "derivatives of positions"),
-    ("*/strokes/*", 2e-2, 2e-2, "times of strokes rest on derivatives of positions"),
-    ("*/footwork/*", 2e-2, 2e-2, "times of contacts rest on derivatives of positions"),
+    ("*/strokes/*", 2e-2, 2e-2, "times of strokes depend on derivatives of positions"),
+    ("*/footwork/*", 2e-2, 2e-2, "times of contacts depend on derivatives of positions"),
     ("*", 1e-4, 1e-4, "all others: the last digit that tables keep"),
 )
 # Drawings and binary exports whose numbers are in the table beside them.

@@ -13,7 +13,7 @@ GIT_SECONDS = 20  # ASSUME: enough for `git status` on a slow disk; a run does n
 
 
 def found(repository: StrPath) -> dict[str, Any]:
-    """Return what a study of a repository would run with now.
+    """Return the commit, lock, interpreter and packages with which a study would run now.
 
     commit (40 digits, None outside a Git checkout), dirty (True if a file differs from the commit
     or is new), lock_sha256, python, platform, packages (version of each package of the lock that

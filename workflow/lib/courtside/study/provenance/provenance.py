@@ -1,4 +1,4 @@
-"""What each figure, table and exported file rests on: a JSON file (sidecar) for each.
+"""Provenance of each figure, table and exported file: one JSON file (sidecar) for each.
 
 A job is a dictionary: rule, script (its file name or None), code (digest of the script and of the
 library code that it reaches, or None), inputs and outputs (paths), params (without the digest),
@@ -33,8 +33,8 @@ def record(
 ) -> list[str]:
     """Write the sidecars of all final files that are newer than theirs, and the record of the run.
 
-    A file that was not made again keeps its sidecar, which says what the file was made of, not what
-    it would be made of now. Returns the files that got a new sidecar.
+    A file that was not made again keeps its sidecar, which states what the file was made of, not
+    what it would be made of now. Returns the files that got a new sidecar.
 
     `jobs` are all that the study asked for, in the form above; `folder` is that of the records
     (`provenance.json`, `checksums.json`, `provenance/<file>.json`), `root` that of all results,
@@ -106,7 +106,7 @@ def upstream(jobs: Sequence[Job]) -> list[frozenset[int]]:
             found[at] = frozenset({at}).union(*(found[other] for other in before[at]))
     except graphlib.CycleError as error:
         rule = jobs[error.args[1][0]]["rule"]
-        raise ValueError(f"jobs rest on one another in a circle: {rule}") from None
+        raise ValueError(f"jobs depend on one another in a circle: {rule}") from None
     return [found[at] for at in range(len(jobs))]
 
 

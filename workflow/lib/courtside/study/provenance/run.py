@@ -79,7 +79,7 @@ def verdicts(workflow: Any) -> tuple[list[str], int]:
     """Return the verdicts on the takes that a run was asked for, and how many of them failed."""
     made = {Path(name).as_posix() for job in workflow.dag.jobs for name in job.output}
     name = Path(paths.QUALITY).name
-    return verdict_files.told(
+    return verdict_files.summary(
         sorted(path for path in made if path.endswith(f"/{name}") and "/takes/" in path)
     )
 

@@ -1,4 +1,4 @@
-"""A table of checksums by stage, which shows where the results of two machines part."""
+"""A table of checksums by stage; it shows the first stage at which two machines' results differ."""
 
 import csv
 import fnmatch

@@ -1,4 +1,4 @@
-"""Which files of a study would differ if made now, and why, by their sidecars."""
+"""Files of a study that are out of date, and why, according to their sidecars."""
 
 import shlex
 import subprocess
@@ -51,7 +51,7 @@ def _read(path: Path, kinds: dict[str, Any]) -> dict[str, Any]:
 
 
 def present(repository: StrPath) -> dict[str, Any]:
-    """Return what the study would be made with now.
+    """Return the inputs, code and versions with which the study would be made now.
 
     sha256 (callable of a path, None for one that is gone; each file is read once), code (callable
     of the file name of a script, None for one that is gone), and what `environment.found` says.

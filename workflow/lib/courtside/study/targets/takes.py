@@ -85,7 +85,7 @@ def every_figure(study: Study) -> list[str]:
 
 
 def shown(session: Session, take: Take, figures: Iterable[str]) -> list[str]:
-    """Return the figures of a take that show nobody who has not agreed to pictures.
+    """Return the figures of a take that consent to pictures allows.
 
     A take without videos has none with pictures, one that is not on a badminton court none of
     strokes.
@@ -96,7 +96,7 @@ def shown(session: Session, take: Take, figures: Iterable[str]) -> list[str]:
 
 
 def every_shake(study: Study) -> list[str]:
-    """Return the figures of how cameras shook, of the takes in which that is taken out."""
+    """Return the figures of camera shake, for the takes in which it is removed."""
     stems = []
     for session, take in study.takes():
         if take.steady:
@@ -145,7 +145,7 @@ def every_stroke(study: Study) -> list[str]:
 
 
 def every_comparison_of_views(study: Study) -> list[str]:
-    """Return how far sets of cameras are from all of them, in real takes."""
+    """Return the comparisons of sets of cameras with all cameras, in real takes."""
     return [
         path
         for session, take in study.takes()
