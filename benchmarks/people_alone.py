@@ -13,6 +13,7 @@ are views of limb joints that the fit left out. Writes docs/numbers/people_alone
 
 import argparse
 import sys
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -22,14 +23,12 @@ from people_seen import CONFIG, LIMITS, ROOT
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
-from courtside.calibration.people import from_nothing
 from courtside.evaluation.numbers import stated
 from courtside.geometry import camera as camera_models
 from courtside.geometry import similarity
 from courtside.geometry.similarity import Sim3
 from courtside.geometry.triangulation import triangulate_all
 from courtside.reconstruction import self_calibration
-from courtside.records.devices import clocks
 from courtside.records.keypoints import keypoints
 from courtside.records.truth import session_truth, take_truth
 from courtside.study.configuration import yaml_files
@@ -42,22 +41,16 @@ EVERY = 12  # of the true frames: neighbouring ones say the same
 QUANTILE_90 = 6.251  # of chi-squared with 3 degrees of freedom
 
 
-def filmed(results, session, name, take, names, cameras=None):
-    """Return a take as `self_calibration` needs it; clocks by cameras where they are known."""
-    folder = results / session / "takes" / name / "pose2d" / MODEL
-    views = [keypoints.read_2d(folder / f"{camera}.npz") for camera in names]
-    if take.get("synchronised"):
-        return name, views, clocks.one_clock(names)
-    known = cameras and [cameras[camera] for camera in names]
-    return name, views, camera_sync.synchronise(views, known, **CONFIG["synchronise_cameras"])
-
-
-def calibrated(names, timed, heights_m):
-    """Return the cameras `names` from people; `timed` gives takes, by cameras or without."""
-    first = self_calibration.guess(names, {}, timed(None), heights_m)
-    seen = self_calibration.seen(first, timed({one.name: one for one in first.cameras}))
-    of = [take for take, _ in first.tracks]
-    return from_nothing.adjust(first.cameras, {}, seen, of, heights_m, LIMITS)
+def timed(results, session, takes, names, cameras):
+    """Return takes as `self_calibration` needs them; clocks by cameras where they are known."""
+    found = []
+    for name, take in takes.items():
+        folder = results / session / "takes" / name / "pose2d" / MODEL
+        views = [keypoints.read_2d(folder / f"{camera}.npz") for camera in names]
+        known = {"synchronised": take.get("synchronised", False), "stated": {}}
+        clocks = camera_sync.of_take(views, cameras, **known, **CONFIG["synchronise_cameras"])
+        found.append((name, views, clocks))
+    return found
 
 
 def errors(found, real, xyz):
@@ -97,10 +90,8 @@ def rows(results, name, takes, names):
     xyz = np.concatenate([one.xyz[:, ::EVERY, :12].reshape(-1, 3) for one in true])
     seconds = sum(take["virtual"]["seconds"] for take in told.values())
 
-    def timed(known):
-        return [filmed(results, name, *one, names, known) for one in told.items()]
-
-    found = calibrated(names, timed, heights_m)
+    of_takes = partial(timed, results, name, told, names)
+    found = self_calibration.calibrate(names, {}, of_takes, heights_m, LIMITS)
     joint, shape, scale, inside = errors(found, real, xyz)
     accepted = found.score.accepted_percent()
     print(names, joint, shape, scale, inside, accepted, flush=True)

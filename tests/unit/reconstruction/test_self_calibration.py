@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.from_nothing import Guess
 from courtside.reconstruction import self_calibration
 from courtside.records.devices.clocks import Clock
@@ -72,6 +73,30 @@ def test_cameras_are_guessed_from_a_take():
     assert len(found.tracks) == 2
     with pytest.raises(InputError, match="camera c2: expected a take that it films, found none"):
         self_calibration.guess(NAMES, lenses, [filmed()], [[1.6, 1.8]])
+
+
+def test_cameras_are_calibrated_by_a_take_whose_clocks_are_sure():
+    xy = tracks_made.take(CAMERAS, WALK).xy
+    views = [
+        keypoints_made.view(camera, skeleton.JOINTS, TIME_S, own)
+        for camera, own in zip(CAMERAS, xy, strict=True)
+    ]
+    lenses = {camera.name: camera for camera in CAMERAS}
+    unsure = dict.fromkeys(NAMES, Clock()) | {"c1": Clock(status="ambiguous")}
+
+    def calibrated(known):
+        clocks = [dict.fromkeys(NAMES, Clock()), known]
+        return self_calibration.calibrate(
+            NAMES,
+            lenses,
+            lambda cameras: [("walk", views, clocks[bool(cameras)])],
+            [[1.6, 1.8]],
+            Limits(score=0.05, limit=0.05, fade=0.067),
+        )
+
+    assert min(calibrated(dict.fromkeys(NAMES, Clock())).score.accepted_percent()) > 95
+    with pytest.raises(InputError, match="take walk: camera c1: expected a clock that the rec"):
+        calibrated(unsure)
 
 
 def test_a_camera_that_filmed_in_two_sizes_is_named_with_the_take():

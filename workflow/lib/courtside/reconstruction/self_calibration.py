@@ -1,16 +1,18 @@
 """Takes as the calibration from people alone needs them: tracks of joints at common times."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration.people import from_nothing
+from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.relative_poses import Take
 from courtside.calibration.people.views import Seen, joined
 from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
 from courtside.reconstruction import person_height, resampling
+from courtside.records.devices import clocks as camera_clocks
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints2D
@@ -50,6 +52,27 @@ def seen(first: from_nothing.Guess, takes: Sequence[Filmed]) -> Seen:
         track = np.zeros(len(time_s), dtype=int)
         parts.append(Seen(xy, score, height_px[:, 0], track, time_s))
     return joined(parts)
+
+
+def calibrate(
+    names: Sequence[str],
+    lenses: Mapping[str, Camera],
+    timed: Callable[[Mapping[str, Camera] | None], Sequence[Filmed]],
+    heights_m: Sequence[Sequence[float | None]],
+    limits: Limits,
+) -> from_nothing.Found:
+    """Return cameras from people alone; arguments are as for `from_nothing.guess` and `adjust`.
+
+    `timed` returns the takes with clocks found by cameras, by name, or without any. Raises
+    `InputError` where people do not tell, or clocks are not sure.
+    """
+    first = guess(names, lenses, timed(None), heights_m)
+    takes = timed({camera.name: camera for camera in first.cameras})
+    for name, _, known in takes:
+        if fault := camera_clocks.fault_line(f"take {name}", known):
+            raise InputError(fault)
+    of = [take for take, _ in first.tracks]
+    return from_nothing.adjust(first.cameras, lenses, seen(first, takes), of, heights_m, limits)
 
 
 def guess(
