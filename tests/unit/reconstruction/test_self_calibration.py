@@ -48,7 +48,7 @@ def test_tracks_are_at_common_times_without_unsure_joints():
 
 
 def test_persons_are_seen_through_their_tracks():
-    first = Guess(CAMERAS, [(0, (0, 1, -1)), (0, (1, 0, -1))])
+    first = Guess(CAMERAS, [(0, ((0,), (1,), ())), (0, ((1,), (0,), ()))])
     seen = self_calibration.seen(first, [filmed()])
     assert seen.xy.shape == (3, 80, 12, 2)
     assert np.bincount(seen.track).tolist() == [40, 40]

@@ -68,6 +68,13 @@ def test_a_lens_of_a_board_is_not_guessed():
     assert [camera.K[0, 0] for camera in start.cameras] == [1400.0] * 3
 
 
+def test_a_person_whom_one_camera_does_not_see_is_not_given_up():
+    take = tracks_made.take(TRUE, WALK)
+    take.xy[2][0] = np.nan
+    start = guessed(take, lenses=LENSES)
+    assert sorted(start.tracks) == [(0, ((0,), (1,), ())), (0, ((1,), (0,), (1,)))]
+
+
 def test_a_person_who_stands_still_tells_nothing():
     take = tracks_made.take(TRUE, tracks_made.persons(still=True)[:1])
     with pytest.raises(InputError, match="expected somebody who moves by"):

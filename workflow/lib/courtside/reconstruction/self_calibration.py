@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration.people import from_nothing
+from courtside.calibration.people import from_nothing, relative_poses
 from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.relative_poses import Take
 from courtside.calibration.people.views import Seen, joined
@@ -45,9 +45,9 @@ def seen(first: from_nothing.Guess, takes: Sequence[Filmed]) -> Seen:
         time_s, by_camera = resampled[take]
         shape = (len(cameras), len(time_s), len(skeleton.JOINTS))
         xy, score = np.full((*shape, 2), np.nan), np.full(shape, np.nan)
-        for at, (row, view) in enumerate(zip(rows, by_camera, strict=True)):
-            if row >= 0 and view is not None:
-                xy[at], score[at] = view[0][row], view[1][row]
+        for at, (own, view) in enumerate(zip(rows, by_camera, strict=True)):
+            if view is not None:
+                xy[at], score[at] = (relative_poses.of_rows(values, own) for values in view)
         height_px = person_height.in_pictures(cameras, xy[:, None], score[:, None], skeleton.JOINTS)
         track = np.zeros(len(time_s), dtype=int)
         parts.append(Seen(xy, score, height_px[:, 0], track, time_s))

@@ -26,6 +26,7 @@ from courtside.calibration.people.relative_poses import Take, Track
 from courtside.calibration.people.views import Seen
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance
+from courtside.geometry import boxes
 from courtside.geometry.camera import Camera
 from courtside.geometry.triangulation import triangulate_all
 from courtside.study.errors import InputError
@@ -40,8 +41,7 @@ GUESSED = {"focal_percent": 20.0, "principal_point_percent": 1.0, "k1": 0.05}  #
 KNOWN = {"focal_percent": 0.5, "principal_point_percent": 0.3, "k1": 0.01}  # of a board's lens
 PASSES = 2  # ASSUME: adjustments, each about the last; the next hardly moves a joint
 MOST_ROWS = 480  # frames of all persons together; more take longer and say the same
-MOST_POINTS = 400  # joints that two guesses are compared by
-MOST_FRAMES = 200  # of one track that its length is measured in
+MOST_FRAMES = 200  # of one take that guesses are compared by
 MOST_PLACES = 200  # joints that the world of the covariance rests on
 STILL = 0.15  # ASSUME: ways shorter than this share of a person's extent show nothing
 LEAST_ACCEPTED = 50.0  # ASSUME: percent of a camera's views; a camera with fewer is not found
@@ -78,7 +78,7 @@ def guess(
     """
     _check_ways(takes)
     pairs = relative_poses.pair(_with_lenses(names, sizes, lenses, ANY_FOCAL), takes)
-    tried: list[tuple[int, float, float, list[Camera], list[Track]]] = []
+    tried: list[tuple[float, list[Camera], list[Track]]] = []
     fault: InputError | None = None
     for share in FOCAL_SHARES if set(names) - set(lenses) else (ANY_FOCAL,):
         try:
@@ -86,12 +86,10 @@ def guess(
         except InputError as error:
             fault = error
             continue
-        for posed, tracks in ways:
-            unseen = sum(row < 0 for _, rows in tracks for row in rows)
-            tried.append((unseen, _disagreement(posed, takes, tracks), share, posed, tracks))
+        tried += [(_explained(posed, takes, tracks), posed, tracks) for posed, tracks in ways]
     if not tried:
         raise fault or InputError("people: expected cameras, found none")
-    *_, cameras, tracks = min(tried, key=lambda one: one[:3])
+    _, cameras, tracks = max(tried, key=lambda one: one[0])
     joints = [_placed(cameras, takes, track) for track in tracks]
     scale, _ = world_frame.metres(_lengths(takes, tracks, joints), heights_m)
     cameras = [_scaled(camera, scale) for camera in cameras]
@@ -137,26 +135,39 @@ def _scaled(camera: Camera, factor: float) -> Camera:
 
 def track_xy(takes: Sequence[Take], track: Track) -> NDArray:
     """Return the joints (C, T, J, 2) px of a track, NaN where a camera has none."""
-    take, rows = takes[track[0]], track[1]
-    none = np.full(take.xy[0].shape[1:], np.nan)
-    return np.stack([none if row < 0 else xy[row] for xy, row in zip(take.xy, rows, strict=True)])
+    each = zip(takes[track[0]].xy, track[1], strict=True)
+    return np.stack([relative_poses.of_rows(xy, rows) for xy, rows in each])
+
+
+def _some(takes: Sequence[Take], track: Track) -> NDArray:
+    """Return the joints (C, T, J, 2) px of a track in some of its take's frames."""
+    xy = track_xy(takes, track)
+    return xy[:, :: max(1, xy.shape[1] // MOST_FRAMES)]
 
 
 def _placed(cameras: Sequence[Camera], takes: Sequence[Take], track: Track) -> NDArray:
-    """Return the joints (T, J, 3) of a track in some of its frames."""
-    xy = track_xy(takes, track)
-    xy = xy[:, :: max(1, xy.shape[1] // MOST_FRAMES)]
+    """Return the joints (T, J, 3) of a track in some of its take's frames."""
+    xy = _some(takes, track)
     return triangulate_all(cameras, xy.reshape(len(xy), -1, 2)).reshape(*xy.shape[1:3], 3)
 
 
-def _disagreement(cameras, takes, tracks: Sequence[Track]) -> float:
-    """Return how far joints disagree, px, of all tracks together."""
-    every = np.concatenate(
-        [track_xy(takes, track).reshape(len(cameras), -1, 2) for track in tracks], axis=1
-    )
-    seen = np.flatnonzero(np.isfinite(every[..., 0]).sum(axis=0) >= 2)
-    at = seen[np.linspace(0, len(seen) - 1, min(len(seen), MOST_POINTS)).astype(int)]
-    return float(residuals.typical_px(residuals.Rays(every[:, at]).residuals(cameras)))
+def _explained(cameras, takes: Sequence[Take], tracks: Sequence[Track]) -> float:
+    """Return how much of what cameras see the tracks explain, in degrees of freedom.
+
+    A joint in n views has 2 n - 3, and counts less as its views disagree (the loss of Geman and
+    McClure). More persons, more cameras that see them and smaller errors make it larger.
+    """
+    total = 0.0
+    for track in tracks:
+        xy = _some(takes, track)
+        flat = xy.reshape(len(cameras), -1, 2)
+        off = np.linalg.norm(residuals.Rays(flat).residuals(cameras), axis=2)
+        off /= relative_poses.AGREE * np.maximum(boxes.usual_side(xy), 1.0)[:, None]
+        views = np.isfinite(off).sum(axis=0)
+        square = np.nansum(off**2, axis=0)[views >= 2] / views[views >= 2]
+        per_frame = takes[track[0]].xy[0].shape[1] / xy.shape[1]
+        total += per_frame * float(((2 * views[views >= 2] - 3) / (1 + square)).sum())
+    return total
 
 
 def _lengths(takes, tracks: Sequence[Track], joints: Sequence[NDArray]) -> list[list[float]]:
