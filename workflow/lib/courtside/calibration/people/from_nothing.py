@@ -17,6 +17,7 @@ from courtside.calibration.people import (
     held_out,
     prior,
     relative_poses,
+    unit,
     views,
     world_frame,
 )
@@ -91,7 +92,8 @@ def guess(
         raise fault or InputError("people: expected cameras, found none")
     _, cameras, tracks = max(tried, key=lambda one: one[0])
     joints = [_placed(cameras, takes, track) for track in tracks]
-    scale, _ = world_frame.metres(_lengths(takes, tracks, joints), heights_m)
+    bodies = [_body(take, xyz) for (take, _), xyz in zip(tracks, joints, strict=True)]
+    scale = unit.by_heights(bodies, heights_m).metres
     cameras = [_scaled(camera, scale) for camera in cameras]
     world = world_frame.floor(scale * np.concatenate(joints), cameras)
     return Guess([world.camera(camera) for camera in cameras], tracks)
@@ -170,13 +172,12 @@ def _explained(cameras, takes: Sequence[Take], tracks: Sequence[Track]) -> float
     return total
 
 
-def _lengths(takes, tracks: Sequence[Track], joints: Sequence[NDArray]) -> list[list[float]]:
-    """Return by take the lengths of persons, those seen most first."""
-    found: list[list[tuple[int, float]]] = [[] for _ in takes]
-    for (take, _), xyz in zip(tracks, joints, strict=True):
-        seen = int(np.isfinite(xyz).all(axis=-1).sum())
-        found[take].append((-seen, world_frame.length(xyz)))
-    return [[own for _, own in sorted(one)] for one in found]
+def _body(take: int, xyz: NDArray, time_s: NDArray | None = None) -> unit.Body:
+    """Return the body of joints (T, J, 3) at times (T,); without times, by frame."""
+    seen = np.flatnonzero(np.isfinite(xyz).all(axis=-1).any(axis=-1))
+    times = np.arange(len(xyz)) if time_s is None else time_s
+    first, last = (float(times[at]) for at in seen[[0, -1]]) if len(seen) else (0.0, 0.0)
+    return unit.Body(take, unit.length(xyz), len(seen), first, last)
 
 
 def adjust(
@@ -194,11 +195,11 @@ def adjust(
     """
     seen = seen.thinned(MOST_ROWS)
     views.check(start, seen, limits.score)
-    cameras, sigma = list(start), 0.0
+    cameras = list(start)
     for _ in range(PASSES):
         fitted = _refined(cameras, lenses, seen, limits)
-        factor, sigma = _metres(fitted.cameras, seen, takes_of, heights_m, limits)
-        cameras = [_scaled(camera, factor) for camera in fitted.cameras]
+        scale = _unit(fitted.cameras, seen, takes_of, heights_m, limits)
+        cameras = [_scaled(camera, scale.metres) for camera in fitted.cameras]
     joints = _joints(cameras, seen, limits)
     world = world_frame.floor(joints, cameras)
     score = held_out.score(
@@ -209,9 +210,9 @@ def adjust(
     places = world.points(joints).reshape(-1, 3)
     places = places[np.isfinite(places).all(axis=1)]
     places = places[np.linspace(0, len(places) - 1, MOST_PLACES).astype(int)]
-    covariance = world_frame.of_shape(cameras, fitted.covariance, places, sigma)
+    covariance = world_frame.of_shape(cameras, fitted.covariance, places, scale.sigma)
     named = camera_covariance.of_network([camera.name for camera in cameras], covariance)
-    return Found(cameras, named, score, sigma)
+    return Found(cameras, named, score, scale.sigma)
 
 
 def said(found: Found, takes: Sequence[str]) -> dict[str, Any]:
@@ -250,11 +251,13 @@ def _joints(cameras, seen: Seen, limits: Limits) -> NDArray:
     return found.xyz.reshape(len(seen.track), -1, 3)
 
 
-def _metres(cameras, seen: Seen, takes_of, heights_m, limits) -> tuple[float, float]:
-    joints, tracks = _joints(cameras, seen, limits), np.unique(seen.track)
-    each = [(takes_of[track], ()) for track in tracks]
-    found = _lengths(heights_m, each, [joints[seen.track == track] for track in tracks])
-    return world_frame.metres(found, heights_m)
+def _unit(cameras, seen: Seen, takes_of, heights_m, limits) -> unit.Unit:
+    joints = _joints(cameras, seen, limits)
+    bodies = [
+        _body(takes_of[track], joints[seen.track == track], seen.time_s[seen.track == track])
+        for track in np.unique(seen.track)
+    ]
+    return unit.by_heights(bodies, heights_m)
 
 
 def check(cameras: Sequence[Camera], score: Score) -> None:

@@ -363,7 +363,7 @@ def _grown(
     At no time is one track that of two persons, nor has one person two.
     """
     others = {other: pose for other, pose in poses.items() if other != camera}
-    tried, taken = list[tuple[int, int, int, NDArray]](), dict[tuple[int, int], Any]()
+    tried, taken = list[tuple[int, int, int, Any]](), dict[tuple[int, int], Any]()
     shown = [np.zeros(takes[t].xy[camera].shape[1], dtype=bool) for t, _ in persons]
     for number, (t, rows) in enumerate(persons):
         for _, row in (one for one in rows if one[0] == camera):
