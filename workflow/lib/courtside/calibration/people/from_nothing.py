@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from courtside.calibration.file_check import residuals
 from courtside.calibration.people import (
     adjustment,
+    doubts,
     held_out,
     prior,
     relative_poses,
@@ -64,6 +65,7 @@ class Found:
     covariance: CameraCovariance
     score: Score  # by blocks of time that the fit did not see
     scale_sigma: float  # share: of all lengths
+    doubts: list[str]  # one line each
 
 
 def guess(
@@ -207,12 +209,14 @@ def adjust(
     )
     check(cameras, score)
     cameras = [world.camera(camera) for camera in cameras]
-    places = world.points(joints).reshape(-1, 3)
+    joints = world.points(joints)
+    doubtful = [*scale.doubts, *doubts.lines(cameras, seen, joints, score, limits)]
+    places = joints.reshape(-1, 3)
     places = places[np.isfinite(places).all(axis=1)]
     places = places[np.linspace(0, len(places) - 1, MOST_PLACES).astype(int)]
     covariance = world_frame.of_shape(cameras, fitted.covariance, places, scale.sigma)
     named = camera_covariance.of_network([camera.name for camera in cameras], covariance)
-    return Found(cameras, named, score, scale.sigma)
+    return Found(cameras, named, score, scale.sigma, doubtful)
 
 
 def said(found: Found, takes: Sequence[str]) -> dict[str, Any]:
@@ -227,7 +231,7 @@ def said(found: Found, takes: Sequence[str]) -> dict[str, Any]:
         "held_out_joints_permille": round(share, 3),
         "accepted_percent": {name: round(float(value), 1) for name, value in accepted.items()},
         "scale_sigma_percent": round(100 * found.scale_sigma, 2),
-        "warnings": [],
+        "warnings": found.doubts,
         "line": f"people alone: joints that the fit left out disagree by {share:.1f} thousandths "
         f"of the height; {accepted[lowest]:.0f} % of views or more are accepted ({lowest}); "
         f"lengths are known to {100 * found.scale_sigma:.1f} % by stated heights",
