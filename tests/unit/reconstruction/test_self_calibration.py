@@ -75,28 +75,42 @@ def test_cameras_are_guessed_from_a_take():
         self_calibration.guess(NAMES, lenses, [filmed()], [[1.6, 1.8]])
 
 
-def test_cameras_are_calibrated_by_a_take_whose_clocks_are_sure():
+@pytest.fixture
+def calibrated():
+    """Return a function: calibrate by one take, its clocks from one time to the next."""
     xy = tracks_made.take(CAMERAS, WALK).xy
     views = [
         keypoints_made.view(camera, skeleton.JOINTS, TIME_S, own)
         for camera, own in zip(CAMERAS, xy, strict=True)
     ]
-    lenses = {camera.name: camera for camera in CAMERAS}
-    unsure = dict.fromkeys(NAMES, Clock()) | {"c1": Clock(status="ambiguous")}
+    lenses, limits = {one.name: one for one in CAMERAS}, Limits(score=0.05, limit=0.05, fade=0.067)
 
-    def calibrated(known):
-        clocks = [dict.fromkeys(NAMES, Clock()), known]
+    def calibrate(*clocks):
+        """Clocks are those of camera c1: without cameras, by those guessed, and so on."""
+        each = iter(clocks)
         return self_calibration.calibrate(
             NAMES,
             lenses,
-            lambda cameras: [("walk", views, clocks[bool(cameras)])],
+            lambda _: [("walk", views, dict.fromkeys(NAMES, Clock()) | {"c1": next(each)})],
             [[1.6, 1.8]],
-            Limits(score=0.05, limit=0.05, fade=0.067),
+            limits,
         )
 
-    assert min(calibrated(dict.fromkeys(NAMES, Clock())).score.accepted_percent()) > 95
+    return calibrate
+
+
+def test_clocks_that_are_not_sure_are_refused(calibrated):
     with pytest.raises(InputError, match="take walk: camera c1: expected a clock that the rec"):
-        calibrated(unsure)
+        calibrated(Clock(), Clock(status="ambiguous"))
+
+
+def test_cameras_are_adjusted_again_if_they_change_clocks(calibrated):
+    late, right = Clock(0.05), Clock(0.0004)
+    once = calibrated(late, right, right)
+    twice = calibrated(late, late, right)
+    assert min(twice.score.accepted_percent()) > 95
+    assert twice.score.typical() == pytest.approx(once.score.typical(), rel=0.1)
+    assert once.score.typical() < 0.8 * calibrated(late, late, late).score.typical()
 
 
 def test_a_camera_that_filmed_in_two_sizes_is_named_with_the_take():

@@ -1,6 +1,7 @@
 """Takes as the calibration from people alone needs them: tracks of joints at common times."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,8 @@ from courtside.study.errors import InputError
 
 # A take's name, the keypoints of each camera that films it, and their clocks by camera.
 Filmed = tuple[str, Sequence[Keypoints2D], Mapping[str, Clock]]
+ROUNDS = 2  # of clocks and cameras: clocks by rough cameras are a few milliseconds off
+SAME_S = 1e-3  # clocks closer together change cameras by nothing: who walks moves by a millimetre
 MIN_SCORE = 0.5  # ASSUME: of joints that cameras are first guessed by
 
 
@@ -63,16 +66,33 @@ def calibrate(
 ) -> from_nothing.Found:
     """Return cameras from people alone; arguments are as for `from_nothing.guess` and `adjust`.
 
-    `timed` returns the takes with clocks found by cameras, by name, or without any. Raises
-    `InputError` where people do not tell, or clocks are not sure.
+    `timed` returns the takes with clocks found by cameras, by name, or without any. Cameras that
+    change clocks are adjusted again with these. Raises `InputError` where people do not tell, or
+    clocks are not sure.
     """
-    first = guess(names, lenses, timed(None), heights_m)
-    takes = timed({camera.name: camera for camera in first.cameras})
-    for name, _, known in takes:
-        if fault := camera_clocks.fault_line(f"take {name}", known):
-            raise InputError(fault)
+    first, last = guess(names, lenses, timed(None), heights_m), list[Filmed]()
     of = [take for take, _ in first.tracks]
-    return from_nothing.adjust(first.cameras, lenses, seen(first, takes), of, heights_m, limits)
+    for _ in range(ROUNDS):
+        takes = timed({camera.name: camera for camera in first.cameras})
+        for name, _, known in takes:
+            if fault := camera_clocks.fault_line(f"take {name}", known):
+                raise InputError(fault)
+        if last and _apart_s(last, takes) < SAME_S:
+            break
+        found = from_nothing.adjust(
+            first.cameras, lenses, seen(first, takes), of, heights_m, limits
+        )
+        first, last = replace(first, cameras=found.cameras), list(takes)
+    return found
+
+
+def _apart_s(before: Sequence[Filmed], after: Sequence[Filmed]) -> float:
+    """Return by how much clocks of takes differ at most, s."""
+    return max(
+        float(np.abs(old[name].from_reference(ends) - new[name].from_reference(ends)).max())
+        for (_, views, old), (_, _, new) in zip(before, after, strict=True)
+        for name, ends in ((view.camera, view.time_s[[0, -1]]) for view in views)
+    )
 
 
 def guess(
