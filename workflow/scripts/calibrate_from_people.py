@@ -1,10 +1,11 @@
 """Calibrate fixed cameras from the people that they film: keypoints, heights -> cameras."""
 
-from courtside.calibration.people import from_nothing
+from courtside.calibration.people import from_nothing, unit
 from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.geometry import camera as camera_models
 from courtside.reconstruction import self_calibration
+from courtside.records.cameras import clicks
 from courtside.records.keypoints import keypoints
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json
@@ -12,25 +13,33 @@ from courtside.study.execution.script import run
 from courtside.synchronisation.cameras import of_take as clocks_of
 
 
-def main(paths, cameras_toml, covariance_npz, quality_json, *, names, takes, clock_step, views):
+def main(
+    paths, cameras_toml, covariance_npz, quality_json, *, names, takes, known_lengths, **steps
+):
     lenses = {
         lens.name: lens for path in paths.lens_tomls for lens in camera_models.read_toml(path)
     }
     filmed = [[keypoints.read_2d(path) for path in take["pose2d"]] for take in takes]
-    heights_m = [take["heights_m"] for take in takes]
+    heights_m, known = [take["heights_m"] for take in takes], []
+    if known_lengths:
+        weights = {key: steps["clicks"][key] for key in ("click_sigma_px", "click_bias_px")}
+        points, xy = clicks.read_static(paths.static, names)
+        known = unit.of_clicks(known_lengths, points, xy, **weights)
 
     def timed(cameras):
         """Return of each take its name, keypoints and clocks, by cameras where they are known."""
         return [
-            (take["take"], each, clocks_of(each, cameras, **take["timing"], **clock_step))
+            (take["take"], each, clocks_of(each, cameras, **take["timing"], **steps["clock_step"]))
             for take, each in zip(takes, filmed, strict=True)
         ]
 
-    found = self_calibration.calibrate(names, lenses, timed, heights_m, Limits.of(views))
+    limits = Limits.of(steps["views"])
+    found = self_calibration.calibrate(names, lenses, timed, heights_m, limits, known)
     camera_models.write_toml(cameras_toml, found.cameras, source="people alone")
     camera_covariance.write(covariance_npz, found.covariance)
     report = from_nothing.said(found, [take["take"] for take in takes])
-    log.logger.info("%s", report["line"])
+    for line in (report["line"], *report["warnings"]):
+        log.logger.info("%s", line)
     write_json(quality_json, report)
 
 

@@ -30,6 +30,17 @@ def test_the_floor_is_found_under_feet_from_any_axes():
     assert (x[1] - x[0])[0] > 0
 
 
+def test_points_on_the_floor_tell_its_height_and_three_of_them_its_tilt():
+    elsewhere = [ELSEWHERE.camera(camera) for camera in TRUE]
+    joints = ELSEWHERE.points(np.add(np.concatenate(WALK), [0, 0, 0.1]))  # feet never stand
+    corners = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
+    for points, off_m in ((corners, 1e-9), (corners[:2], 0.03)):
+        floor = ELSEWHERE.points(points)
+        world = world_frame.floor(joints, elsewhere, floor)
+        assert np.abs(world.points(floor)[:, 2]).max() < off_m
+        assert world.points(elsewhere[0].centre_in_world)[2] == pytest.approx(2.0, abs=0.1)
+
+
 def test_the_covariance_is_of_the_shape_and_of_the_scale():
     known = prior.stated(
         TRUE, rotation_deg=5, position_m=1, focal_percent=1, principal_point_percent=1, k1=0.01

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from courtside.calibration.people import from_nothing, relative_poses
 from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.relative_poses import Take
+from courtside.calibration.people.unit import KnownLength
 from courtside.calibration.people.views import Seen, joined
 from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
@@ -63,6 +64,7 @@ def calibrate(
     timed: Callable[[Mapping[str, Camera] | None], Sequence[Filmed]],
     heights_m: Sequence[Sequence[float | None]],
     limits: Limits,
+    known: Sequence[KnownLength] = (),
 ) -> from_nothing.Found:
     """Return cameras from people alone; arguments are as for `from_nothing.guess` and `adjust`.
 
@@ -70,12 +72,12 @@ def calibrate(
     change clocks are adjusted again with these. Raises `InputError` where people do not tell, or
     clocks are not sure.
     """
-    first, last = guess(names, lenses, timed(None), heights_m), list[Filmed]()
+    first, last = guess(names, lenses, timed(None), heights_m, known), list[Filmed]()
     of = [take for take, _ in first.tracks]
     for _ in range(ROUNDS):
         takes = timed({camera.name: camera for camera in first.cameras})
-        for name, _, known in takes:
-            if fault := camera_clocks.fault_line(f"take {name}", known):
+        for name, _, clocks in takes:
+            if fault := camera_clocks.fault_line(f"take {name}", clocks):
                 raise InputError(fault)
         if last and _apart_s(last, takes) < SAME_S:
             break
@@ -100,6 +102,7 @@ def guess(
     lenses: Mapping[str, Camera],
     takes: Sequence[Filmed],
     heights_m: Sequence[Sequence[float | None]],
+    known: Sequence[KnownLength] = (),
 ) -> from_nothing.Guess:
     """Place cameras roughly; the arguments are as for `from_nothing.guess`."""
     sizes = _sizes(takes)
@@ -111,7 +114,7 @@ def guess(
     for name, lens in lenses.items():
         camera_models.check_size(lens, sizes[name], f"keypoints of camera {name}")
     found = [tracks(name, views, clocks, names) for name, views, clocks in takes]
-    return from_nothing.guess(names, sizes, lenses, found, heights_m)
+    return from_nothing.guess(names, sizes, lenses, found, heights_m, known)
 
 
 def _sizes(takes: Sequence[Filmed]) -> dict[str, tuple[int, int]]:

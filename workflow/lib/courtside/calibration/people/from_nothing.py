@@ -64,7 +64,7 @@ class Found:
     cameras: list[Camera]
     covariance: CameraCovariance
     score: Score  # by blocks of time that the fit did not see
-    scale_sigma: float  # share: of all lengths
+    scale: unit.Unit  # what tells all lengths, and how well
     doubts: list[str]  # one line each
 
 
@@ -74,6 +74,7 @@ def guess(
     lenses: Mapping[str, Camera],
     takes: Sequence[Take],
     heights_m: Sequence[Sequence[float | None]],
+    known: Sequence[unit.KnownLength] = (),
 ) -> Guess:
     """Place cameras by tracks whose persons are not known, but for the heights in each take.
 
@@ -95,7 +96,7 @@ def guess(
     _, cameras, tracks = max(tried, key=lambda one: one[0])
     joints = [_placed(cameras, takes, track) for track in tracks]
     bodies = [_body(take, xyz) for (take, _), xyz in zip(tracks, joints, strict=True)]
-    scale = unit.by_heights(bodies, heights_m).metres
+    scale = unit.find(cameras, bodies, heights_m, known).metres
     cameras = [_scaled(camera, scale) for camera in cameras]
     world = world_frame.floor(scale * np.concatenate(joints), cameras)
     return Guess([world.camera(camera) for camera in cameras], tracks)
@@ -189,6 +190,7 @@ def adjust(
     takes_of: Sequence[int],
     heights_m: Sequence[Sequence[float | None]],
     limits: Limits,
+    known: Sequence[unit.KnownLength] = (),
 ) -> Found:
     """Adjust cameras with the people that they see, from a guess in metres.
 
@@ -200,10 +202,14 @@ def adjust(
     cameras = list(start)
     for _ in range(PASSES):
         fitted = _refined(cameras, lenses, seen, limits)
-        scale = _unit(fitted.cameras, seen, takes_of, heights_m, limits)
+        joints = _joints(fitted.cameras, seen, limits)
+        shape = world_frame.of_shape(fitted.cameras, fitted.covariance, _places(joints), 0.0)
+        bodies = _bodies(joints, seen, takes_of)
+        scale = unit.find(fitted.cameras, bodies, heights_m, known, shape)
         cameras = [_scaled(camera, scale.metres) for camera in fitted.cameras]
     joints = _joints(cameras, seen, limits)
-    world = world_frame.floor(joints, cameras)
+    on_floor = [triangulate_all(cameras, one.xy) for one in known if one.on_floor]
+    world = world_frame.floor(joints, cameras, np.array(on_floor).reshape(-1, 3))
     score = held_out.score(
         lambda part, _: _refined(cameras, lenses, part, limits).cameras, seen, Points(), limits
     )
@@ -211,12 +217,9 @@ def adjust(
     cameras = [world.camera(camera) for camera in cameras]
     joints = world.points(joints)
     doubtful = [*scale.doubts, *doubts.lines(cameras, seen, joints, score, limits)]
-    places = joints.reshape(-1, 3)
-    places = places[np.isfinite(places).all(axis=1)]
-    places = places[np.linspace(0, len(places) - 1, MOST_PLACES).astype(int)]
-    covariance = world_frame.of_shape(cameras, fitted.covariance, places, scale.sigma)
+    covariance = world_frame.of_shape(cameras, fitted.covariance, _places(joints), scale.sigma)
     named = camera_covariance.of_network([camera.name for camera in cameras], covariance)
-    return Found(cameras, named, score, scale.sigma, doubtful)
+    return Found(cameras, named, score, scale, doubtful)
 
 
 def said(found: Found, takes: Sequence[str]) -> dict[str, Any]:
@@ -230,11 +233,11 @@ def said(found: Found, takes: Sequence[str]) -> dict[str, Any]:
         "takes": list(takes),
         "held_out_joints_permille": round(share, 3),
         "accepted_percent": {name: round(float(value), 1) for name, value in accepted.items()},
-        "scale_sigma_percent": round(100 * found.scale_sigma, 2),
+        "scale_sigma_percent": round(100 * found.scale.sigma, 2),
         "warnings": found.doubts,
         "line": f"people alone: joints that the fit left out disagree by {share:.1f} thousandths "
         f"of the height; {accepted[lowest]:.0f} % of views or more are accepted ({lowest}); "
-        f"lengths are known to {100 * found.scale_sigma:.1f} % by stated heights",
+        f"lengths are known to {100 * found.scale.sigma:.1f} % by {found.scale.by}",
     }
 
 
@@ -255,13 +258,16 @@ def _joints(cameras, seen: Seen, limits: Limits) -> NDArray:
     return found.xyz.reshape(len(seen.track), -1, 3)
 
 
-def _unit(cameras, seen: Seen, takes_of, heights_m, limits) -> unit.Unit:
-    joints = _joints(cameras, seen, limits)
-    bodies = [
-        _body(takes_of[track], joints[seen.track == track], seen.time_s[seen.track == track])
-        for track in np.unique(seen.track)
-    ]
-    return unit.by_heights(bodies, heights_m)
+def _places(joints: NDArray) -> NDArray:
+    """Return some of the joints (T, J, 3) that are known, (N, 3)."""
+    places = joints.reshape(-1, 3)
+    places = places[np.isfinite(places).all(axis=1)]
+    return places[np.linspace(0, len(places) - 1, MOST_PLACES).astype(int)]
+
+
+def _bodies(joints: NDArray, seen: Seen, takes_of: Sequence[int]) -> list[unit.Body]:
+    each = [(track, seen.track == track) for track in np.unique(seen.track)]
+    return [_body(takes_of[track], joints[own], seen.time_s[own]) for track, own in each]
 
 
 def check(cameras: Sequence[Camera], score: Score) -> None:

@@ -1,12 +1,22 @@
-"""The unit of length of cameras that people alone place: stated heights, and whose they are."""
+"""The unit of length of cameras that people alone place: stated heights, and known lengths.
 
-from collections.abc import Iterator, Sequence
+Heights are those of persons whose bodies are found; whose is whose is found with the unit. A known
+length lies between two points at rest that are clicked in two cameras or more.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.calibration import point_covariance
+from courtside.calibration.bundle import selection
+from courtside.calibration.court.joint_adjustment import click_sigma
+from courtside.geometry.camera import Camera
+from courtside.geometry.triangulation import triangulate_all
 from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
 
@@ -18,9 +28,11 @@ OF_HEIGHT_SIGMA = 0.01  # ASSUME: between persons, share of the length
 NETWORK_SIGMA = 0.01  # ASSUME: what is alike for all persons: networks differ by as much
 STATED_SIGMA_M = 0.01  # of a height to the centimetre, in shoes or not
 MEASURED_SIGMA = 0.01  # ASSUME: of the length of one track, share
+KNOWN_SIGMA_M = 0.003  # ASSUME: of a known length: ends of painted lines, of rackets, of staffs
 LEAST_FRAMES = 20  # ASSUME: that the length of a body needs
 SURE = 2.0  # standard deviations
 NOBODY = 3.0  # standard deviations that it costs to leave a track to nobody of the stated persons
+HEIGHTS = "stated heights"
 MOST_WAYS = 4096  # of giving tracks to persons that are tried in one take; the longest tracks count
 MOST_PERSONS = 5  # of a take whose tracks are tried; of more, the tallest is taken for the longest
 ROUNDS = 4  # of whose tracks they are and the unit, in turn
@@ -43,7 +55,19 @@ class Unit:
 
     metres: float
     sigma: float  # standard deviation, share
+    by: str  # what tells it
     doubts: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class KnownLength:
+    """A known length between two points at rest."""
+
+    name: str
+    length_m: float
+    xy: NDArray  # (C, 2, 2): px of both ends in each camera, NaN where not clicked
+    click_sigma_px: float  # of a click, per axis, in a picture of 3840 px width
+    on_floor: bool = False  # whether both ends lie on the floor
 
 
 def length(xyz: NDArray) -> float:
@@ -67,6 +91,93 @@ def length(xyz: NDArray) -> float:
 def middle(place: dict[str, NDArray], part: str) -> NDArray:
     """Return the middle of the left and the right joints of a part of the body."""
     return (place[f"left_{part}"] + place[f"right_{part}"]) / 2
+
+
+def of_clicks(
+    stated: Sequence[Mapping[str, Any]],
+    points: Sequence[str],
+    xy: NDArray,
+    *,
+    click_sigma_px: float,
+    click_bias_px: float,
+) -> list[KnownLength]:
+    """Return the known lengths of a session between clicked `points` (P,), `xy` (C, P, 2) px.
+
+    Each has `points`, `length_m` and perhaps `on_floor`. Scatter and bias of a click are in a
+    picture of 3840 px width. Raises `InputError` for a point that is not clicked.
+    """
+    found = []
+    for one in stated:
+        name = " to ".join(one["points"])
+        if missing := [end for end in one["points"] if end not in points]:
+            raise InputError(
+                f"known length {name}: expected clicks of both points in `static_points`, found "
+                f"none of {missing[0]} among {list(points)}; click it in two cameras or more"
+            )
+        ends = xy[:, [list(points).index(end) for end in one["points"]]]
+        sigma_px = float(np.hypot(click_sigma_px, click_bias_px))
+        on_floor = one.get("on_floor", False)
+        found.append(KnownLength(name, one["length_m"], ends, sigma_px, on_floor))
+    return found
+
+
+def find(
+    cameras: Sequence[Camera],
+    bodies: Sequence[Body],
+    heights_m: Sequence[Sequence[float | None]],
+    known: Sequence[KnownLength] = (),
+    shape: NDArray | None = None,
+) -> Unit:
+    """Return the unit by stated heights and known lengths, each as far as it is certain.
+
+    `shape` (K, K) is the covariance of the cameras' columns, their scale apart. Heights may be
+    missing where a length is known. That they contradict each other is a doubt.
+    """
+    each = [by_length(cameras, one, shape) for one in known]
+    if not each or any(all(stated) and stated for stated in heights_m):
+        each.append(by_heights(bodies, heights_m))
+    if len(each) == 1:
+        return each[0]
+    metres, sigma = (np.array([getattr(one, key) for one in each]) for key in ("metres", "sigma"))
+    weight = sigma**-2 / (sigma**-2).sum()
+    unit = float(np.exp(weight @ np.log(metres)))
+    apart = np.log(metres / unit)
+    doubts = [
+        f"{one.by}: all lengths would be {100 * np.expm1(off):+.1f} % by it alone, expected "
+        f"{SURE * 100 * one.sigma:.1f} % at most; check it against {each[int(weight.argmax())].by}"
+        for one, off in zip(each, apart, strict=True)
+        if abs(off) > SURE * one.sigma
+    ]
+    by = ", ".join(one.by for one in each)
+    return Unit(unit, float((sigma**-2).sum() ** -0.5), by, tuple(doubts))
+
+
+def by_length(cameras: Sequence[Camera], known: KnownLength, shape: NDArray | None = None) -> Unit:
+    """Return the unit by one known length; arguments are as for `find`.
+
+    Raises `InputError` where fewer than two cameras see one of the ends.
+    """
+    ends = triangulate_all(cameras, known.xy)
+    along = ends[1] - ends[0]
+    own = float(np.linalg.norm(along))
+    if not own > 0:
+        raise InputError(
+            f"known length {known.name}: expected two ends, each clicked in two cameras or more in "
+            "front of them, found none that these cameras place; check its clicks"
+        )
+    n_clicks = known.xy.size
+    steps = np.zeros((n_clicks, *known.xy.shape))
+    sigma_px = [click_sigma(known.click_sigma_px, camera.size) for camera in cameras]
+    np.fill_diagonal(steps.reshape(n_clicks, -1), np.repeat(sigma_px, known.xy[0].size))
+    moved = (known.xy + steps).transpose(1, 0, 2, 3).reshape(len(cameras), -1, 2)
+    moved_ends = triangulate_all(cameras, moved).reshape(n_clicks, 2, 3)
+    variance = ((np.linalg.norm(moved_ends[:, 1] - moved_ends[:, 0], axis=1) - own) ** 2).sum()
+    if shape is not None:
+        one, other = point_covariance.sensitivity(selection.of_cameras(cameras), ends)
+        by_column = along / own @ (other - one)
+        variance += by_column @ shape @ by_column
+    sigma = float(np.hypot(np.sqrt(variance) / own, KNOWN_SIGMA_M / known.length_m))
+    return Unit(known.length_m / own, sigma, known.name)
 
 
 def by_heights(bodies: Sequence[Body], heights_m: Sequence[Sequence[float | None]]) -> Unit:
@@ -100,7 +211,7 @@ def by_heights(bodies: Sequence[Body], heights_m: Sequence[Sequence[float | None
     doubts = [*_rivals(rivals, sigma), *_disagreeing(ratios, SURE * np.sqrt(2) * of_height)]
     if persons == 1:
         doubts.append("one person's height alone tells the unit; a second person makes it surer")
-    return Unit(float(np.exp(unit)), sigma, tuple(doubts))
+    return Unit(float(np.exp(unit)), sigma, HEIGHTS, tuple(doubts))
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,11 +25,12 @@ EPSILON_M = 1e-3  # nearer to the floor all weights are alike
 TINY_STEP = 1e-6  # of a similarity, to differentiate by
 
 
-def floor(xyz: NDArray, cameras: Sequence[Camera]) -> Sim3:
+def floor(xyz: NDArray, cameras: Sequence[Camera], on_floor: NDArray | None = None) -> Sim3:
     """Return `world_from_cameras` for joints (T, J, 3) m of all persons, NaN where unknown.
 
     The lowest places of ankles lie in one plane. Where people stay in one place, it is
-    perpendicular to the mean line from ankles to shoulders.
+    perpendicular to the mean line from ankles to shoulders. Points `on_floor` (P, 3) tell the
+    floor's height better, and its tilt where three or more do not lie on one line.
     """
     place = {name: xyz[:, at] for at, name in enumerate(skeleton.JOINTS)}
     upward = rotations.unit(unit.middle(place, "shoulder") - unit.middle(place, "ankle"))
@@ -41,8 +42,15 @@ def floor(xyz: NDArray, cameras: Sequence[Camera]) -> Sim3:
     turn = _axes(up, centres[1] - centres[0])
     slopes, offset = _lowest_plane((ankles - middle) @ turn.T)
     normal = np.array([*-slopes, 1.0])
-    turn = _axes(rotations.unit(turn.T @ normal), centres[1] - centres[0])
-    sole = offset / np.linalg.norm(normal) - ANKLE * unit.length(xyz) / unit.OF_HEIGHT
+    up = rotations.unit(turn.T @ normal)
+    sole = float(offset / np.linalg.norm(normal)) - ANKLE * unit.length(xyz) / unit.OF_HEIGHT
+    if on_floor is not None and len(on_floor):
+        about = on_floor - on_floor.mean(axis=0)
+        _, extent, axes = np.linalg.svd(about, full_matrices=False)
+        if len(on_floor) >= 3 and extent[1] > TILT_M:
+            up = axes[2] * np.sign(axes[2] @ up)
+        sole = float((on_floor.mean(axis=0) - middle) @ up)
+    turn = _axes(up, centres[1] - centres[0])
     return Sim3(1.0, turn, -turn @ middle - [0, 0, sole])
 
 
