@@ -4,7 +4,8 @@
         [--cameras NAME ...]
 
 RESULTS are those of a run that detected poses in the takes of a virtual session. Lenses are not
-known; each subject's height is, to the centimetre; three cameras film two players. Joints are the
+known; three cameras film two players, whose heights are stated to the centimetre; or a length on
+the floor is known instead, clicked in every picture. Joints are the
 true ones as true cameras see them, placed by the cameras found. `joints` is their median error
 after the best rigid motion, `shape` after the best similarity, `scale` the length of a true metre,
 `hold` the share of joints within the 90 % ellipsoids that the cameras' covariance states. Accepted
@@ -13,51 +14,53 @@ are views of limb joints that the fit left out. Writes docs/numbers/people_alone
 
 import argparse
 import sys
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from people_seen import CONFIG, LIMITS, ROOT
+from people_seen import CONFIG, LIMITS, ROOT, WEIGHTS
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
-from courtside.calibration.people import from_nothing
+from courtside.calibration.court import joint_adjustment
+from courtside.calibration.people import unit
 from courtside.evaluation.numbers import stated
 from courtside.geometry import camera as camera_models
 from courtside.geometry import similarity
 from courtside.geometry.similarity import Sim3
 from courtside.geometry.triangulation import triangulate_all
 from courtside.reconstruction import self_calibration
-from courtside.records.devices import clocks
 from courtside.records.keypoints import keypoints
 from courtside.records.truth import session_truth, take_truth
 from courtside.study.configuration import yaml_files
 from courtside.synchronisation import cameras as camera_sync
 
-MODEL, TAKES = "blazepose-heavy", ("footwork", "crossing")
+MODEL, TAKES = CONFIG["models"][0], ("footwork", "crossing")
 THREE = ("oblique", "mirror", "front")  # not on one line
 MADE = "benchmark", "`python benchmarks/people_alone.py RESULTS`"
+# Known lengths on the floor, m; heights are then not stated.
+KNOWN = {
+    "a court line of 6.1 m clicked": np.array([[0, 4.72, 0], [6.1, 4.72, 0]]),
+    "a racket on the floor clicked": np.array([[3.0, 4.0, 0], [3.674, 4.0, 0]]),
+}
+CLICK = {key: WEIGHTS[key] for key in ("click_sigma_px", "click_bias_px")}
+SEED = 0  # of the clicks
 EVERY = 12  # of the true frames: neighbouring ones say the same
 QUANTILE_90 = 6.251  # of chi-squared with 3 degrees of freedom
 
 
-def filmed(results, session, name, take, names, cameras=None):
-    """Return a take as `self_calibration` needs it; clocks by cameras where they are known."""
-    folder = results / session / "takes" / name / "pose2d" / MODEL
-    views = [keypoints.read_2d(folder / f"{camera}.npz") for camera in names]
-    if take.get("synchronised"):
-        return name, views, clocks.one_clock(names)
-    known = cameras and [cameras[camera] for camera in names]
-    return name, views, camera_sync.synchronise(views, known, **CONFIG["synchronise_cameras"])
-
-
-def calibrated(names, timed, heights_m):
-    """Return the cameras `names` from people; `timed` gives takes, by cameras or without."""
-    first = self_calibration.guess(names, {}, timed(None), heights_m)
-    seen = self_calibration.seen(first, timed({one.name: one for one in first.cameras}))
-    of = [take for take, _ in first.tracks]
-    return from_nothing.adjust(first.cameras, {}, seen, of, heights_m, LIMITS)
+def timed(results, session, takes, names, cameras):
+    """Return takes as `self_calibration` needs them; clocks by cameras where they are known."""
+    found = []
+    for name, take in takes.items():
+        folder = results / session / "takes" / name / "pose2d" / MODEL
+        views = [keypoints.read_2d(folder / f"{camera}.npz") for camera in names]
+        known = {"synchronised": take.get("synchronised", False), "stated": {}}
+        clocks = camera_sync.of_take(views, cameras, **known, **CONFIG["synchronise_cameras"])
+        found.append((name, views, clocks))
+    return found
 
 
 def errors(found, real, xyz):
@@ -80,6 +83,19 @@ def errors(found, real, xyz):
     )
 
 
+def clicked(real, ends, seed):
+    """Return a known length with clicks as config.yaml states them; outside a picture is none."""
+    rng, length_m = np.random.default_rng(seed), float(np.linalg.norm(ends[1] - ends[0]))
+    xy = np.stack([camera_models.project(camera, ends) for camera in real])
+    for camera, px in zip(real, xy, strict=True):
+        scatter, bias = (joint_adjustment.click_sigma(one, camera.size) for one in CLICK.values())
+        px += rng.normal(0, scatter, px.shape) + rng.normal(0, bias, 2)
+        px[((px < 0) | (px >= camera.size)).any(axis=1)] = np.nan
+    stated_ends = [{"points": ["one", "other"], "length_m": length_m, "on_floor": True}]
+    (found,) = unit.of_clicks(stated_ends, ["one", "other"], xy, **CLICK)
+    return found
+
+
 def rows(results, name, takes, names):
     """Yield the rows as docs/make_tables.py reads them."""
     session = yaml_files.read(ROOT / "config" / "sessions" / f"{name}.yaml")
@@ -96,19 +112,19 @@ def rows(results, name, takes, names):
     true = [take_truth.read(folder / "takes" / take / "truth.npz") for take in takes]
     xyz = np.concatenate([one.xyz[:, ::EVERY, :12].reshape(-1, 3) for one in true])
     seconds = sum(take["virtual"]["seconds"] for take in told.values())
-
-    def timed(known):
-        return [filmed(results, name, *one, names, known) for one in told.items()]
-
-    found = calibrated(names, timed, heights_m)
-    joint, shape, scale, inside = errors(found, real, xyz)
-    accepted = found.score.accepted_percent()
-    print(names, joint, shape, scale, inside, accepted, flush=True)
-    row = f"`{name}`: people alone, {len(names)} cameras, {seconds} s, heights stated"
-    said = f"joints after a rigid motion {joint:.0f} mm, scale {scale:+.1f} %, hold {inside:.0f} %"
-    yield row, "alone", said, "mm", 1
-    yield row, "alone_shape", f"{shape / 10:.2f}", "cm", 1
-    yield row, "alone_accepted", f"{accepted.mean():.1f}", "%", 1
+    of_takes = partial(timed, results, name, told, names)
+    for what, ends in (("heights stated", None), *KNOWN.items()):
+        heights = heights_m if ends is None else [[None] * len(one) for one in heights_m]
+        known = [] if ends is None else [clicked(real, ends, SEED)]
+        found = self_calibration.calibrate(names, {}, of_takes, heights, LIMITS, known)
+        joint, shape, scale, inside = errors(found, real, xyz)
+        accepted = found.score.accepted_percent()
+        print(names, what, joint, shape, scale, inside, accepted, found.scale, found.doubts)
+        row = f"`{name}`: people alone, {len(names)} cameras, {seconds} s, {what}"
+        said = f"joints after a rigid motion {joint:.0f} mm, scale {scale:+.1f} %"
+        yield row, "alone", f"{said}, hold {inside:.0f} %", "mm", 1
+        yield row, "alone_shape", f"{shape / 10:.2f}", "cm", 1
+        yield row, "alone_accepted", f"{accepted.mean():.1f}", "%", 1
 
 
 if __name__ == "__main__":

@@ -177,6 +177,7 @@ rule calibrate_from_people:
     input:
         files=of_job(calibration.filmed_files),
         lens_tomls=of_job(calibration.known_lenses),
+        static=lambda w: session_of(w).known_lengths and session_of(w).static_points or [],
     output:
         cameras_toml=paths.CAMERAS,
         covariance_npz=paths.CAMERA_COVARIANCE,
@@ -189,6 +190,8 @@ rule calibrate_from_people:
         code=code("calibrate_from_people.py"),
         names=lambda w: list(session_of(w).cameras),
         takes=of_job(calibration.filmed),
+        known_lengths=lambda w: list(session_of(w).known_lengths),
+        clicks=of_job(calibration.clicks),
         views=step("triangulate"),
         clock_step=step("synchronise_cameras"),
     script:

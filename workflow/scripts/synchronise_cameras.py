@@ -12,16 +12,12 @@ WRIST_M_S = 12.0  # of a smash: what the uncertainty is worth in space
 
 def main(cameras_toml, pose2d_npz, sync_json, *, synchronised, stated, **options):
     views = [keypoints.read_2d(path) for path in pose2d_npz]
-    used = None
+    known = None
     if cameras_toml:
         known = {camera.name: camera for camera in cameras.read_toml(cameras_toml)}
-        used = [known[view.camera] for view in views]
-        for camera, view, path in zip(used, views, pose2d_npz, strict=True):
-            cameras.check_size(camera, tuple(map(int, view.size)), path)
-    if synchronised:
-        clocks = sync.one_clock([view.camera for view in views])
-    else:
-        clocks = camera_sync.synchronise(views, used, **options) | sync.stated(stated)
+        for view, path in zip(views, pose2d_npz, strict=True):
+            cameras.check_size(known[view.camera], tuple(map(int, view.size)), path)
+    clocks = camera_sync.of_take(views, known, synchronised=synchronised, stated=stated, **options)
     report(clocks)
     sync.write(sync_json, views[0].camera, clocks)
 

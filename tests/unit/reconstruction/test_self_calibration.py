@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.from_nothing import Guess
 from courtside.reconstruction import self_calibration
 from courtside.records.devices.clocks import Clock
@@ -47,7 +48,7 @@ def test_tracks_are_at_common_times_without_unsure_joints():
 
 
 def test_persons_are_seen_through_their_tracks():
-    first = Guess(CAMERAS, [(0, (0, 1, -1)), (0, (1, 0, -1))])
+    first = Guess(CAMERAS, [(0, ((0,), (1,), ())), (0, ((1,), (0,), ()))])
     seen = self_calibration.seen(first, [filmed()])
     assert seen.xy.shape == (3, 80, 12, 2)
     assert np.bincount(seen.track).tolist() == [40, 40]
@@ -72,6 +73,44 @@ def test_cameras_are_guessed_from_a_take():
     assert len(found.tracks) == 2
     with pytest.raises(InputError, match="camera c2: expected a take that it films, found none"):
         self_calibration.guess(NAMES, lenses, [filmed()], [[1.6, 1.8]])
+
+
+@pytest.fixture
+def calibrated():
+    """Return a function: calibrate by one take, its clocks from one time to the next."""
+    xy = tracks_made.take(CAMERAS, WALK).xy
+    views = [
+        keypoints_made.view(camera, skeleton.JOINTS, TIME_S, own)
+        for camera, own in zip(CAMERAS, xy, strict=True)
+    ]
+    lenses, limits = {one.name: one for one in CAMERAS}, Limits(score=0.05, limit=0.05, fade=0.067)
+
+    def calibrate(*clocks):
+        """Clocks are those of camera c1: without cameras, by those guessed, and so on."""
+        each = iter(clocks)
+        return self_calibration.calibrate(
+            NAMES,
+            lenses,
+            lambda _: [("walk", views, dict.fromkeys(NAMES, Clock()) | {"c1": next(each)})],
+            [[1.6, 1.8]],
+            limits,
+        )
+
+    return calibrate
+
+
+def test_clocks_that_are_not_sure_are_refused(calibrated):
+    with pytest.raises(InputError, match="take walk: camera c1: expected a clock that the rec"):
+        calibrated(Clock(), Clock(status="ambiguous"))
+
+
+def test_cameras_are_adjusted_again_if_they_change_clocks(calibrated):
+    late, right = Clock(0.05), Clock(0.0004)
+    once = calibrated(late, right, right)
+    twice = calibrated(late, late, right)
+    assert min(twice.score.accepted_percent()) > 95
+    assert twice.score.typical() == pytest.approx(once.score.typical(), rel=0.1)
+    assert once.score.typical() < 0.8 * calibrated(late, late, late).score.typical()
 
 
 def test_a_camera_that_filmed_in_two_sizes_is_named_with_the_take():

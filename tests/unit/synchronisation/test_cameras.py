@@ -53,6 +53,17 @@ def test_shifted_cameras_are_found_within_8_ms(known, rate_hz):
     assert all(clock.usable for clock in found.values())
 
 
+def test_clocks_of_a_take_are_one_or_found_or_stated():
+    views = take(0)
+    known = {camera.name: camera for camera in CAMERAS}
+    together = camera_sync.of_take(views, known, synchronised=True, stated={})
+    assert [clock.offset_s for clock in together.values()] == [0, 0, 0]
+    said = {"c2": {"offset_s": -3.0}}
+    found = camera_sync.of_take(views, known, synchronised=False, stated=said, min_score=0.3)
+    assert found["c1"].offset_s == pytest.approx(CLOCKS[1].offset_s, abs=0.008)
+    assert found["c2"] == Clock(-3.0, note="stated by the session")
+
+
 def test_several_people_of_whom_cameras_see_some():
     found = camera_sync.synchronise(take(1, n_people=3, seconds=15.0), CAMERAS)
     for camera, truth in zip(("c1", "c2"), CLOCKS[1:], strict=True):

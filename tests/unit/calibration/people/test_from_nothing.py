@@ -5,7 +5,7 @@ import pytest
 
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
-from courtside.calibration.people import from_nothing, world_frame
+from courtside.calibration.people import from_nothing, unit
 from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.held_out import Score
 from courtside.calibration.people.views import Seen
@@ -21,7 +21,7 @@ NAMES, SIZES = [one.name for one in TRUE], {one.name: one.size for one in TRUE}
 LIMITS = Limits(score=0.05, limit=0.05, fade=0.067)
 WALK = tracks_made.persons(40)
 LENSES = {camera.name: camera for camera in TRUE}
-HEIGHTS = [[world_frame.length(xyz) / world_frame.OF_HEIGHT for xyz in WALK]]
+HEIGHTS = [[unit.length(xyz) / unit.OF_HEIGHT for xyz in WALK]]
 
 
 def guessed(take, heights=HEIGHTS, lenses=None):
@@ -66,6 +66,13 @@ def test_a_lens_of_a_board_is_not_guessed():
     take = tracks_made.take(TRUE, WALK)
     start = guessed(take, lenses=LENSES)
     assert [camera.K[0, 0] for camera in start.cameras] == [1400.0] * 3
+
+
+def test_a_person_whom_one_camera_does_not_see_is_not_given_up():
+    take = tracks_made.take(TRUE, WALK)
+    take.xy[2][0] = np.nan
+    start = guessed(take, lenses=LENSES)
+    assert sorted(start.tracks) == [(0, ((0,), (1,), ())), (0, ((1,), (0,), (1,)))]
 
 
 def test_a_person_who_stands_still_tells_nothing():

@@ -1,4 +1,4 @@
-"""The world of people: metres by heights, the floor under feet, covariance of the shape alone."""
+"""The world of people: the floor under feet, the covariance of the shape alone."""
 
 import numpy as np
 import pytest
@@ -9,33 +9,12 @@ from courtside.calibration.people import prior, world_frame
 from courtside.calibration.records import covariance
 from courtside.geometry import rotations
 from courtside.geometry.similarity import Sim3
-from courtside.study.errors import InputError
 from fixtures.cameras import corner_cameras
 from fixtures.people import tracks_made
 
 TRUE = corner_cameras.four_cameras()
 WALK = tracks_made.persons()
 ELSEWHERE = Sim3(1.0, rotations.rotation_from_rodrigues([0.4, -0.3, 1.2]), np.array([3.0, -2, 5]))
-
-
-def test_a_body_is_as_long_in_every_posture():
-    one, other = (world_frame.length(xyz) for xyz in WALK)
-    assert other / one == pytest.approx(tracks_made.SIZES[1] / tracks_made.SIZES[0], rel=0.01)
-    assert np.isnan(world_frame.length(WALK[0, :10]))
-
-
-def test_heights_give_metres_the_tallest_to_the_longest():
-    units = [[0.6, 0.5], [0.5]]
-    heights = [[1.5, 1.8], [1.5]]
-    factor, sigma = world_frame.metres(units, heights)
-    assert factor == pytest.approx(3.0 * world_frame.OF_HEIGHT)
-    assert 0.005 < sigma < world_frame.metres(units[1:], heights[1:])[1]
-
-
-@pytest.mark.parametrize("heights", [[[None]], [[1.7, None]], [[1.7, 1.8]], [[]]])
-def test_a_take_of_somebody_without_height_tells_nothing(heights):
-    with pytest.raises(InputError, match="expected `height_m` of every subject"):
-        world_frame.metres([[0.5]], heights)
 
 
 def test_the_floor_is_found_under_feet_from_any_axes():
@@ -49,6 +28,17 @@ def test_the_floor_is_found_under_feet_from_any_axes():
     x = [world.camera(camera).centre_in_world for camera in elsewhere]
     assert (x[1] - x[0])[1] == pytest.approx(0, abs=1e-9)
     assert (x[1] - x[0])[0] > 0
+
+
+def test_points_on_the_floor_tell_its_height_and_three_of_them_its_tilt():
+    elsewhere = [ELSEWHERE.camera(camera) for camera in TRUE]
+    joints = ELSEWHERE.points(np.add(np.concatenate(WALK), [0, 0, 0.1]))  # feet never stand
+    corners = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
+    for points, off_m in ((corners, 1e-9), (corners[:2], 0.03)):
+        floor = ELSEWHERE.points(points)
+        world = world_frame.floor(joints, elsewhere, floor)
+        assert np.abs(world.points(floor)[:, 2]).max() < off_m
+        assert world.points(elsewhere[0].centre_in_world)[2] == pytest.approx(2.0, abs=0.1)
 
 
 def test_the_covariance_is_of_the_shape_and_of_the_scale():

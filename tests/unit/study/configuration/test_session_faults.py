@@ -64,6 +64,8 @@ PEOPLE = without(BOARDED, "board") | {"subjects": {"p1": {"height_m": 1.7}}}
 PEOPLE |= {"override": {"calibrations": ["people"]}}
 PEOPLE |= {"cameras": {"a": None, "b": None, "c": None}}
 PEOPLE |= {"takes": {"t": {"videos": AB | {"c": "w.mp4"}}}}
+LENGTHS = {"known_lengths": [{"points": ["left", "right"], "length_m": 6.1}]}
+LENGTHS |= {"static_points": "p.csv"}
 PLAYERS = VIRTUAL | {"subjects": {"p1": None}, "takes": {"shot": FILMED}}
 
 
@@ -86,6 +88,8 @@ PLAYERS = VIRTUAL | {"subjects": {"p1": None}, "takes": {"shot": FILMED}}
         RECORDED | {"cameras": {"a": {"static": "a.mp4"}}},
         BOARDED,
         PEOPLE,
+        PEOPLE | LENGTHS,
+        PEOPLE | LENGTHS | {"subjects": {"p1": None}},
         BOARDED | {"board": without(BOARD, "lenses")},
         {"court": "none", "cameras": {}, "walks": {"w": {"images": "w.mp4"}}},
         VIRTUAL
@@ -156,7 +160,15 @@ def test_good_sessions_have_no_fault(root, content):
         ),
         (
             RECORDED | {"static_points": "p.csv"},
-            ["static_points: expected a calibration file that they check, found none"],
+            ["static_points: expected a calibration file that they check, or `known_lengths`"],
+        ),
+        (
+            without(PEOPLE, "override") | OVERRIDDEN | LENGTHS,
+            ["known_lengths: expected `static_points` with their ends and the calibration `peop"],
+        ),
+        (
+            PEOPLE | without(LENGTHS, "static_points"),
+            ["known_lengths: expected `static_points` with their ends and the calibration `peop"],
         ),
         (
             RECORDED | OVERRIDDEN | {"static_points": "q.csv"},

@@ -212,6 +212,13 @@ def test_a_session_replaces_numbers_of_its_calibration_file():
     assert found.static_points == "p.csv"
     plain = session_files.session("s", "s.yaml", CONTENT, {})
     assert (plain.calibration_override, plain.static_points) == ({}, None)
+    assert plain.known_lengths == ()
+
+
+def test_known_lengths_are_read():
+    lengths = [{"points": ["left", "right"], "length_m": 6.1, "on_floor": True}]
+    content = CONTENT | {"static_points": "p.csv", "known_lengths": lengths}
+    assert session_files.session("s", "s.yaml", content, {}).known_lengths == tuple(lengths)
 
 
 def test_points_at_rest_may_lie_beside_the_configuration(tmp_path):

@@ -1,16 +1,20 @@
 """Takes as the calibration from people alone needs them: tracks of joints at common times."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration.people import from_nothing
+from courtside.calibration.people import from_nothing, relative_poses
+from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.relative_poses import Take
+from courtside.calibration.people.unit import KnownLength
 from courtside.calibration.people.views import Seen, joined
 from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
 from courtside.reconstruction import person_height, resampling
+from courtside.records.devices import clocks as camera_clocks
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints2D
@@ -18,6 +22,8 @@ from courtside.study.errors import InputError
 
 # A take's name, the keypoints of each camera that films it, and their clocks by camera.
 Filmed = tuple[str, Sequence[Keypoints2D], Mapping[str, Clock]]
+ROUNDS = 2  # of clocks and cameras: clocks by rough cameras are a few milliseconds off
+SAME_S = 1e-3  # clocks closer together change cameras by nothing: who walks moves by a millimetre
 MIN_SCORE = 0.5  # ASSUME: of joints that cameras are first guessed by
 
 
@@ -43,13 +49,52 @@ def seen(first: from_nothing.Guess, takes: Sequence[Filmed]) -> Seen:
         time_s, by_camera = resampled[take]
         shape = (len(cameras), len(time_s), len(skeleton.JOINTS))
         xy, score = np.full((*shape, 2), np.nan), np.full(shape, np.nan)
-        for at, (row, view) in enumerate(zip(rows, by_camera, strict=True)):
-            if row >= 0 and view is not None:
-                xy[at], score[at] = view[0][row], view[1][row]
+        for at, (own, view) in enumerate(zip(rows, by_camera, strict=True)):
+            if view is not None:
+                xy[at], score[at] = (relative_poses.of_rows(values, own) for values in view)
         height_px = person_height.in_pictures(cameras, xy[:, None], score[:, None], skeleton.JOINTS)
         track = np.zeros(len(time_s), dtype=int)
         parts.append(Seen(xy, score, height_px[:, 0], track, time_s))
     return joined(parts)
+
+
+def calibrate(
+    names: Sequence[str],
+    lenses: Mapping[str, Camera],
+    timed: Callable[[Mapping[str, Camera] | None], Sequence[Filmed]],
+    heights_m: Sequence[Sequence[float | None]],
+    limits: Limits,
+    known: Sequence[KnownLength] = (),
+) -> from_nothing.Found:
+    """Return cameras from people alone; arguments are as for `from_nothing.guess` and `adjust`.
+
+    `timed` returns the takes with clocks found by cameras, by name, or without any. Cameras that
+    change clocks are adjusted again with these. Raises `InputError` where people do not tell, or
+    clocks are not sure.
+    """
+    first, last = guess(names, lenses, timed(None), heights_m, known), list[Filmed]()
+    of = [take for take, _ in first.tracks]
+    for _ in range(ROUNDS):
+        takes = timed({camera.name: camera for camera in first.cameras})
+        for name, _, clocks in takes:
+            if fault := camera_clocks.fault_line(f"take {name}", clocks):
+                raise InputError(fault)
+        if last and _apart_s(last, takes) < SAME_S:
+            break
+        found = from_nothing.adjust(
+            first.cameras, lenses, seen(first, takes), of, heights_m, limits
+        )
+        first, last = replace(first, cameras=found.cameras), list(takes)
+    return found
+
+
+def _apart_s(before: Sequence[Filmed], after: Sequence[Filmed]) -> float:
+    """Return by how much clocks of takes differ at most, s."""
+    return max(
+        float(np.abs(old[name].from_reference(ends) - new[name].from_reference(ends)).max())
+        for (_, views, old), (_, _, new) in zip(before, after, strict=True)
+        for name, ends in ((view.camera, view.time_s[[0, -1]]) for view in views)
+    )
 
 
 def guess(
@@ -57,6 +102,7 @@ def guess(
     lenses: Mapping[str, Camera],
     takes: Sequence[Filmed],
     heights_m: Sequence[Sequence[float | None]],
+    known: Sequence[KnownLength] = (),
 ) -> from_nothing.Guess:
     """Place cameras roughly; the arguments are as for `from_nothing.guess`."""
     sizes = _sizes(takes)
@@ -68,7 +114,7 @@ def guess(
     for name, lens in lenses.items():
         camera_models.check_size(lens, sizes[name], f"keypoints of camera {name}")
     found = [tracks(name, views, clocks, names) for name, views, clocks in takes]
-    return from_nothing.guess(names, sizes, lenses, found, heights_m)
+    return from_nothing.guess(names, sizes, lenses, found, heights_m, known)
 
 
 def _sizes(takes: Sequence[Filmed]) -> dict[str, tuple[int, int]]:

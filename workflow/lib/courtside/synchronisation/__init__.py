@@ -1,6 +1,6 @@
 """Clock offsets and drifts: of cameras from their views, of devices from claps and motion.
 
-cameras: `synchronise`: all fixed cameras against the first; `place`: coarse offsets
+cameras: `of_take`, `synchronise`: all fixed cameras against the first; `place`: coarse offsets
 devices: `synchronise`: all sources against the first; `pair`: claps of two devices
 clock_adjustment: `adjust`, `with_prior`: offsets and drifts together, with covariance
 epipolar, speed: `Epipolar`, `Speeds`: the losses with calibrated cameras, and without

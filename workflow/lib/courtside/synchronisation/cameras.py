@@ -3,12 +3,14 @@
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from courtside.geometry import epipolar
 from courtside.geometry.camera import Camera
+from courtside.records.devices import clocks
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.statistics import autocorrelation
@@ -67,7 +69,7 @@ def synchronise(
         sure = sorted(_connected(pairs))
         adjusted = _adjust(evidence, offset_s, sure, time_s)
     rows = [_row(view) for view in views]
-    clocks = {views[0].camera: Clock(status="reference", note="the take's clock")}
+    found = {views[0].camera: Clock(status="reference", note="the take's clock")}
     for camera in range(1, len(views)):
         if camera in sure:
             own, known_s = adjusted.own(camera, time_s), views[camera].time_s
@@ -75,8 +77,27 @@ def synchronise(
             clock = _found(adjusted, camera, overlap, time_s, abs(rows[camera] - rows[0]))
         else:
             clock = _not_found(placed.get(camera))
-        clocks[views[camera].camera] = clock
-    return clocks
+        found[views[camera].camera] = clock
+    return found
+
+
+def of_take(
+    views: Sequence[Keypoints2D],
+    cameras: Mapping[str, Camera] | None,
+    *,
+    synchronised: bool,
+    stated: Mapping[str, Mapping[str, Any]],
+    **options: Any,
+) -> dict[str, Clock]:
+    """Return the clocks of a take's cameras, by name.
+
+    One clock where the session says that they are `synchronised`; else those found by
+    `synchronise`, with `options`, but for those `stated`. `cameras` by name where they are known.
+    """
+    if synchronised:
+        return clocks.one_clock([view.camera for view in views])
+    known = [cameras[view.camera] for view in views] if cameras else None
+    return synchronise(views, known, **options) | clocks.stated(stated)
 
 
 def _evidence(views, cameras, min_score) -> Epipolar | Speeds:

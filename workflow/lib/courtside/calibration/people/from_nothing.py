@@ -14,9 +14,11 @@ from numpy.typing import NDArray
 from courtside.calibration.file_check import residuals
 from courtside.calibration.people import (
     adjustment,
+    doubts,
     held_out,
     prior,
     relative_poses,
+    unit,
     views,
     world_frame,
 )
@@ -26,6 +28,7 @@ from courtside.calibration.people.relative_poses import Take, Track
 from courtside.calibration.people.views import Seen
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance
+from courtside.geometry import boxes
 from courtside.geometry.camera import Camera
 from courtside.geometry.triangulation import triangulate_all
 from courtside.study.errors import InputError
@@ -40,8 +43,7 @@ GUESSED = {"focal_percent": 20.0, "principal_point_percent": 1.0, "k1": 0.05}  #
 KNOWN = {"focal_percent": 0.5, "principal_point_percent": 0.3, "k1": 0.01}  # of a board's lens
 PASSES = 2  # ASSUME: adjustments, each about the last; the next hardly moves a joint
 MOST_ROWS = 480  # frames of all persons together; more take longer and say the same
-MOST_POINTS = 400  # joints that two guesses are compared by
-MOST_FRAMES = 200  # of one track that its length is measured in
+MOST_FRAMES = 200  # of one take that guesses are compared by
 MOST_PLACES = 200  # joints that the world of the covariance rests on
 STILL = 0.15  # ASSUME: ways shorter than this share of a person's extent show nothing
 LEAST_ACCEPTED = 50.0  # ASSUME: percent of a camera's views; a camera with fewer is not found
@@ -62,7 +64,8 @@ class Found:
     cameras: list[Camera]
     covariance: CameraCovariance
     score: Score  # by blocks of time that the fit did not see
-    scale_sigma: float  # share: of all lengths
+    scale: unit.Unit  # what tells all lengths, and how well
+    doubts: list[str]  # one line each
 
 
 def guess(
@@ -71,6 +74,7 @@ def guess(
     lenses: Mapping[str, Camera],
     takes: Sequence[Take],
     heights_m: Sequence[Sequence[float | None]],
+    known: Sequence[unit.KnownLength] = (),
 ) -> Guess:
     """Place cameras by tracks whose persons are not known, but for the heights in each take.
 
@@ -78,7 +82,7 @@ def guess(
     """
     _check_ways(takes)
     pairs = relative_poses.pair(_with_lenses(names, sizes, lenses, ANY_FOCAL), takes)
-    tried: list[tuple[int, float, float, list[Camera], list[Track]]] = []
+    tried: list[tuple[float, list[Camera], list[Track]]] = []
     fault: InputError | None = None
     for share in FOCAL_SHARES if set(names) - set(lenses) else (ANY_FOCAL,):
         try:
@@ -86,14 +90,13 @@ def guess(
         except InputError as error:
             fault = error
             continue
-        for posed, tracks in ways:
-            unseen = sum(row < 0 for _, rows in tracks for row in rows)
-            tried.append((unseen, _disagreement(posed, takes, tracks), share, posed, tracks))
+        tried += [(_explained(posed, takes, tracks), posed, tracks) for posed, tracks in ways]
     if not tried:
         raise fault or InputError("people: expected cameras, found none")
-    *_, cameras, tracks = min(tried, key=lambda one: one[:3])
+    _, cameras, tracks = max(tried, key=lambda one: one[0])
     joints = [_placed(cameras, takes, track) for track in tracks]
-    scale, _ = world_frame.metres(_lengths(takes, tracks, joints), heights_m)
+    bodies = [_body(take, xyz) for (take, _), xyz in zip(tracks, joints, strict=True)]
+    scale = unit.find(cameras, bodies, heights_m, known).metres
     cameras = [_scaled(camera, scale) for camera in cameras]
     world = world_frame.floor(scale * np.concatenate(joints), cameras)
     return Guess([world.camera(camera) for camera in cameras], tracks)
@@ -137,35 +140,47 @@ def _scaled(camera: Camera, factor: float) -> Camera:
 
 def track_xy(takes: Sequence[Take], track: Track) -> NDArray:
     """Return the joints (C, T, J, 2) px of a track, NaN where a camera has none."""
-    take, rows = takes[track[0]], track[1]
-    none = np.full(take.xy[0].shape[1:], np.nan)
-    return np.stack([none if row < 0 else xy[row] for xy, row in zip(take.xy, rows, strict=True)])
+    each = zip(takes[track[0]].xy, track[1], strict=True)
+    return np.stack([relative_poses.of_rows(xy, rows) for xy, rows in each])
+
+
+def _some(takes: Sequence[Take], track: Track) -> NDArray:
+    """Return the joints (C, T, J, 2) px of a track in some of its take's frames."""
+    xy = track_xy(takes, track)
+    return xy[:, :: max(1, xy.shape[1] // MOST_FRAMES)]
 
 
 def _placed(cameras: Sequence[Camera], takes: Sequence[Take], track: Track) -> NDArray:
-    """Return the joints (T, J, 3) of a track in some of its frames."""
-    xy = track_xy(takes, track)
-    xy = xy[:, :: max(1, xy.shape[1] // MOST_FRAMES)]
+    """Return the joints (T, J, 3) of a track in some of its take's frames."""
+    xy = _some(takes, track)
     return triangulate_all(cameras, xy.reshape(len(xy), -1, 2)).reshape(*xy.shape[1:3], 3)
 
 
-def _disagreement(cameras, takes, tracks: Sequence[Track]) -> float:
-    """Return how far joints disagree, px, of all tracks together."""
-    every = np.concatenate(
-        [track_xy(takes, track).reshape(len(cameras), -1, 2) for track in tracks], axis=1
-    )
-    seen = np.flatnonzero(np.isfinite(every[..., 0]).sum(axis=0) >= 2)
-    at = seen[np.linspace(0, len(seen) - 1, min(len(seen), MOST_POINTS)).astype(int)]
-    return float(residuals.typical_px(residuals.Rays(every[:, at]).residuals(cameras)))
+def _explained(cameras, takes: Sequence[Take], tracks: Sequence[Track]) -> float:
+    """Return how much of what cameras see the tracks explain, in degrees of freedom.
+
+    A joint in n views has 2 n - 3, and counts less as its views disagree (the loss of Geman and
+    McClure). More persons, more cameras that see them and smaller errors make it larger.
+    """
+    total = 0.0
+    for track in tracks:
+        xy = _some(takes, track)
+        flat = xy.reshape(len(cameras), -1, 2)
+        off = np.linalg.norm(residuals.Rays(flat).residuals(cameras), axis=2)
+        off /= relative_poses.AGREE * np.maximum(boxes.usual_side(xy), 1.0)[:, None]
+        views = np.isfinite(off).sum(axis=0)
+        square = np.nansum(off**2, axis=0)[views >= 2] / views[views >= 2]
+        per_frame = takes[track[0]].xy[0].shape[1] / xy.shape[1]
+        total += per_frame * float(((2 * views[views >= 2] - 3) / (1 + square)).sum())
+    return total
 
 
-def _lengths(takes, tracks: Sequence[Track], joints: Sequence[NDArray]) -> list[list[float]]:
-    """Return by take the lengths of persons, those seen most first."""
-    found: list[list[tuple[int, float]]] = [[] for _ in takes]
-    for (take, _), xyz in zip(tracks, joints, strict=True):
-        seen = int(np.isfinite(xyz).all(axis=-1).sum())
-        found[take].append((-seen, world_frame.length(xyz)))
-    return [[own for _, own in sorted(one)] for one in found]
+def _body(take: int, xyz: NDArray, time_s: NDArray | None = None) -> unit.Body:
+    """Return the body of joints (T, J, 3) at times (T,); without times, by frame."""
+    seen = np.flatnonzero(np.isfinite(xyz).all(axis=-1).any(axis=-1))
+    times = np.arange(len(xyz)) if time_s is None else time_s
+    first, last = (float(times[at]) for at in seen[[0, -1]]) if len(seen) else (0.0, 0.0)
+    return unit.Body(take, unit.length(xyz), len(seen), first, last)
 
 
 def adjust(
@@ -175,6 +190,7 @@ def adjust(
     takes_of: Sequence[int],
     heights_m: Sequence[Sequence[float | None]],
     limits: Limits,
+    known: Sequence[unit.KnownLength] = (),
 ) -> Found:
     """Adjust cameras with the people that they see, from a guess in metres.
 
@@ -183,24 +199,27 @@ def adjust(
     """
     seen = seen.thinned(MOST_ROWS)
     views.check(start, seen, limits.score)
-    cameras, sigma = list(start), 0.0
+    cameras = list(start)
     for _ in range(PASSES):
         fitted = _refined(cameras, lenses, seen, limits)
-        factor, sigma = _metres(fitted.cameras, seen, takes_of, heights_m, limits)
-        cameras = [_scaled(camera, factor) for camera in fitted.cameras]
+        joints = _joints(fitted.cameras, seen, limits)
+        shape = world_frame.of_shape(fitted.cameras, fitted.covariance, _places(joints), 0.0)
+        bodies = _bodies(joints, seen, takes_of)
+        scale = unit.find(fitted.cameras, bodies, heights_m, known, shape)
+        cameras = [_scaled(camera, scale.metres) for camera in fitted.cameras]
     joints = _joints(cameras, seen, limits)
-    world = world_frame.floor(joints, cameras)
+    on_floor = [triangulate_all(cameras, one.xy) for one in known if one.on_floor]
+    world = world_frame.floor(joints, cameras, np.array(on_floor).reshape(-1, 3))
     score = held_out.score(
         lambda part, _: _refined(cameras, lenses, part, limits).cameras, seen, Points(), limits
     )
     check(cameras, score)
     cameras = [world.camera(camera) for camera in cameras]
-    places = world.points(joints).reshape(-1, 3)
-    places = places[np.isfinite(places).all(axis=1)]
-    places = places[np.linspace(0, len(places) - 1, MOST_PLACES).astype(int)]
-    covariance = world_frame.of_shape(cameras, fitted.covariance, places, sigma)
+    joints = world.points(joints)
+    doubtful = [*scale.doubts, *doubts.lines(cameras, seen, joints, score, limits)]
+    covariance = world_frame.of_shape(cameras, fitted.covariance, _places(joints), scale.sigma)
     named = camera_covariance.of_network([camera.name for camera in cameras], covariance)
-    return Found(cameras, named, score, sigma)
+    return Found(cameras, named, score, scale, doubtful)
 
 
 def said(found: Found, takes: Sequence[str]) -> dict[str, Any]:
@@ -214,11 +233,11 @@ def said(found: Found, takes: Sequence[str]) -> dict[str, Any]:
         "takes": list(takes),
         "held_out_joints_permille": round(share, 3),
         "accepted_percent": {name: round(float(value), 1) for name, value in accepted.items()},
-        "scale_sigma_percent": round(100 * found.scale_sigma, 2),
-        "warnings": [],
+        "scale_sigma_percent": round(100 * found.scale.sigma, 2),
+        "warnings": found.doubts,
         "line": f"people alone: joints that the fit left out disagree by {share:.1f} thousandths "
         f"of the height; {accepted[lowest]:.0f} % of views or more are accepted ({lowest}); "
-        f"lengths are known to {100 * found.scale_sigma:.1f} % by stated heights",
+        f"lengths are known to {100 * found.scale.sigma:.1f} % by {found.scale.by}",
     }
 
 
@@ -239,11 +258,16 @@ def _joints(cameras, seen: Seen, limits: Limits) -> NDArray:
     return found.xyz.reshape(len(seen.track), -1, 3)
 
 
-def _metres(cameras, seen: Seen, takes_of, heights_m, limits) -> tuple[float, float]:
-    joints, tracks = _joints(cameras, seen, limits), np.unique(seen.track)
-    each = [(takes_of[track], ()) for track in tracks]
-    found = _lengths(heights_m, each, [joints[seen.track == track] for track in tracks])
-    return world_frame.metres(found, heights_m)
+def _places(joints: NDArray) -> NDArray:
+    """Return some of the joints (T, J, 3) that are known, (N, 3)."""
+    places = joints.reshape(-1, 3)
+    places = places[np.isfinite(places).all(axis=1)]
+    return places[np.linspace(0, len(places) - 1, MOST_PLACES).astype(int)]
+
+
+def _bodies(joints: NDArray, seen: Seen, takes_of: Sequence[int]) -> list[unit.Body]:
+    each = [(track, seen.track == track) for track in np.unique(seen.track)]
+    return [_body(takes_of[track], joints[own], seen.time_s[own]) for track, own in each]
 
 
 def check(cameras: Sequence[Camera], score: Score) -> None:

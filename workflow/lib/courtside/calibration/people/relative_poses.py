@@ -5,7 +5,7 @@ the essential matrix that most joints of all tracks agree with is kept (Nistér 
 two cameras that tell most become points, and the other cameras are resected from these.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, product
 from typing import Any
@@ -25,11 +25,13 @@ AGREE = 0.02  # ASSUME: of a person's extent: how far joints are off their epipo
 LEAST_SHARE = 0.5  # ASSUME: of two tracks' joints that agree if they show one person
 RIVAL = 0.9  # ASSUME: of the joints that the best pairing explains; another with more is as good
 LEAST_SINE = 0.05  # ASSUME: of the angle between rays, 3 degrees: less is no parallax
+SWEEPS = 2  # over all cameras: tracks found in one place joints that tell the tracks of another
 IN_FRONT = 0.75  # ASSUME: least share of joints in front of a camera
 CONFIDENCE, ROUNDS = 0.9999, 2000  # of the random samples
 IDEAL = np.eye(3)  # the matrix of a camera whose pixels are rays
 
-Track = tuple[int, tuple[int, ...]]  # take, and the row of each camera; -1 where it has none
+Track = tuple[int, tuple[tuple[int, ...], ...]]  # of one person: take, and the rows of each camera
+_Person = tuple[int, set[tuple[int, int]]]  # take, and cameras with the rows that show this person
 Rays = list[list[NDArray]]  # by take and camera: tracks (R, T, J, 2) on the z = 1 plane
 
 
@@ -39,6 +41,10 @@ class Take:
 
     name: str
     xy: list[NDArray]  # by camera (R, T, J, 2): distorted px, NaN where unseen or unsure
+
+    def times(self, camera: int, row: int) -> NDArray:
+        """Return at which times (T,) bool a row shows anything."""
+        return np.isfinite(self.xy[camera][row, ..., 0]).any(axis=1)
 
     def longest(self, camera: int, most: int | None = None) -> list[int]:
         """Return the rows of a camera that show enough joints, those with most first."""
@@ -250,44 +256,82 @@ def _check(cameras: Sequence[Camera], posed: list[_Related]) -> None:
         )
 
 
+def of_rows(values: NDArray, rows: Iterable[int]) -> NDArray:
+    """Return what rows of (R, T, ...) show of one person, (T, ...): at each time the first of them.
+
+    NaN where none shows anything.
+    """
+    found = np.full(values.shape[1:], np.nan)
+    for row in rows:
+        free = np.isnan(found).reshape(len(found), -1).all(axis=1)
+        found[free] = values[row][free]
+    return found
+
+
 def _resected(
     takes: Sequence[Take], rays: Rays, best: _Related
 ) -> tuple[list[NDArray], list[Track], list[int]]:
     """Return poses (3, 4) in the axes of the first of two cameras, persons, and who is lost."""
-    two, n_cameras = best.pair.cameras, len(rays[0])
-    poses, lost = {two[0]: np.eye(3, 4), two[1]: best.pose}, list[int]()
-    points = [_points(rays[t], two, rows, best.pose) for t, *rows in best.pair.rows]
-    persons = [{two[0]: i, two[1]: j} for _, i, j in best.pair.rows]
-    for camera in sorted(set(range(n_cameras)) - set(two)):
+    (a, b), n_cameras = best.pair.cameras, len(rays[0])
+    poses, lost = {a: np.eye(3, 4), b: best.pose}, list[int]()
+    persons = _joined(takes, [(t, {(a, i), (b, j)}) for t, i, j in best.pair.rows])
+    points = [_points(rays, poses, person) for person in persons]
+    for camera in sorted(set(range(n_cameras)) - {a, b}):
         tried = [
-            (*_posed(xyz, rays[t][camera][row], _reach(rays[t][camera])[row]), number, row)
-            for number, ((t, *_), xyz) in enumerate(zip(best.pair.rows, points, strict=True))
+            _posed(xyz, rays[t][camera][row], _reach(rays[t][camera])[row])
+            for (t, _), xyz in zip(persons, points, strict=True)
             for row in takes[t].longest(camera, MOST_ROWS)
         ]
-        count, pose, *_ = max(tried, key=lambda one: one[0], default=(0, None, 0, 0))
-        near: list[tuple[int, int]] = []
+        count, pose = max(tried, key=lambda one: one[0], default=(0, None))
         if pose is not None and count >= LEAST_OVERLAP // 2:
-            near = list(_followed(takes, rays, camera, pose, best.pair.rows, points))
-        if pose is None or not near:
+            poses[camera] = pose
+    for _ in range(SWEEPS):
+        for camera in poses:
+            persons = _grown(takes, rays, poses, persons, camera)
+        persons = _joined(takes, persons)
+    for camera in range(n_cameras):
+        if not any(camera == own for _, rows in persons for own, _ in rows):
             lost.append(camera)
-            continue
-        poses[camera] = pose
-        for number, row in near:
-            persons[number][camera] = row
-    tracks = [
-        (t, tuple(person.get(camera, -1) for camera in range(n_cameras)))
-        for (t, *_), person in zip(best.pair.rows, persons, strict=True)
-    ]
+    tracks = [(t, _by_camera(takes[t], rows, n_cameras)) for t, rows in persons]
     return [poses.get(camera, np.eye(3, 4)) for camera in range(n_cameras)], tracks, lost
 
 
-def _points(rays: list[NDArray], two, rows, pose: NDArray) -> NDArray:
-    """Return the joints (T, J, 3) that a track has in the axes of the first of two cameras."""
-    both = np.stack([rays[camera][row] for camera, row in zip(two, rows, strict=True)])
-    flat = both.reshape(2, -1, 2)
+def _by_camera(take: Take, rows: set[tuple[int, int]], n_cameras: int):
+    """Return the rows of each camera, those with most joints first."""
+    return tuple(
+        tuple(row for row in take.longest(camera) if (camera, row) in rows)
+        for camera in range(n_cameras)
+    )
+
+
+def _joined(takes: Sequence[Take], persons: Iterable[_Person]) -> list[_Person]:
+    """Join persons who share a track, unless a camera would then show one of them twice at once."""
+    found: list[_Person] = []
+    for take, rows in persons:
+        for other in [one for one in found if one[0] == take and one[1] & rows]:
+            if not _twice(takes[take], rows | other[1]):
+                found.remove(other)
+                rows = rows | other[1]
+        found.append((take, rows))
+    return found
+
+
+def _twice(take: Take, rows: set[tuple[int, int]]) -> bool:
+    """Say whether a camera shows something in two rows at one time."""
+    shown: dict[int, Any] = {}
+    for camera, row in rows:
+        shown[camera] = shown.get(camera, 0) + take.times(camera, row).astype(int)
+    return any(count.max() > 1 for count in shown.values())
+
+
+def _points(rays: Rays, poses: Mapping[int, NDArray], person: _Person) -> NDArray:
+    """Return the joints (T, J, 3) of a person whom posed cameras see."""
+    take, rows = person
+    each = [of_rows(rays[take][c], sorted(r for own, r in rows if own == c)) for c in poses]
+    flat = np.stack(each).reshape(len(poses), -1, 2)
     weight = np.isfinite(flat).all(axis=-1).astype(float)
-    xyz = triangulation.triangulate(np.nan_to_num(flat), weight, np.stack([np.eye(3, 4), pose]))
-    return xyz.reshape(*both.shape[1:3], 3)
+    xyz = triangulation.triangulate(np.nan_to_num(flat), weight, np.stack(list(poses.values())))
+    return xyz.reshape(*each[0].shape[:2], 3)
 
 
 def _posed(xyz: NDArray, rays: NDArray, reach: float) -> tuple[int, NDArray | None]:
@@ -307,22 +351,38 @@ def _posed(xyz: NDArray, rays: NDArray, reach: float) -> tuple[int, NDArray | No
     return (len(near), pose) if (depth > 0).mean() >= IN_FRONT else (0, None)
 
 
-def _followed(
-    takes: Sequence[Take], rays: Rays, camera: int, pose: NDArray, rows, points
-) -> Iterator[tuple[int, int]]:
-    """Yield which row of a posed camera shows each track of two others, best first."""
-    tried = []
-    for number, ((t, *_), xyz) in enumerate(zip(rows, points, strict=True)):
-        in_cam = xyz @ pose[:, :3].T + pose[:, 3]
+def _grown(
+    takes: Sequence[Take],
+    rays: Rays,
+    poses: Mapping[int, NDArray],
+    persons: Sequence[_Person],
+    camera: int,
+) -> list[_Person]:
+    """Add to persons the tracks of one camera that agree with where the other cameras see them.
+
+    At no time is one track that of two persons, nor has one person two.
+    """
+    others = {other: pose for other, pose in poses.items() if other != camera}
+    tried, taken = list[tuple[int, int, int, Any]](), dict[tuple[int, int], Any]()
+    shown = [np.zeros(takes[t].xy[camera].shape[1], dtype=bool) for t, _ in persons]
+    for number, (t, rows) in enumerate(persons):
+        for _, row in (one for one in rows if one[0] == camera):
+            times = takes[t].times(camera, row)
+            taken[t, row] = taken.get((t, row), False) | times
+            shown[number] |= times
+        in_cam = _points(rays, others, (t, rows)) @ poses[camera][:, :3].T + poses[camera][:, 3]
+        limit = 3 * _reach(rays[t][camera])
         for row in takes[t].longest(camera):
-            own = rays[t][camera][row]
-            off = np.linalg.norm(in_cam[..., :2] / in_cam[..., 2:] - own, axis=-1)
-            known, limit = np.isfinite(off), 3 * _reach(rays[t][camera])[row]
-            near = int((known & (np.nan_to_num(off, nan=np.inf) <= limit)).sum())
+            off = in_cam[..., :2] / in_cam[..., 2:] - rays[t][camera][row]
+            off = np.where(shown[number][:, None], np.nan, np.linalg.norm(off, axis=-1))
+            known = np.isfinite(off)
+            near = int((known & (np.nan_to_num(off, nan=np.inf) <= limit[row])).sum())
             if known.any() and near >= LEAST_SHARE * known.sum():
-                tried.append((near, number, row))
-    taken: set[int] = set()
-    for _, number, row in sorted(tried, key=lambda one: -one[0]):
-        if number not in taken:
-            taken.add(number)
-            yield number, row
+                tried.append((near, number, row, known.any(axis=1)))
+    found = [(t, set(rows)) for t, rows in persons]
+    for _, number, row, times in sorted(tried, key=lambda one: -one[0]):
+        key = found[number][0], row
+        if not ((taken.get(key, False) | shown[number]) & times).any():
+            found[number][1].add((camera, row))
+            taken[key], shown[number] = taken.get(key, False) | times, shown[number] | times
+    return found

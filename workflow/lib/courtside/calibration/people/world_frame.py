@@ -1,4 +1,4 @@
-"""The world of cameras that people alone place: its unit from their height, its floor from feet.
+"""The world of cameras that people alone place: its floor under their feet, and its covariance.
 
 The origin lies on the floor below the middle of people's ways, z is up, and x runs along the floor
 as the line from the first camera to the second.
@@ -11,87 +11,29 @@ from numpy.typing import NDArray
 
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
+from courtside.calibration.people import unit
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
 from courtside.geometry.similarity import Sim3
 from courtside.records.keypoints import skeleton
-from courtside.study.errors import InputError
 
-# ASSUME: leg and trunk as BlazePose heavy sees them, share of the height: 0.722 +- 0.006 of the
-# four persons of players-dev; BlazePose full sees 0.715. Anatomical ones are longer (0.78, Winter
-# 2009, fig. 4.1).
-OF_HEIGHT = 0.722
-OF_HEIGHT_SIGMA = 0.01  # ASSUME: between persons, share of the length
-NETWORK_SIGMA = 0.01  # ASSUME: what is alike for all persons: networks differ by as much
-STATED_SIGMA_M = 0.01  # of a height to the centimetre, in shoes or not
 ANKLE = 0.055  # ASSUME: of the height: an ankle above the floor while its foot stands (players-dev)
 STANDING = 0.1  # the quantile of ankles' heights that is one of feet that stand
 TILT_M = 0.5  # ASSUME: feet spread less than this tell less of the floor's tilt than bodies do
 ROUNDS = 30  # of new weights
 EPSILON_M = 1e-3  # nearer to the floor all weights are alike
 TINY_STEP = 1e-6  # of a similarity, to differentiate by
-LEAST_FRAMES = 20  # ASSUME: that the length of a body needs
 
 
-def length(xyz: NDArray) -> float:
-    """Return the length of leg and trunk of a person by joints (T, J, 3), NaN where unknown.
-
-    The sum of the medians of its parts over frames: no posture shortens it. Joints are those of
-    `skeleton.JOINTS`.
-    """
-    place = {name: xyz[:, at] for at, name in enumerate(skeleton.JOINTS)}
-    middle = {part: _middle(place, part) for part in ("shoulder", "hip")}
-    pairs = [[(place[f"{side}_{a}"], place[f"{side}_{b}"]) for side in ("left", "right")]
-             for a, b in (("hip", "knee"), ("knee", "ankle"))]  # fmt: skip
-    total = 0.0
-    for part in [*pairs, [(middle["hip"], middle["shoulder"])]]:
-        apart = np.concatenate([np.linalg.norm(a - b, axis=1) for a, b in part])
-        known = apart[np.isfinite(apart)]
-        total += float(np.median(known)) if len(known) >= LEAST_FRAMES else np.nan
-    return total
-
-
-def _middle(place: dict[str, NDArray], part: str) -> NDArray:
-    return (place[f"left_{part}"] + place[f"right_{part}"]) / 2
-
-
-def metres(
-    lengths: Sequence[Sequence[float]], heights_m: Sequence[Sequence[float | None]]
-) -> tuple[float, float]:
-    """Return metres per unit of length, and the standard deviation of that as a share of it.
-
-    Both arguments are by take: `lengths` of the persons found, those seen most first, `heights_m`
-    of those stated to be in it. Of several persons the tallest is taken for the longest. Takes of
-    persons with unknown heights tell nothing. `InputError` if no take does.
-    """
-    ratios, known = list[float](), set[float]()
-    for found, stated in zip(lengths, heights_m, strict=True):
-        heights = [one for one in stated if one]
-        longest = sorted([one for one in found if np.isfinite(one)][: len(stated)])
-        if len(heights) == len(stated) == len(longest):
-            known |= set(heights)
-            ratios += [
-                OF_HEIGHT * height / own
-                for height, own in zip(sorted(heights), longest, strict=True)
-            ]
-    if not ratios:
-        raise InputError(
-            "people: expected `height_m` of every subject of a take whose legs and trunk are seen, "
-            f"found heights {[list(one) for one in heights_m]} of {[len(one) for one in lengths]} "
-            "persons; state them: nothing else tells the unit of length"
-        )
-    of_height = np.hypot(OF_HEIGHT_SIGMA, STATED_SIGMA_M / min(known)) / np.sqrt(len(known))
-    return float(np.exp(np.mean(np.log(ratios)))), float(np.hypot(of_height, NETWORK_SIGMA))
-
-
-def floor(xyz: NDArray, cameras: Sequence[Camera]) -> Sim3:
+def floor(xyz: NDArray, cameras: Sequence[Camera], on_floor: NDArray | None = None) -> Sim3:
     """Return `world_from_cameras` for joints (T, J, 3) m of all persons, NaN where unknown.
 
     The lowest places of ankles lie in one plane. Where people stay in one place, it is
-    perpendicular to the mean line from ankles to shoulders.
+    perpendicular to the mean line from ankles to shoulders. Points `on_floor` (P, 3) tell the
+    floor's height better, and its tilt where three or more do not lie on one line.
     """
     place = {name: xyz[:, at] for at, name in enumerate(skeleton.JOINTS)}
-    upward = rotations.unit(_middle(place, "shoulder") - _middle(place, "ankle"))
+    upward = rotations.unit(unit.middle(place, "shoulder") - unit.middle(place, "ankle"))
     up = rotations.unit(np.nanmedian(upward, axis=0))
     ankles = np.concatenate([place["left_ankle"], place["right_ankle"]])
     ankles = ankles[np.isfinite(ankles).all(axis=1)]
@@ -100,8 +42,15 @@ def floor(xyz: NDArray, cameras: Sequence[Camera]) -> Sim3:
     turn = _axes(up, centres[1] - centres[0])
     slopes, offset = _lowest_plane((ankles - middle) @ turn.T)
     normal = np.array([*-slopes, 1.0])
-    turn = _axes(rotations.unit(turn.T @ normal), centres[1] - centres[0])
-    sole = offset / np.linalg.norm(normal) - ANKLE * length(xyz) / OF_HEIGHT
+    up = rotations.unit(turn.T @ normal)
+    sole = float(offset / np.linalg.norm(normal)) - ANKLE * unit.length(xyz) / unit.OF_HEIGHT
+    if on_floor is not None and len(on_floor):
+        about = on_floor - on_floor.mean(axis=0)
+        _, extent, axes = np.linalg.svd(about, full_matrices=False)
+        if len(on_floor) >= 3 and extent[1] > TILT_M:
+            up = axes[2] * np.sign(axes[2] @ up)
+        sole = float((on_floor.mean(axis=0) - middle) @ up)
+    turn = _axes(up, centres[1] - centres[0])
     return Sim3(1.0, turn, -turn @ middle - [0, 0, sole])
 
 

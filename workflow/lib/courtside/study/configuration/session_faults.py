@@ -79,20 +79,28 @@ def _people_faults(file: Path, content: Content) -> Iterator[str]:
             f"{len(content['cameras'])}; people do not tell how two stand"
         )
     subjects = content.get("subjects", {})
-    if not any((one or {}).get("height_m") for one in subjects.values()):
+    known = "known_lengths" in content
+    if not known and not any((one or {}).get("height_m") for one in subjects.values()):
         yield (
             f"{file}: subjects: expected `height_m` of whom takes show, for the calibration "
-            "`people`, found none; state it: nothing else tells the unit of length"
+            "`people`, found none; state it, or `known_lengths`: nothing else tells the unit of "
+            "length"
         )
 
 
 def _override_faults(file: Path, content: Content) -> Iterator[str]:
     """Yield the faults of static points and of numbers that replace those of a calibration file."""
     calibration, where = content.get("calibration", {}), f"{file}: calibration"
-    if "static_points" in content and not calibration:
+    measured = "known_lengths" in content
+    if "static_points" in content and not (calibration or measured):
         yield (
-            f"{file}: static_points: expected a calibration file that they check, found none; "
-            "remove them or add `calibration`"
+            f"{file}: static_points: expected a calibration file that they check, or "
+            "`known_lengths` between them, found none; remove them or add `calibration`"
+        )
+    if measured and not ("static_points" in content and _asks_people(content)):
+        yield (
+            f"{file}: known_lengths: expected `static_points` with their ends and the calibration "
+            "`people` in override.calibrations, found not both; nothing else reads them"
         )
     points = calibration.get("principal_point_px", {})
     yield from take_faults.unknown(f"{where}.principal_point_px", points, content["cameras"])

@@ -81,6 +81,7 @@ def session(
         withheld=withheld,
         **_calibration(content),
         static_points=of_configuration(content.get("static_points"), config),
+        known_lengths=tuple(content.get("known_lengths", ())),
         people=of_configuration(content.get("people"), config),
         walks=recordings.get("walks") or {k: w.get("video") or w["images"] for k, w in walks},
         court_points=recordings.get("court_points") or clicked,

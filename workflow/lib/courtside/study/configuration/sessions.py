@@ -116,6 +116,8 @@ class Session:
     board: dict[str, Any] | None = None  # what several cameras see, and where they do
     calibration_unit: str | None = None  # of the lengths in that file, where it states none
     static_points: str | None = None  # points at rest, clicked in several cameras
+    # Known lengths between two of them: `points`, `length_m`, perhaps `on_floor`
+    known_lengths: tuple[dict[str, Any], ...] = ()
     people: str | None = None  # people.csv, in which persons are named
     # Takes that are not among `takes`, because persons in them have not agreed to be measured: who,
     # by take

@@ -66,10 +66,10 @@ def filmed(job: Job) -> list[dict[str, Any]]:
     for name in wanted_takes(job):
         take = job.session.takes[name]
         one = Job(job.study, {**job.wildcards, "take": name, "model": model})
-        said = {"synchronised": take.synchronised, "clocks": takes.clocks(one, take.cameras)}
+        timing = {"synchronised": take.synchronised, "stated": takes.clocks(one, take.cameras)}
         heights_m = list(takes.heights(one).values())
         pose2d = takes.each_camera(one, paths.POSE2D)
-        found.append({"take": name, "pose2d": pose2d, "heights_m": heights_m, **said})
+        found.append({"take": name, "pose2d": pose2d, "heights_m": heights_m, "timing": timing})
     return found
 
 

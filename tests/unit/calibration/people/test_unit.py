@@ -1,0 +1,144 @@
+"""The unit of length: by stated heights, whoever is whose; contradictions and doubts are said."""
+
+import numpy as np
+import pytest
+
+from courtside.calibration.people import prior, unit
+from courtside.calibration.people.unit import OF_HEIGHT, Body
+from courtside.geometry import camera as camera_models
+from courtside.geometry.similarity import Sim3
+from courtside.study.errors import InputError
+from fixtures.cameras import corner_cameras
+from fixtures.people import tracks_made
+
+WALK = tracks_made.persons()
+UNITS_PER_M = 0.4  # the unit of these bodies is 2.5 m
+TRUE = corner_cameras.four_cameras()
+SMALL = [Sim3(UNITS_PER_M, np.eye(3), np.zeros(3)).camera(camera) for camera in TRUE]
+LINE = np.array([[-1.0, 1.0, 0.0], [1.0, 1.0, 0.0]])
+CLICK_PX = {"click_sigma_px": 2.0, "click_bias_px": 0.0}
+
+
+def body(height_m, frames=100, first=0.0, last=10.0, take=0):
+    """Return the body of somebody so tall."""
+    return Body(take, UNITS_PER_M * OF_HEIGHT * height_m, frames, first, last)
+
+
+def test_a_body_is_as_long_in_every_posture():
+    one, other = (unit.length(xyz) for xyz in WALK)
+    assert other / one == pytest.approx(tracks_made.SIZES[1] / tracks_made.SIZES[0], rel=0.01)
+    assert np.isnan(unit.length(WALK[0, :10]))
+
+
+def test_heights_give_metres_the_tallest_to_the_longest():
+    bodies, heights = [body(1.8), body(1.5), body(1.5, take=1)], [[1.5, 1.8], [1.5]]
+    found = unit.by_heights(bodies, heights)
+    alone = unit.by_heights(bodies[2:], [[None, 1.8], [1.5]])
+    assert found.metres == pytest.approx(2.5) == alone.metres
+    assert 0.005 < found.sigma < alone.sigma
+    assert not found.doubts
+    assert alone.doubts == (
+        "one person's height alone tells the unit; a second person makes it surer",
+    )
+
+
+def test_two_tracks_of_one_person_are_not_two_persons():
+    """The tracks seen most are both of the first person."""
+    bodies = [
+        body(1.80, 300, 0, 5),
+        body(1.79, 280, 5, 10),
+        body(1.60, 90, 0, 2),
+        body(1.61, 80, 6, 9),
+    ]
+    found = unit.by_heights(bodies, [[1.6, 1.8]])
+    assert found.metres == pytest.approx(2.5, rel=0.01)
+    assert not found.doubts
+
+
+def test_somebody_else_beside_the_persons_has_no_height():
+    bodies = [body(1.80, 300), body(1.65, 280), body(1.40, 100)]
+    assert unit.by_heights(bodies, [[1.65, 1.8]]).metres == pytest.approx(2.5, rel=0.01)
+
+
+def test_tracks_at_one_time_are_different_persons():
+    """Apart in time, both would be of one person, and all would be 9 % longer."""
+    tall = [body(1.8, 100, 0, 10), body(1.8, 100, 0, 10)]
+    assert unit.by_heights(tall, [[1.8, 1.8]]).metres == pytest.approx(2.5)
+    assert unit.by_heights(tall, [[1.65, 1.65]]).metres == pytest.approx(2.5 * 1.65 / 1.8)
+    both = [body(1.70, 100, 0, 10), body(1.74, 100, 5, 10), body(1.72, 50, 0, 4)]
+    found = unit.by_heights(both, [[1.74, 1.70]])
+    assert found.metres == pytest.approx(2.5, rel=0.01)
+
+
+def test_it_is_said_that_another_way_to_give_heights_agrees_as_well():
+    """Two bodies at different times and a third: the lower two or the upper two."""
+    bodies = [body(1.6, 100, 0, 3), body(1.7, 100, 4, 7), body(1.8, 100, 8, 10)]
+    found = unit.by_heights(bodies, [[1.7, 1.7 * 1.7 / 1.6]])
+    (doubt,) = found.doubts
+    assert doubt.startswith("whose height is whose is not certain: ")
+
+
+def test_heights_that_contradict_each_other_are_said():
+    (doubt,) = unit.by_heights([body(1.8), body(1.6)], [[1.8, 1.7]]).doubts
+    assert doubt.startswith("stated heights disagree by 6.1 %: if 1.70 m is right, somebody stated")
+    assert "is 1.91 m tall" in doubt
+
+
+def test_many_persons_are_ordered_by_length():
+    heights = [1.5 + 0.05 * at for at in range(7)]
+    bodies = [body(one) for one in heights[::-1]]
+    assert unit.by_heights(bodies, [heights]).metres == pytest.approx(2.5)
+
+
+@pytest.mark.parametrize("heights", [[[None]], [[1.7, None]], [[1.7, 1.8]], [[]]])
+def test_a_take_of_somebody_without_height_tells_nothing(heights):
+    with pytest.raises(InputError, match="expected `height_m` of every subject"):
+        unit.by_heights([body(1.7)], heights)
+
+
+def clicked(noise_px=0.0, seed=0, length_m=2.0, cameras=(0, 1, 2, 3)):
+    """Return the line as some of the cameras see it."""
+    xy = np.stack([camera_models.project(camera, LINE) for camera in TRUE])
+    xy += noise_px * np.random.default_rng(seed).normal(size=xy.shape)
+    xy[[at for at in range(4) if at not in cameras]] = np.nan
+    stated = [{"points": ["left", "right"], "length_m": length_m}]
+    (found,) = unit.of_clicks(stated, ["left", "right"], xy, **CLICK_PX)
+    return found
+
+
+@pytest.mark.parametrize("cameras", [(0, 1), (0, 1, 2, 3)])
+def test_a_known_length_gives_metres_as_uncertain_as_its_clicks(cameras):
+    assert unit.by_length(SMALL, clicked(cameras=cameras)).metres == pytest.approx(2.5)
+    noisy = [unit.by_length(SMALL, clicked(1.0, seed, cameras=cameras)) for seed in range(200)]
+    scatter = np.std([one.metres / 2.5 for one in noisy])
+    of_line = unit.KNOWN_SIGMA_M / 2.0
+    assert np.hypot(scatter, of_line) == pytest.approx(noisy[0].sigma, rel=0.15)
+    assert noisy[0].by == "left to right"
+
+
+def test_the_shape_of_cameras_makes_a_known_length_less_certain():
+    loose = prior.stated(
+        SMALL, rotation_deg=0.1, position_m=0.01, focal_percent=1, principal_point_percent=1, k1=0
+    ).of_columns()
+    exact = unit.by_length(SMALL, clicked())
+    assert unit.by_length(SMALL, clicked(), loose).sigma > 3 * exact.sigma
+
+
+def test_a_known_length_counts_more_than_heights_and_stands_for_them():
+    bodies = [body(1.80), body(1.60)]
+    found = unit.find(SMALL, bodies, [[1.83, 1.63]], [clicked()])
+    assert found.metres == pytest.approx(2.5, rel=0.003)
+    assert found.by == "left to right, stated heights"
+    assert found.sigma < unit.by_length(SMALL, clicked()).sigma
+    assert not found.doubts
+    without = unit.find(SMALL, bodies, [[None, 1.6]], [clicked()])
+    assert (without.metres, without.by) == (pytest.approx(2.5), "left to right")
+    (doubt,) = unit.find(SMALL, bodies, [[1.9, 1.69]], [clicked()]).doubts
+    assert doubt.startswith("stated heights: all lengths would be +5.4 % by it alone, expected 2.")
+
+
+def test_a_known_length_without_clicks_is_named():
+    with pytest.raises(InputError, match="known length left to right: expected two ends, each cl"):
+        unit.by_length(SMALL, clicked(cameras=(1,)))
+    with pytest.raises(InputError, match=r"length a to b: expected clicks of both .* none of b am"):
+        unit.of_clicks([{"points": ["a", "b"]}], ["a"], np.zeros((4, 1, 2)), **CLICK_PX)
