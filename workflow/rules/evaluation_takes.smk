@@ -147,6 +147,24 @@ rule evaluate_sources:
         "../scripts/evaluate_sources.py"
 
 
+rule evaluate_source_angles:
+    input:
+        device_npz=of_job(devices.compared_sources),
+        fitted_npz=of_job(lambda job: list(devices.fitted(job).values())),
+        sync_json=paths.DEVICE_CLOCKS,
+        truth_npz=paths.TRUE_TAKE,
+    output:
+        errors_csv=paths.SOURCE_ANGLE_ERRORS,
+    log:
+        "results/{session}/logs/evaluate_source_angles/{take}.{model}.log",
+    params:
+        code=code("evaluate_source_angles.py"),
+        labels=lambda w: dict(w.items()),
+        step=of_job(devices.compared_angles),
+    script:
+        "../scripts/evaluate_source_angles.py"
+
+
 rule evaluate_body_frames:
     input:
         body_npz=of_job(devices.bodies, corrected=False),

@@ -14,6 +14,7 @@ from courtside.records.footwork import Contacts
 from courtside.records.keypoints import missing_reason, skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.keypoints.skeletal_motion import SkeletalMotion
+from courtside.study.execution import log
 
 UNKNOWN_M = 0.03  # ASSUME: standard deviation per axis that a joint without a network's has
 # And that points of the hand have: fingers bend, and the model's hand does not. Chosen on
@@ -96,6 +97,23 @@ def person(
         if number < len(ROUNDS):
             body = fit.lengthened(model, body, data, found)
     return Fitted(frames, body, found, fit.spread(model, body, data, found))
+
+
+def people(
+    points: Keypoints3D,
+    cutoff_hz: Mapping[str, float],
+    height_m_of: Mapping[str, float | None],
+    contacts: Contacts | None = None,
+) -> dict[int, Fitted]:
+    """Fit everybody of a record (`person`); return those whom the model fits, by their index."""
+    names = points.person_id.tolist()
+    found = {
+        at: person(points, at, cutoff_hz, height_m_of.get(name), contacts)
+        for at, name in enumerate(names)
+    }
+    fits = {at: one for at, one in found.items() if one is not None}
+    log.logger.info("persons fitted: %d of %d", len(fits), len(found))
+    return fits
 
 
 def _filled(line: NDArray) -> NDArray:
