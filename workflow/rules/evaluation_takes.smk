@@ -5,9 +5,10 @@ Only this file and evaluation_calibration.smk read truth.
 Inputs: 2D and 3D keypoints, clocks, truth of takes.
 Outputs: results/{session}/evaluation/takes/, results/{session}/takes/{take}/table1/.
 Steps: evaluate_take, evaluate_reliability, evaluate_clocks, evaluate_kinematics, evaluate_angles,
-evaluate_contacts, evaluate_strokes, evaluate_sources, evaluate_body_frames, evaluate_detection,
-evaluate_round_trip (table 1), evaluate_fusions (paired differences with intervals); of development
-sessions, asked for by name: evaluate_joint_offsets, evaluate_joint_errors, evaluate_skin_depths.
+evaluate_contacts, evaluate_strokes, evaluate_sources, evaluate_source_angles, evaluate_body_frames,
+evaluate_detection, evaluate_round_trip (table 1), evaluate_fusions (paired differences with
+intervals); of development sessions, asked for by name: evaluate_joint_offsets,
+evaluate_joint_errors, evaluate_skin_depths.
 """
 
 

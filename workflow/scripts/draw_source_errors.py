@@ -1,4 +1,4 @@
-"""Draw the errors of all sources and what they are made of: errors, angles, parts -> figure, CSV."""
+"""Draw the errors of all sources and what they are made of: three tables -> figure, CSV."""
 
 import pandas as pd
 

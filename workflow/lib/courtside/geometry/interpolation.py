@@ -56,8 +56,9 @@ def between(time_s: NDArray, values: NDArray, wanted_s: NDArray, longest_s: floa
     span = time_s[right] - time_s[right - 1]
     share = (wanted_s - time_s[right - 1]) / span
     # A time that is a sample's own needs no neighbour.
-    share = np.where(np.abs(share - np.rint(share)) < 1e-9, np.rint(share), share)
-    known = (share >= 0) & (share <= 1) & (span <= longest_s)
+    own = np.abs(share - np.rint(share)) < 1e-9
+    share = np.where(own, np.rint(share), share)
+    known = (share >= 0) & (share <= 1) & (own | (span <= longest_s))
     share = np.where(known, share, np.nan)[:, None, None]
     before, after = values[right - 1], values[right]
     first, last = values[np.maximum(right - 2, 0)], values[np.minimum(right + 1, len(values) - 1)]

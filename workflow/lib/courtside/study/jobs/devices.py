@@ -158,7 +158,7 @@ def _vision(job: Job) -> str:
 
 
 def fitting(job: Job) -> dict[str, Any]:
-    """Return how the skeletal model is fitted to a source: to whom, with which errors and filter."""
+    """Return how the skeletal model is fitted to a source: to whom, with what errors and filter."""
     source = job["source"]
     who = job.take.devices[sources(job)[source].device].subject
     return {
