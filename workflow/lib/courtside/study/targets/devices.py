@@ -36,7 +36,7 @@ class DeviceTake:
         """Its sources that the skeletal model is fitted to, with the person whom each follows."""
         kinds = {device.kind for device in self.take.devices.values()}
         seen = "rgbd" in kinds or (self.take.cameras and self.session.take_calibrations())
-        found = {}
+        found: dict[str, str] = {}
         for name, device in self.take.devices.items():
             corrected = (f"{name}-corrected",) if seen and device.kind == "inertial" else ()
             found |= dict.fromkeys((*device.sources(name), *corrected), device.subject)
