@@ -64,10 +64,15 @@ def read(results, session, name):
     found = {}
     for path in sorted((base / "devices").glob("*.npz")):
         motion = device_motion.read(path)
-        of = motion.source.removesuffix("-corrected")
-        clock = known.get(of) or next(c for n, c in known.items() if n.startswith(of[:-4]))
+        clock = known[motion.source.removesuffix("-corrected")]
         found[motion.source] = (path, motion, clock)
     return truth, str(truth.person_id[0]), found
+
+
+def heights(session):
+    """Return {person: height in metres} of a session."""
+    known = yaml_files.read(ROOT / "config" / "sessions" / f"{session}.yaml")["subjects"]
+    return {name: one.get("height_m") for name, one in known.items()}
 
 
 def kind(motion):
@@ -77,24 +82,27 @@ def kind(motion):
     return {"rgbd": "depth"}.get(motion.kind, motion.kind)
 
 
-def fitted(path, motion, person, folder):
-    """Fit a source by the rule's script; return both stages and processor seconds."""
-    known, step = parameters(), parameters()["fit_source"]
-    sigma_m = step["sigma_m"][kind(motion)]
+def fitted(path, motion, subject, folder):
+    """Fit a source by the rule's script; return both stages and processor seconds.
+
+    `subject` holds the person's name and height.
+    """
+    known = parameters()
+    sigma_m = known["fit_source"]["sigma_m"][kind(motion)]
     files = [folder / part for part in ("joints.npz", "motion.npz", "angles.csv")]
     before = time.process_time()
     fit_source.main(
         path,
         ROOT / "config" / "skeletons" / f"{SKELETONS.get(motion.kind, 'blazepose33')}.yaml",
         *files,
-        person=person,
-        height_m=None,
+        person=subject[0],
+        height_m=subject[1],
         sigma_m=sigma_m,
         max_gap_s=known["filter_motion"]["max_gap_s"],
         cutoff_hz=known["filter_motion"]["cutoff_hz"],
     )
     seconds = time.process_time() - before
-    raw = source.observed(device.points(motion, person), sigma_m)
+    raw = source.observed(device.points(motion, subject[0]), sigma_m)
     return {"source": raw, "model": keypoints.read_3d(files[0])}, seconds
 
 
@@ -177,7 +185,8 @@ def compare(results, sessions, folder):
             truth, person, sources = read(results, session, name)
             label = {"session": session, "take": name}
             for one, (file, motion, clock) in sources.items():
-                stages, seconds = fitted(file, motion, person, folder)
+                subject = person, heights(session)[person]
+                stages, seconds = fitted(file, motion, subject, folder)
                 for stage, points in stages.items():
                     row = numbers(points, clock, truth, person)
                     more = {"n": len(points.time_s), "seconds": seconds}
@@ -212,21 +221,42 @@ def sigmas(results, session=DEVELOPMENT):
     ).T
 
 
+SOLVERS = {  # what a suit's errors are after: source and stage, of a suit named {}
+    "as it is": ("{}", "source"),
+    "its own correction": ("{}-corrected", "source"),
+    "its own correction, then the model": ("{}-corrected", "model"),
+    "the model fitted to suit and depth camera at once": ("{} and depth", "model"),
+}
+
+
 def rows(table):
-    """Yield the rows of docs/numbers: of each source and stage the median take, and the worst."""
+    """Yield the rows of docs/numbers: of reported sessions, then of suits after each solver."""
+    for (session, name), part in table.groupby(["session", "source"], sort=False):
+        label, stages = f"`{session}`: `{name}`", dict(list(part.groupby("stage")))
+        if session in SESSIONS and len(stages) == 2:
+            for stage, one in stages.items():
+                yield from _measured("device-angles", label, one, f"_{stage}")
+    known = table.set_index(["session", "source", "stage"]).sort_index()
+    for session, name in table.groupby(["session", "source"], sort=False).groups:
+        if f"{name} and depth" in table["source"].to_numpy():
+            for words, (pattern, stage) in SOLVERS.items():
+                one = known.loc[[(session, pattern.format(name), stage)]].reset_index()
+                yield from _measured("device-solvers", f"`{session}`, `{name}`: {words}", one, "")
+    seconds = table[table["session"].isin(SESSIONS) & (table["stage"] == "model")]["seconds"]
+    about = ("s", ", ".join(SESSIONS), seconds.count(), 0, "benchmark", COMMAND)
+    yield ["device-costs", "fits of all sources", "seconds", f"{seconds.sum():.0f}", *about]
+
+
+def _measured(name, label, part, suffix):
+    """Yield the numbers of one row: of several takes the median, the worst and their count."""
     measures = {f"{angle}_deg": "degrees" for angle in ANGLES}
     measures |= {f"{angle}_within": "%" for angle in ANGLES} | {"median_mm": "mm", "p95_mm": "mm"}
-    for (session, name, stage), part in table.groupby(["session", "source", "stage"], sort=False):
-        for measure, unit in measures.items():
-            digits = 0 if unit == "mm" else 1
-            about = (unit, session, int(part["n"].sum()), 0, "benchmark", COMMAND)
-            worst = part[measure].min() if unit == "%" else part[measure].max()
-            for end, value in (("", part[measure].median()), ("_worst", worst)):
-                key = f"{measure}_{stage}{end}"
-                yield ["device-angles", f"{name}; {session}", key, f"{value:.{digits}f}", *about]
-    seconds = table[table["session"].isin(SESSIONS) & (table["stage"] == "model")]["seconds"]
-    about = ("s", ", ".join(SESSIONS), len(seconds.dropna()), 0, "benchmark", COMMAND)
-    yield ["device-angles-time", "all sources", "seconds", f"{seconds.sum():.0f}", *about]
+    for measure, unit in measures.items():
+        digits = 1 if unit == "degrees" else 0
+        about = (unit, part["session"].iloc[0], len(part), 0, "benchmark", COMMAND)
+        worst = part[measure].min() if unit == "%" else part[measure].max()
+        for end, value in (("", part[measure].median()), ("_worst", worst)):
+            yield [name, label, f"{measure}{suffix}{end}", f"{value:.{digits}f}", *about]
 
 
 def main():
