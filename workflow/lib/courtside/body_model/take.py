@@ -106,13 +106,17 @@ def people(
     contacts: Contacts | None = None,
 ) -> dict[int, Fitted]:
     """Fit everybody of a record (`person`); return those whom the model fits, by their index."""
-    names = points.person_id.tolist()
-    found = {
-        at: person(points, at, cutoff_hz, height_m_of.get(name), contacts)
-        for at, name in enumerate(names)
-    }
-    fits = {at: one for at, one in found.items() if one is not None}
-    log.logger.info("persons fitted: %d of %d", len(fits), len(found))
+    fits = {}
+    for at, name in enumerate(points.person_id.tolist()):
+        found = person(points, at, cutoff_hz, height_m_of.get(name), contacts)
+        if found is not None:
+            fits[at] = found
+            continue
+        seen = np.isfinite(points.xyz[at]).all(axis=2).any(axis=0)
+        lost = sorted(set(skeleton.JOINTS) - set(points.joints[seen].tolist()))
+        said = f"never seen: {', '.join(lost)}" if lost else "seen in fewer than two frames"
+        log.logger.warning("%s: %s: no skeletal model is fitted", name, said)
+    log.logger.info("persons fitted: %d of %d", len(fits), len(points.person_id))
     return fits
 
 
