@@ -90,6 +90,7 @@ rule all:
         targets.together.every_players_figure(STUDY),
         targets.together.every_study_table(STUDY),
         targets.devices.every_device_export(STUDY),
+        targets.devices.every_source_angle(STUDY),
         targets.devices.every_device_figure(STUDY),
         targets.devices.every_body_frame(STUDY),
         targets.pages.every_clicking_page(STUDY),

@@ -17,6 +17,7 @@ import pytest
 
 sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))  # last: both have a `scene`
 import body_model
+import device_angles
 import find_persons
 import hall_markers
 import long_take
@@ -134,7 +135,7 @@ def test_scripts_are_called_by_benchmarks_that_the_next_tests_run():
         for path in (ROOT / "benchmarks").rglob("*.py")
         if '"workflow" / "scripts"' in path.read_text()
     }
-    assert calling == {"body_model", "long_take", "mapping_seeds", "real_footage"}
+    assert calling == {"body_model", "device_angles", "long_take", "mapping_seeds", "real_footage"}
 
 
 def test_long_take_gives_each_script_what_it_takes(tmp_path):
@@ -184,6 +185,19 @@ def test_the_body_model_gives_its_script_what_it_takes(tmp_path, monkeypatch):
     found, seconds = body_model.fitted(tmp_path, "players-a", ("shot", "known18"), tmp_path)
     assert set(found) == set(body_model.STAGES) and seconds >= 0
     assert main.call_args.kwargs["height_m_of"]["m3"] == pytest.approx(1.84)
+
+
+def test_angles_of_devices_give_their_script_what_it_takes(tmp_path, monkeypatch):
+    main = mock.create_autospec(device_angles.fit_source.main)
+    monkeypatch.setattr(device_angles.fit_source, "main", main)
+    for name in ("device", "source", "keypoints"):
+        monkeypatch.setattr(device_angles, name, mock.Mock())
+    suit = SimpleNamespace(source="mocopi-corrected", kind="inertial")
+    stages, seconds = device_angles.fitted("suit.npz", suit, ("p1", 1.8), tmp_path)
+    assert set(stages) == set(device_angles.STAGES) and seconds >= 0
+    given = main.call_args.kwargs
+    assert given["sigma_m"] == device_angles.parameters()["fit_source"]["sigma_m"]["corrected"]
+    assert given["height_m"] == 1.8 and device_angles.heights("single-view") == {"p1": 1.84}
 
 
 def test_intervals_of_angles_hold_their_error():

@@ -118,6 +118,7 @@ DEVICES_ALIGNED = {
     "align_bodies": 4,  # colour, depth, suit, corrected suit
     "measure_arcs": 1,
     "evaluate_sources": 1,
+    "evaluate_source_angles": 1,
     "evaluate_body_frames": 1,
     "build_viewer": 1,
     "draw_wrist_distance": 2,  # by each device's own clock, and by the clocks found
@@ -149,7 +150,9 @@ def test_a_video_with_other_content_reruns_its_camera_and_what_joins_cameras(kep
 def test_a_suit_recorded_anew_spares_the_depth_camera(kept):
     with changed(kept / SUIT, (kept / SUIT).read_bytes() + b"\n"):
         jobs = planned(root=kept)
-    assert jobs == together({"import_device": 1, "export_device": 1}, DEVICES_ALIGNED)
+    suit = {"import_device": 1, "export_device": 1}
+    suit |= {"fit_source": 2, "export_motion": 2}  # as it is, and corrected
+    assert jobs == together(suit, DEVICES_ALIGNED)
 
 
 def test_points_clicked_anew_spare_pictures_features_and_models(kept):
@@ -208,6 +211,7 @@ def test_a_network_reruns_detection_and_all_that_rests_on_keypoints(kept):
         jobs = planned(root=kept)
     cameras = {"detect_pose": 4 + 2 * 3 + 1}  # of the real take, two virtual ones, the depth camera
     devices = {"convert_landmarks": 1, "lift_depth": 1, "export_source": 2}
+    devices |= {"fit_source": 3, "export_motion": 3}  # colour, depth, corrected suit
     assert jobs == together(cameras, REAL_FUSED, PLAYERS_FUSED, devices, DEVICES_ALIGNED)
 
 

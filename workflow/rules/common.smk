@@ -17,7 +17,7 @@ PINS = LOCK.read_text(encoding="utf-8") if LOCK.is_file() else ""
 sys.path.insert(0, str(LIBRARY))
 os.environ.update(OPENBLAS_NUM_THREADS="1")  # sums do not depend on the number of cores
 
-from courtside.study import paths, targets
+from courtside.study import methods, paths, targets
 from courtside.study.configuration import configuration, consent, plans
 from courtside.study.errors import InputError
 from courtside.study.execution import digest, files, future_dates, machine_resources

@@ -2,8 +2,8 @@
 
 Inputs: recordings of devices. Outputs: results/{session}/takes/{take}/ devices, sync.
 Steps: import_device, export_device (of inertial suits), export_source (of others), extract_colour,
-convert_landmarks, lift_depth, select_person (of the fixed cameras), detect_events (whatever happens
-to the clocks), synchronise_devices.
+convert_landmarks, lift_depth, select_person (of the fixed cameras), fit_source (the skeletal model,
+to any but these), detect_events (whatever happens to the clocks), synchronise_devices.
 """
 
 
@@ -129,6 +129,27 @@ rule select_person:
         person=of_job(devices.person),
     script:
         "../scripts/select_person.py"
+
+
+rule fit_source:
+    input:
+        device_npz=of_job(lambda job: devices.sources(job)[job["source"]].file),
+        skeleton_yaml=of_job(devices.source_skeleton),
+    output:
+        joints_npz=paths.FITTED_SOURCE,
+        motion_npz=paths.SOURCE_MOTION,
+        angles_csv=paths.SOURCE_ANGLES,
+    log:
+        "results/{session}/logs/fit_source/{take}.{source}.{model}.log",
+    benchmark:
+        "results/{session}/benchmarks/fit_source/{take}.{source}.{model}.tsv"
+    wildcard_constraints:
+        source=f"(?!cameras/){NAME}",
+    params:
+        code=code("fit_source.py"),
+        step=of_job(devices.fitting),
+    script:
+        "../scripts/fit_source.py"
 
 
 rule detect_events:

@@ -5,9 +5,10 @@ Only this file and evaluation_calibration.smk read truth.
 Inputs: 2D and 3D keypoints, clocks, truth of takes.
 Outputs: results/{session}/evaluation/takes/, results/{session}/takes/{take}/table1/.
 Steps: evaluate_take, evaluate_reliability, evaluate_clocks, evaluate_kinematics, evaluate_angles,
-evaluate_contacts, evaluate_strokes, evaluate_sources, evaluate_body_frames, evaluate_detection,
-evaluate_round_trip (table 1), evaluate_fusions (paired differences with intervals); of development
-sessions, asked for by name: evaluate_joint_offsets, evaluate_joint_errors, evaluate_skin_depths.
+evaluate_contacts, evaluate_strokes, evaluate_sources, evaluate_source_angles, evaluate_body_frames,
+evaluate_detection, evaluate_round_trip (table 1), evaluate_fusions (paired differences with
+intervals); of development sessions, asked for by name: evaluate_joint_offsets,
+evaluate_joint_errors, evaluate_skin_depths.
 """
 
 
@@ -145,6 +146,24 @@ rule evaluate_sources:
         step=step("measure_arcs"),
     script:
         "../scripts/evaluate_sources.py"
+
+
+rule evaluate_source_angles:
+    input:
+        device_npz=of_job(devices.compared_sources),
+        fitted_npz=of_job(lambda job: list(devices.fitted(job).values())),
+        sync_json=paths.DEVICE_CLOCKS,
+        truth_npz=paths.TRUE_TAKE,
+    output:
+        errors_csv=paths.SOURCE_ANGLE_ERRORS,
+    log:
+        "results/{session}/logs/evaluate_source_angles/{take}.{model}.log",
+    params:
+        code=code("evaluate_source_angles.py"),
+        labels=lambda w: dict(w.items()),
+        step=of_job(devices.compared_angles),
+    script:
+        "../scripts/evaluate_source_angles.py"
 
 
 rule evaluate_body_frames:

@@ -61,6 +61,7 @@ rule draw_skeleton_plates:
 rule draw_source_errors:
     input:
         errors_csv=paths.SOURCE_ERRORS,
+        angles_csv=paths.SOURCE_ANGLE_ERRORS,
         parts_csv=paths.ERROR_PARTS,
     output:
         **device_figure("source_errors", "source_errors"),

@@ -168,6 +168,8 @@ rule fit_skeleton:
         f"results/{{session}}/logs/fit_skeleton/{paths.OF_FUSED}.log",
     benchmark:
         f"results/{{session}}/benchmarks/fit_skeleton/{paths.OF_FUSED}.tsv"
+    wildcard_constraints:
+        calibration=f"(?!{methods.DEVICES}/){NAME}",
     params:
         code=code("fit_skeleton.py"),
         step=of_job(lambda job: job.some("filter_motion", ["max_gap_s"])),

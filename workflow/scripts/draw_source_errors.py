@@ -1,4 +1,4 @@
-"""Draw the errors of all sources and what they are made of: errors, parts -> figure, CSV."""
+"""Draw the errors of all sources and what they are made of: three tables -> figure, CSV."""
 
 import pandas as pd
 
@@ -7,10 +7,10 @@ from courtside.figures.style import style
 from courtside.study.execution.script import run
 
 
-def main(errors_csv, parts_csv, pdf, png, csv, *, kinds):
-    errors, parts = pd.read_csv(errors_csv), pd.read_csv(parts_csv)
-    drawing = source_errors.draw(errors, parts, kinds=kinds)
-    style.save(drawing, source_errors.table(errors, parts), pdf, png, csv)
+def main(errors_csv, angles_csv, parts_csv, pdf, png, csv, *, kinds):
+    tables = [pd.read_csv(path) for path in (errors_csv, angles_csv, parts_csv)]
+    drawing = source_errors.draw(*tables, kinds=kinds)
+    style.save(drawing, source_errors.table(*tables), pdf, png, csv)
 
 
 if __name__ == "__main__":

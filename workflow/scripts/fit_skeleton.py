@@ -11,7 +11,6 @@ from courtside.kinematics import cutoffs, skeleton_filter
 from courtside.reconstruction import joint_correction
 from courtside.records import footwork, tables
 from courtside.records.keypoints import keypoints, skeletal_motion, skeleton
-from courtside.study.execution import log
 from courtside.study.execution.script import run
 
 
@@ -21,12 +20,7 @@ def main(paths, joints_npz, motion_npz, angles_csv, *, max_gap_s, sex_of, height
     shape, (chosen, _) = skeleton.read(paths.skeleton), cutoffs.read(paths.cutoffs)
     cutoff_hz = dict(zip(shape.joints, shape.by_group(chosen), strict=True))
     contacts = footwork.read_contacts(paths.contacts)
-    found = {
-        at: take.person(points, at, cutoff_hz, height_m_of.get(person), contacts)
-        for at, person in enumerate(points.person_id.tolist())
-    }
-    fits = {at: one for at, one in found.items() if one is not None}
-    log.logger.info("persons fitted: %d of %d", len(fits), len(found))
+    fits = take.people(points, cutoff_hz, height_m_of, contacts)
     keypoints.write_3d(joints_npz, take.joints(keypoints.read_3d(paths.corrected), fits))
     motion = take.motion(points, fits)
     skeletal_motion.write(motion_npz, motion)

@@ -45,25 +45,6 @@ def parts(**options):
     return sources.split(source(**options), REFERENCE).set_index("part")
 
 
-def test_interpolation_is_a_cubic_and_bridges_no_gap():
-    time_s = np.arange(0, 2, 0.05)
-    cubic = np.stack([time_s**2, time_s**3 - time_s, 2 * time_s], axis=1)[:, None]
-    wanted = np.array([0.33, 1.011, 1.5, 0.02, -0.1, 2.5])
-    found = sources.at_times(time_s, cubic, wanted)[:, 0]
-    np.testing.assert_allclose(
-        found[:3, [0, 2]], np.stack([wanted[:3] ** 2, 2 * wanted[:3]], axis=1)
-    )
-    np.testing.assert_allclose(found[:3, 1], (wanted**3 - wanted)[:3], atol=2e-4)
-    np.testing.assert_allclose(
-        found[3], [0.02 * 0.05, 0.02 * (0.05**2 - 1), 0.04]
-    )  # a line at the end
-    assert np.isnan(found[4:]).all()
-    cubic[20:24] = np.nan
-    assert np.isnan(sources.at_times(time_s, cubic, np.array([0.97, 1.1, 1.17]))).all()
-    holed = np.delete(time_s, [20, 21, 22])
-    assert np.isnan(sources.at_times(holed, np.delete(cubic, [20, 21, 22], axis=0), [1.05])).all()
-
-
 def test_an_exact_source_has_no_error():
     _, found = sources.errors(source(), REFERENCE)
     for alignment in sources.ALIGNMENTS:

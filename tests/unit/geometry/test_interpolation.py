@@ -28,3 +28,22 @@ def test_the_nearest_sample_is_found_within_and_beyond_the_samples():
     assert interpolation.nearest(np.array([0.0, 1.0]), np.array([0.5])).tolist() == [1]
     assert interpolation.nearest(np.array([0.0, 1.0]), np.array([0.5]), "left").tolist() == [0]
     assert interpolation.nearest(np.array([2.0]), np.array([0.0, 5.0])).tolist() == [0, 0]
+
+
+def test_interpolation_is_a_cubic_and_bridges_no_gap():
+    time_s = np.arange(0, 2, 0.05)
+    cubic = np.stack([time_s**2, time_s**3 - time_s, 2 * time_s], axis=1)[:, None]
+    wanted = np.array([0.33, 1.011, 1.5, 0.02, -0.1, 2.5])
+    found = interpolation.between(time_s, cubic, wanted, 0.1)[:, 0]
+    np.testing.assert_allclose(
+        found[:3, [0, 2]], np.stack([wanted[:3] ** 2, 2 * wanted[:3]], axis=1)
+    )
+    np.testing.assert_allclose(found[:3, 1], (wanted**3 - wanted)[:3], atol=2e-4)
+    np.testing.assert_allclose(
+        found[3], [0.02 * 0.05, 0.02 * (0.05**2 - 1), 0.04]
+    )  # a line at the end
+    assert np.isnan(found[4:]).all()
+    cubic[20:24] = np.nan
+    assert np.isnan(interpolation.between(time_s, cubic, [0.97, 1.1, 1.17], 0.1)).all()
+    holed, left = (np.delete(one, [20, 21, 22], axis=0) for one in (time_s, cubic))
+    assert np.isnan(interpolation.between(holed, left, [1.05], 0.1)).all()

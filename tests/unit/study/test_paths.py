@@ -37,6 +37,14 @@ KNOWN = {
             paths.POSE2D_STEADIED,
             "results/gym/takes/rally/pose2d_steadied/sfm-n40/net/left.npz",
         ),
+        (
+            paths.FITTED_SOURCE,
+            "results/gym/takes/rally/pose3d_ik/devices/d415-depth/net.npz",
+        ),
+        (
+            paths.SOURCE_MOTION,
+            "results/gym/takes/rally/motion/devices/d415-depth/net.npz",
+        ),
         (paths.POSE3D, "results/gym/takes/rally/pose3d/sfm-n40/all-robust/net.npz"),
         (
             paths.SKELETONS,

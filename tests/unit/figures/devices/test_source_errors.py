@@ -25,6 +25,16 @@ def errors():
     )
 
 
+def angles():
+    rows = [
+        (source, stage, angle, 100, factor * median / 10)
+        for source, median in MEDIANS.items()
+        for stage, factor in (("source", 1.0), ("model", 0.5))
+        for angle in (*source_errors.ANGLES, "left_knee_flexion")
+    ]
+    return pd.DataFrame(rows, columns=["source", "stage", "angle", "n", "rmse_deg"])
+
+
 def parts(total=10000.0):
     rows = [
         (source, form, part, total * share / 100, share, VALUES.get(part, np.nan))
@@ -39,7 +49,7 @@ def parts(total=10000.0):
 
 @pytest.fixture(scope="module")
 def drawing():
-    made = source_errors.draw(errors(), parts())
+    made = source_errors.draw(errors(), angles(), parts())
     made.draw_without_rendering()
     return made
 
@@ -62,8 +72,19 @@ def test_each_alignment_has_its_panel_and_its_own_medians(drawing, panel, factor
     np.testing.assert_allclose(ends[:, 1], 2 * ends[:, 0])
 
 
+def test_angles_have_a_panel_each_hollow_as_given_and_filled_after_the_model(drawing):
+    axes = drawing.subfigs[1].axes
+    titles = [axis.get_title() for axis in axes]
+    assert titles == [angle.replace("_", " ") for angle in source_errors.ANGLES]
+    marks = [line for line in axes[0].lines if line.get_marker() not in ("None", "")]
+    hollow = [line.get_xdata()[0] for line in marks if line.get_markerfacecolor() == "none"]
+    filled = [line.get_xdata()[0] for line in marks if line.get_markerfacecolor() != "none"]
+    np.testing.assert_allclose(sorted(hollow), [4.0, 6.0])
+    np.testing.assert_allclose(sorted(filled), [2.0, 3.0])
+
+
 def test_parts_are_stacked_in_order_and_fill_the_bar(drawing):
-    axis = drawing.subfigs[1].axes[0]
+    axis = drawing.subfigs[2].axes[0]
     bars = [patch for patch in axis.patches if abs(patch.get_y() + 0.33) < 1e-6]
     np.testing.assert_allclose([bar.get_width() for bar in bars], list(SHARES.values()))
     np.testing.assert_allclose([bar.get_x() for bar in bars], [0, 10, 30, 55, 60])
@@ -73,13 +94,14 @@ def test_parts_are_stacked_in_order_and_fill_the_bar(drawing):
 
 def test_a_source_without_common_frames_has_no_bar():
     unknown = parts().assign(mean_square_mm2=np.nan, percent=np.nan, value=np.nan)
-    drawing = source_errors.draw(errors(), unknown)
+    drawing = source_errors.draw(errors(), angles(), unknown)
     drawing.draw_without_rendering()
-    assert {text.get_text() for text in drawing.subfigs[1].axes[0].texts} == {"no error known"}
+    assert {text.get_text() for text in drawing.subfigs[2].axes[0].texts} == {"no error known"}
 
 
 def test_the_table_holds_the_alignments_drawn_and_all_parts():
-    rows = source_errors.table(errors(), parts())
+    rows = source_errors.table(errors(), angles(), parts())
     shown = rows[rows["table"] == "errors"]
     assert set(shown["alignment"]) == set(source_errors.SHOWN)
     assert (rows["table"] == "parts").sum() == len(parts())
+    assert set(rows.loc[rows["table"] == "angles", "angle"]) == set(source_errors.ANGLES)

@@ -68,6 +68,35 @@ def test_fixed_cameras_are_the_first_source(job, study):
     )
     assert devices.vision_file(one) == f"{folder}/devices/cameras.blazepose-full.npz"
 
+    fitted = devices.fitted(one)
+    assert fitted["cameras"] == f"{folder}/pose3d_ik/known18/all-robust/blazepose-full.npz"
+    assert list(fitted) == ["suit", "suit-corrected", "cameras"]
+    assert devices.compared_sources(one)[-1] == f"{folder}/devices/cameras.blazepose-full.npz"
+
+
+def test_the_model_is_fitted_with_the_errors_of_each_kind_of_source(job):
+    one = job(**CLAPS)
+    stated = one.step("fit_source")["sigma_m"]
+    assert devices.source_sigmas(one) == {
+        "d415-depth": stated["depth"],
+        "d415-rgb": stated["rgb"],
+        "mocopi": stated["inertial"],
+        "mocopi-corrected": stated["corrected"],
+    }
+    found = devices.fitting(job(**CLAPS, source="mocopi-corrected"))
+    assert found == {
+        "max_gap_s": 0.2,
+        "cutoff_hz": one.step("filter_motion")["cutoff_hz"],
+        "person": "p1",
+        "height_m": 1.84,
+        "sigma_m": stated["corrected"],
+    }
+    assert devices.fitted(one)["d415-rgb"] == (
+        f"{FOLDER}/pose3d_ik/devices/d415-rgb/blazepose-full.npz"
+    )
+    compared = devices.compared_angles(one)
+    assert compared["person"] == "p1" and compared["devices"] == devices.clocks(one)
+
 
 def test_bodies_and_body_frames_of_all_sources(job):
     frames = devices.bodies(job(**CLAPS), paths.BODY_FRAME, corrected=False)

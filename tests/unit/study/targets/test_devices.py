@@ -33,12 +33,26 @@ def test_devices_are_exported_where_their_person_agreed(study):
     folder, depth = f"{TAKE}/devices", ("d415-depth.blazepose-full", "d415-rgb.blazepose-full")
     expected = {f"{folder}/mocopi.{suffix}" for suffix in ("trc", "c3d", "csv", "bvh", "glb")}
     expected |= {f"{folder}/{name}.{suffix}" for name in depth for suffix in ("bvh", "glb")}
+    for name in ("d415-depth", "d415-rgb", "mocopi", "mocopi-corrected"):
+        for folder, suffixes in (("pose3d_ik", "trc c3d csv mot osim"), ("motion", "bvh glb")):
+            stem = f"{TAKE}/{folder}/devices/{name}/blazepose-full.p1"
+            expected |= {f"{stem}.{suffix}" for suffix in suffixes.split()}
     found = devices.every_device_export(study)
     assert len(found) == len(set(found)) and set(found) == expected
     session = study.sessions["single-view-tiny"]
     subjects = {name: replace(s, consent=("analysis",)) for name, s in session.subjects.items()}
     silent = replace(study, sessions={session.name: replace(session, subjects=subjects)})
     assert devices.every_device_export(silent) == []
+
+
+def test_joint_angles_are_measured_of_every_source(study):
+    names = ("d415-depth", "d415-rgb", "mocopi", "mocopi-corrected")
+    expected = [f"{TAKE}/motion/devices/{name}/blazepose-full.angles.csv" for name in names]
+    assert devices.every_source_angle(study) == expected
+    one = devices.device_takes(study)[0]
+    suit = {"mocopi": one.take.devices["mocopi"]}
+    alone = replace(one, take=replace(one.take, devices=suit))
+    assert alone.fitted == {"mocopi": "p1"}
 
 
 def test_body_frames_of_virtual_takes_are_evaluated(study):

@@ -7,5 +7,6 @@ shape: `lengths`, `of_lengths`: a subject's segments and the points on them
 held: `of_contacts`: heels and toes of standing feet keep their places
 fit: `fit`: all frames together, Gauss-Newton on a banded system
 angles: `measure`, `of_fit`: joint angles by name, plane and sign
-take: `person`, `joints`, `motion`: a take's record fitted
+take: `people`, `person`, `joints`, `motion`: a take's record fitted
+source: `observed`, `even`: the record of a device to be fitted
 """

@@ -14,6 +14,7 @@ from courtside.records.footwork import Contacts
 from courtside.records.keypoints import missing_reason, skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.keypoints.skeletal_motion import SkeletalMotion
+from courtside.study.execution import log
 
 UNKNOWN_M = 0.03  # ASSUME: standard deviation per axis that a joint without a network's has
 # And that points of the hand have: fingers bend, and the model's hand does not. Chosen on
@@ -96,6 +97,27 @@ def person(
         if number < len(ROUNDS):
             body = fit.lengthened(model, body, data, found)
     return Fitted(frames, body, found, fit.spread(model, body, data, found))
+
+
+def people(
+    points: Keypoints3D,
+    cutoff_hz: Mapping[str, float],
+    height_m_of: Mapping[str, float | None],
+    contacts: Contacts | None = None,
+) -> dict[int, Fitted]:
+    """Fit everybody of a record (`person`); return those whom the model fits, by their index."""
+    fits = {}
+    for at, name in enumerate(points.person_id.tolist()):
+        found = person(points, at, cutoff_hz, height_m_of.get(name), contacts)
+        if found is not None:
+            fits[at] = found
+            continue
+        seen = np.isfinite(points.xyz[at]).all(axis=2).any(axis=0)
+        lost = sorted(set(skeleton.JOINTS) - set(points.joints[seen].tolist()))
+        said = f"never seen: {', '.join(lost)}" if lost else "seen in fewer than two frames"
+        log.logger.warning("%s: %s: no skeletal model is fitted", name, said)
+    log.logger.info("persons fitted: %d of %d", len(fits), len(points.person_id))
+    return fits
 
 
 def _filled(line: NDArray) -> NDArray:

@@ -1,6 +1,7 @@
 """Errors of a simulated take's paths, speeds and joint angles against the truth."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -11,6 +12,7 @@ from courtside.calibration import point_covariance
 from courtside.evaluation import joints
 from courtside.evaluation.joints import Truth
 from courtside.kinematics import joint_angles, measures, shared_errors
+from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import derived_joints
 from courtside.records.keypoints import skeleton as limbs
 from courtside.records.keypoints.derived_joints import DerivedJoints
@@ -167,6 +169,13 @@ def angles(points: Keypoints3D, truth: Truth) -> pd.DataFrame:
             row = _of_angle(*(np.concatenate(part) for part in parts))
             rows.append({"person": person, "angle": angle, **row})
     return pd.DataFrame(rows).reindex(columns=ANGLE_COLUMNS)
+
+
+def angles_of(points: Keypoints3D, truth: Truth, person: str, clock: Clock) -> pd.DataFrame:
+    """Compare the joint angles of one person of a source with another clock (`angles`)."""
+    at = clock.to_reference(points.time_s)
+    found = angles(replace(points, time_s=at).between(truth.time_s[0], truth.time_s[-1]), truth)
+    return found[found["person"] == person]
 
 
 def all_angles(points: Keypoints3D, truth: Truth) -> tuple[NDArray, NDArray]:

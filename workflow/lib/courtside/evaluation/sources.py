@@ -13,7 +13,7 @@ import scipy
 from numpy.typing import NDArray
 
 from courtside.geometry import rotations, similarity
-from courtside.geometry.interpolation import cubic_bend
+from courtside.geometry.interpolation import between
 from courtside.geometry.similarity import Sim3
 from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.body_motion import BodyMotion
@@ -26,30 +26,6 @@ MOST_SHIFT_S = 0.3  # ASSUME: largest error of a clock that is searched
 SEARCHED = 400  # ASSUME: about so many frames are enough to find the shift in time
 FEWEST_JOINTS = 4  # of a frame aligned by itself: three points would fit with too little left over
 ROOT = ("left_hip", "right_hip")
-
-
-def at_times(time_s: NDArray, xyz: NDArray, wanted_s: NDArray) -> NDArray:
-    """Interpolate joints (T, J, 3) at other times (U,) between neighbouring frames, (U, J, 3).
-
-    NaN outside the span, beside a missing value, and in gaps longer than `LONGEST_S`. A cubic
-    through two frames before and two after (Catmull & Rom 1974), taken as evenly spaced; a straight
-    line where the outer ones are missing.
-    """
-    wanted_s = np.asarray(wanted_s, float)
-    right = np.clip(np.searchsorted(time_s, wanted_s), 1, len(time_s) - 1)
-    span = time_s[right] - time_s[right - 1]
-    share = (wanted_s - time_s[right - 1]) / span
-    # A time that is a frame's own needs no neighbour.
-    share = np.where(np.abs(share - np.rint(share)) < 1e-9, np.rint(share), share)
-    between = (share >= 0) & (share <= 1) & (span <= LONGEST_S)
-    share = np.where(between, share, np.nan)[:, None, None]
-    before, after = xyz[right - 1], xyz[right]
-    first, last = xyz[np.maximum(right - 2, 0)], xyz[np.minimum(right + 1, len(xyz) - 1)]
-    bend = cubic_bend(first, before, after, last, share)
-    whole = (right > 1) & (right < len(xyz) - 1)
-    usable = whole[:, None, None] & np.isfinite(bend).all(axis=-1, keepdims=True)
-    mixed = before * (1 - share) + after * share + np.where(usable, bend, 0.0)
-    return np.where(share == 0, before, np.where(share == 1, after, mixed))
 
 
 def shared(source: BodyMotion, reference: BodyMotion) -> list[str]:
@@ -75,7 +51,7 @@ def matched(
         getattr(motion, form)[:, [list(motion.joints).index(name) for name in names]]
         for motion in (source, reference)
     )
-    true = at_times(reference.time_s, other, source.time_s + shift_s)
+    true = between(reference.time_s, other, source.time_s + shift_s, LONGEST_S)
     to_mm = 1000 * reference.unit_m
     return own * to_mm, true * to_mm
 

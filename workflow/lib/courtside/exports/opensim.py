@@ -99,7 +99,8 @@ def write_motion(path: StrPath, motion: SkeletalMotion, person: int) -> None:
     if not fitted.any():
         raise InputError(
             f"{path}: expected a person with fitted frames, found none of "
-            f"{motion.person_id[person]!r}; leave the person out of the take"
+            f"{motion.person_id[person]}; leave the person out of the take, or pose3d_ik out of "
+            "export_stages"
         )
     columns = {"time": posed.time_s} | opensim_model.coordinates(motion, person)
     columns |= {name: columns[own] for name, own in SAME.items()}

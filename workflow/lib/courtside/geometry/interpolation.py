@@ -42,3 +42,28 @@ def cubic_bend(
     """
     bend = (share - 1) * (first - 2 * before + after) - share * (before - 2 * after + last)
     return share * (1 - share) / 2 * bend
+
+
+def between(time_s: NDArray, values: NDArray, wanted_s: NDArray, longest_s: float) -> NDArray:
+    """Interpolate values (T, J, 3) at other times (U,) between neighbouring samples, (U, J, 3).
+
+    NaN outside the span, beside a missing value, and in gaps longer than `longest_s`. A cubic
+    through two samples before and two after (Catmull & Rom 1974), taken as evenly spaced; a
+    straight line where the outer ones are missing.
+    """
+    wanted_s = np.asarray(wanted_s, float)
+    right = np.clip(np.searchsorted(time_s, wanted_s), 1, len(time_s) - 1)
+    span = time_s[right] - time_s[right - 1]
+    share = (wanted_s - time_s[right - 1]) / span
+    # A time that is a sample's own needs no neighbour.
+    own = np.abs(share - np.rint(share)) < 1e-9
+    share = np.where(own, np.rint(share), share)
+    known = (share >= 0) & (share <= 1) & (own | (span <= longest_s))
+    share = np.where(known, share, np.nan)[:, None, None]
+    before, after = values[right - 1], values[right]
+    first, last = values[np.maximum(right - 2, 0)], values[np.minimum(right + 1, len(values) - 1)]
+    bend = cubic_bend(first, before, after, last, share)
+    whole = (right > 1) & (right < len(values) - 1)
+    usable = whole[:, None, None] & np.isfinite(bend).all(axis=-1, keepdims=True)
+    mixed = before * (1 - share) + after * share + np.where(usable, bend, 0.0)
+    return np.where(share == 0, before, np.where(share == 1, after, mixed))

@@ -16,6 +16,7 @@ VARIANT = re.compile(r"(?P<mapper>[a-z]+)-n(?P<n_images>[0-9]+)-o(?P<offset>[0-9
 PEOPLE = "-people"  # behind the name of a calibration: refined by people
 ALONE = "people-alone"  # the kind of a calibration from people and nothing else
 IMPORTED = "imported"  # in place of a calibration: 3D joints are another program's
+DEVICES = "devices"  # in place of a calibration: joints are a device's, its source the fusion
 HALFBODY = "halfbody"  # the paper's rule for three cameras
 OFFSETS = 3  # choices of so many bridging images: they start thirds of their spacing late
 

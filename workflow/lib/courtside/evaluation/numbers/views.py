@@ -51,6 +51,14 @@ STRENGTHS = {
     "trials": "{walk18_median.n}",
 }
 
+ANGLES = {
+    "knee flexion": "knee_flexion",
+    "hip flexion": "hip_flexion",
+    "elbow flexion": "elbow_flexion",
+    "shoulder elevation": "shoulder_elevation",
+    "trunk lean": "trunk_lean",
+}
+
 VIEWS = {
     "calibration": View(
         "calibration",
@@ -231,6 +239,28 @@ VIEWS = {
                 for stage in ("corrected", "model")
             },
             "angles": "{model_rmse.n}",
+        },
+    ),
+    "device-angles": View(
+        "device-angles",
+        {
+            "take: source": "{row}",
+            **{
+                words: f"{{{name}_deg_source}} / {{{name}_deg_model}}; {{{name}_within_source}} / "
+                f"{{{name}_within_model}} %"
+                for words, name in ANGLES.items()
+            },
+            "joints, median, mm": "{median_mm_source} / {median_mm_model}",
+            "joints, 95 %, mm": "{p95_mm_source} / {p95_mm_model}",
+        },
+    ),
+    "device-solvers": View(
+        "device-solvers",
+        {
+            "session, suit: solver": "{row}",
+            **{words: f"{{{name}_deg}}, {{{name}_deg_worst}}" for words, name in ANGLES.items()},
+            "joints, median / 95 %, mm": "{median_mm} / {p95_mm}",
+            "takes": "{median_mm.n}",
         },
     ),
     "opensim": View(

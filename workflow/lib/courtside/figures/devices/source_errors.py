@@ -1,4 +1,4 @@
-"""Errors of each source against the truth by joint, and the parts of the errors."""
+"""Errors of each source against the truth by joint, of joint angles, and parts of the errors."""
 
 from collections.abc import Iterable
 
@@ -28,30 +28,40 @@ VALUES = {
     "rotation": "turn {:.1f}°",
     "time": "time {:+.0f} ms",
 }
+ANGLES = ("knee_flexion", "hip_flexion", "elbow_flexion", "shoulder_elevation", "trunk_lean")
+STAGES = {"source": "none", "model": None}  # how a mark is filled
 MS = 1000
 ORDER = ("wrist", "elbow", "shoulder", "hip", "knee", "ankle")
 
 
-def table(errors: pd.DataFrame, parts: pd.DataFrame) -> pd.DataFrame:
-    """Return the numbers drawn in one table: errors per joint, then parts.
+def table(errors: pd.DataFrame, angles: pd.DataFrame, parts: pd.DataFrame) -> pd.DataFrame:
+    """Return the numbers drawn in one table: errors per joint, then of joint angles, then parts.
 
-    Both are of `courtside.evaluation.sources`, with `source`; parts also with `frame`.
+    Errors and parts are of `courtside.evaluation.sources`, with `source`; parts also with `frame`;
+    angles of `courtside.evaluation.kinematics`, with `source` and `stage`.
     """
     errors = errors[errors["alignment"].isin(SHOWN)].assign(table="errors")
-    rows = pd.concat([errors, parts.assign(table="parts")], ignore_index=True)
+    angles = angles[angles["angle"].isin(ANGLES)].assign(table="angles")
+    rows = pd.concat([errors, angles, parts.assign(table="parts")], ignore_index=True)
     return rows.set_index("table").reset_index()
 
 
 def draw(
-    errors: pd.DataFrame, parts: pd.DataFrame, *, kinds: dict[str, str] | None = None
+    errors: pd.DataFrame,
+    angles: pd.DataFrame,
+    parts: pd.DataFrame,
+    *,
+    kinds: dict[str, str] | None = None,
 ) -> Figure:
-    """Draw errors above, their parts below (see `table`); `kinds` as for `source_styles`."""
+    """Draw errors, below them angles, then parts (see `table`); `kinds` as for `source_styles`."""
     looks = source_styles.looks(errors["source"], kinds)
     joints = _joints(errors["joint"])
-    heights = [26 + (2.5 + 1.2 * len(looks)) * len(joints), 24 + 10 * len(looks)]
+    heights = [26 + (2.5 + 1.2 * len(looks)) * len(joints), 22 + 4 * len(looks)]
+    heights.append(24 + 10 * len(looks))
     drawing = style.figure(sum(heights))
-    above, below = drawing.subfigures(2, 1, height_ratios=heights)
+    above, middle, below = drawing.subfigures(3, 1, height_ratios=heights)
     _draw_errors(above, errors, looks, joints)
+    _draw_angles(middle, angles, looks)
     _draw_parts(below, parts, looks)
     return drawing
 
@@ -88,6 +98,31 @@ def _draw_errors(
     )
     marks = source_styles.marks(looks)
     part.legend(handles=marks, loc="outside upper center", ncols=min(4, len(marks)))
+
+
+def _draw_angles(
+    part: FigureBase, angles: pd.DataFrame, looks: dict[str, source_styles.Look]
+) -> None:
+    axes = part.subplots(1, len(ANGLES), sharey=True)
+    for axis, angle in zip(axes, ANGLES, strict=True):
+        rows = angles[angles["angle"] == angle].set_index(["source", "stage"])["rmse_deg"]
+        for y, (source, look) in enumerate(looks.items()):
+            known = [rows.get((source, stage), np.nan) for stage in STAGES]
+            axis.plot(known, [y, y], color=look.colour, linewidth=0.6)
+            for x, fill in zip(known, STAGES.values(), strict=True):
+                face = fill or look.colour
+                axis.plot(x, y, look.marker, color=look.colour, markerfacecolor=face, markersize=4)
+        axis.set_title(angle.replace("_", " "))
+        axis.set_xlim(left=0)
+        axis.grid(axis="x")
+    axes[0].set_ylim(len(looks) - 0.5, -0.5)
+    axes[0].set_yticks(np.arange(len(looks)), list(looks))
+    for tick, look in zip(axes[0].get_yticklabels(), looks.values(), strict=True):
+        tick.set_color(look.colour)
+    axes[len(ANGLES) // 2].set_xlabel(
+        "root mean square error of joint angles (degrees): hollow as the source gives them, "
+        "filled after the skeletal model"
+    )
 
 
 def _draw_parts(

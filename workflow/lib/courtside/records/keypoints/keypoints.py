@@ -1,5 +1,6 @@
 """The two tables of keypoints that rules exchange: 2D of one camera, 3D of one take."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated
 
@@ -83,11 +84,21 @@ class Keypoints3D:
 
     def between(self, start_s: float, stop_s: float) -> "Keypoints3D":
         """Return the frames from one time to another, both included."""
-        at = (self.time_s >= start_s) & (self.time_s <= stop_s)
+        return self.frames((self.time_s >= start_s) & (self.time_s <= stop_s))
+
+    def frames(self, at: NDArray) -> "Keypoints3D":
+        """Return some frames, by their indices or a mask (T,)."""
         spec = npz.spec_of(Keypoints3D)
         per_frame = [key for key, (_, shape) in spec.items() if shape[:2] == ("P", "T")]
         cut = {key: getattr(self, key)[:, at] for key in per_frame}
         return replace(self, time_s=self.time_s[at], **cut)
+
+    def some_joints(self, at: Sequence[int]) -> "Keypoints3D":
+        """Return some joints, by their indices."""
+        spec = npz.spec_of(Keypoints3D)
+        per_joint = [key for key, (_, shape) in spec.items() if shape[:3] == ("P", "T", "J")]
+        cut = {key: getattr(self, key)[:, :, list(at)] for key in per_joint}
+        return replace(self, joints=self.joints[list(at)], **cut)
 
 
 def unknown_errors(xyz: NDArray) -> dict[str, NDArray]:

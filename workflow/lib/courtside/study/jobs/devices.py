@@ -15,6 +15,7 @@ from courtside.study.jobs.job import Job
 from courtside.study.targets.devices import DeviceTake, device_takes, thesis_take
 
 OF_KIND = {"inertial": "mocopi27", "nuitrack": "nuitrack19"}  # skeletons that devices come with
+CAMERAS = "cameras"  # the source that fixed cameras give
 PLATES = ("blazepose33", "mocopi27", "nuitrack19", "cpm14")  # skeletons drawn side by side
 
 
@@ -31,7 +32,7 @@ def sources(job: Job, corrected: bool = True) -> dict[str, Source]:
     """Return the sources of a take, the one whose clock is the reference first."""
     of_network, found = job.model.skeleton, {}
     if job.take.cameras and job.session.take_calibrations():
-        found["cameras"] = Source(job.fill(paths.CAMERA_SOURCE), of_network, "cameras")
+        found[CAMERAS] = Source(job.fill(paths.CAMERA_SOURCE), of_network, CAMERAS)
     devices = sorted(job.take.devices.items(), key=lambda pair: pair[1].kind == "inertial")
     for name, device in devices:
         own = OF_KIND.get(device.kind)
@@ -91,7 +92,11 @@ def colour_frames(job: Job) -> str | list:
 
 def fused(job: Job) -> str:
     """Return the fixed cameras' skeletons to compare devices with: last stage, first method."""
-    session, stage = job.session, job.stages()[-1]
+    return _fused(job, job.stages()[-1])
+
+
+def _fused(job: Job, stage: str) -> str:
+    session = job.session
     way = {"calibration": session.take_calibrations()[0], "fusion": session.fusions()[0]}
     return job.fill(paths.SKELETONS, stage=stage, **way)
 
@@ -150,6 +155,57 @@ def _vision(job: Job) -> str:
             f"to correct {job['device']} by, found neither"
         )
     return found
+
+
+def fitting(job: Job) -> dict[str, Any]:
+    """Return how the skeletal model is fitted to a source: to whom, with what errors and filter."""
+    source = job["source"]
+    who = job.take.devices[sources(job)[source].device].subject
+    return {
+        **job.some("filter_motion", ["max_gap_s", "cutoff_hz"]),
+        "person": who,
+        "height_m": job.session.subjects[who].height_m,
+        "sigma_m": source_sigmas(job)[source],
+    }
+
+
+def source_sigmas(job: Job) -> dict[str, dict[str, float]]:
+    """Return the stated errors of limb joints, m, of each source but the fixed cameras.
+
+    They are those of what a source is made by (`depth`, `rgb`, `corrected`), else of its device.
+    """
+    stated, devices, found = job.step("fit_source")["sigma_m"], job.take.devices, {}
+    for name, source in sources(job).items():
+        if name != CAMERAS:
+            made = name.removeprefix(source.device).removeprefix("-")
+            found[name] = stated[made or devices[source.device].kind]
+    return found
+
+
+def fitted(job: Job) -> dict[str, str]:
+    """Return the joints of the skeletal model of each source of a take.
+
+    The fixed cameras have them of networks whose joint offsets are known.
+    """
+    found = {name: job.fill(paths.FITTED_SOURCE, source=name) for name in source_sigmas(job)}
+    if CAMERAS in sources(job) and paths.MODELLED in job.study.written_stages(job["model"]):
+        found[CAMERAS] = _fused(job, paths.MODELLED)
+    return found
+
+
+def compared_angles(job: Job) -> dict[str, Any]:
+    """Return what is known of the sources whose joint angles are compared with the truth."""
+    names = fitted(job)
+    return {
+        "person": person(job),
+        "devices": {name: device for name, device in clocks(job).items() if name in names},
+        "sigma_m_of": source_sigmas(job),
+    }
+
+
+def compared_sources(job: Job) -> list[str]:
+    """Return the files of these sources, in the same order as `fitted`."""
+    return [sources(job)[name].file for name in fitted(job)]
 
 
 def take_clocks(job: Job) -> str | list:

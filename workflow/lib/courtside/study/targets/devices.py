@@ -1,14 +1,16 @@
 """What the study makes of takes with devices: figures, exports, errors of virtual ones."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from courtside.study import paths
 from courtside.study.configuration import consent
 from courtside.study.configuration.sessions import Session, Study, Take
+from courtside.study.methods import DEVICES
 
 FIGURES = ("wrist_distance.devices", "wrist_distance.events", "wrist_arcs", "skeleton_plates")
-EXPORTED = ("trc", "c3d", "csv", "bvh", "glb")
-POSED = ("bvh", "glb")  # of depth cameras, single videos and Nuitrack
+JOINTS, POSED = ("trc", "c3d", "csv"), ("bvh", "glb")
+EXPORTED = JOINTS + POSED  # of suits; POSED of depth cameras, single videos and Nuitrack
 THESIS_FIGURES = ("thesis_fig3_1", "thesis_fig3_2")
 
 
@@ -28,6 +30,17 @@ class DeviceTake:
     def file(self, pattern: str, **more: str) -> str:
         """Return one of its files."""
         return pattern.format(**self.labels, model=self.model, **more)
+
+    @property
+    def fitted(self) -> dict[str, str]:
+        """Its sources that the skeletal model is fitted to, with the person whom each follows."""
+        kinds = {device.kind for device in self.take.devices.values()}
+        seen = "rgbd" in kinds or (self.take.cameras and self.session.take_calibrations())
+        found: dict[str, str] = {}
+        for name, device in self.take.devices.items():
+            corrected = (f"{name}-corrected",) if seen and device.kind == "inertial" else ()
+            found |= dict.fromkeys((*device.sources(name), *corrected), device.subject)
+        return found
 
     def true_file(self, pattern: str, **more: str) -> list[str]:
         """Return a file that rests on the truth; none of a real take."""
@@ -55,6 +68,15 @@ def every_body_frame(study: Study) -> list[str]:
     return [path for one in device_takes(study) for path in one.true_file(paths.BODY_FRAME_ERRORS)]
 
 
+def every_source_angle(study: Study) -> list[str]:
+    """Return the joint angles of every source of takes with devices, by the skeletal model."""
+    return [
+        one.file(paths.SOURCE_ANGLES, source=source)
+        for one in device_takes(study)
+        for source in one.fitted
+    ]
+
+
 def every_device_export(study: Study) -> list[str]:
     """Return the files of devices for other programs, of persons who agreed to them."""
     found = []
@@ -69,7 +91,21 @@ def every_device_export(study: Study) -> list[str]:
             else:
                 known = {**one.labels, "source": device.sources(name), "model": one.model}
                 found += paths.each(paths.SOURCE_EXPORT, **known, suffix=POSED)
+        if paths.MODELLED in one.session.parameters["export_stages"]:
+            agreed = {name: who for name, who in one.fitted.items() if who not in refusing}
+            found += _modelled(one, agreed)
     return found
+
+
+def _modelled(one: DeviceTake, sources: Mapping[str, str]) -> list[str]:
+    """Return the files of the skeletal model of sources, for the person whom each follows."""
+    patterns = {paths.MODELLED_EXPORT: (*JOINTS, "mot", "osim"), paths.MOTION_EXPORT: POSED}
+    return [
+        one.file(pattern, calibration=DEVICES, fusion=name, person=who, suffix=suffix)
+        for name, who in sources.items()
+        for pattern, suffixes in patterns.items()
+        for suffix in suffixes
+    ]
 
 
 def every_device_figure(study: Study) -> list[str]:

@@ -1,0 +1,57 @@
+"""The skeleton of a device as what the model is fitted to: even times, errors by joint."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from courtside.body_model import segments
+from courtside.geometry import interpolation
+from courtside.records.keypoints import missing_reason
+from courtside.records.keypoints.keypoints import Keypoints3D
+
+EVEN_S = 5e-5  # ASSUME: harmless; of a time from its even one
+LONGEST_STEPS = 2.5  # between frames that are interpolated: at most one is missing
+
+
+def observed(points: Keypoints3D, sigma_m: Mapping[str, float]) -> Keypoints3D:
+    """Return the joints that the model has, at even times, with their errors stated.
+
+    `points` are of one device, their errors unknown. `sigma_m` are standard deviations per axis by
+    limb joint without its side. All of it counts as noise: what a device's joints have in common
+    over frames is not told apart. Errors of other joints stay unknown.
+    """
+    points = even(points)
+    on = [at for at, joint in enumerate(points.joints.tolist()) if segments.segment_of(joint)]
+    points = points.some_joints(on)
+    parts = [joint.partition("_")[2] for joint in points.joints.tolist()]
+    stated = np.isin(parts, list(sigma_m))[:, None, None] & np.ones((3, 3), bool)
+    variance = np.square([sigma_m.get(part, 0.0) for part in parts])[:, None, None] * np.eye(3)
+    known = np.isfinite(points.xyz).all(axis=-1)[..., None, None]
+    return replace(
+        points,
+        covariance_2d=np.where(known, variance, np.nan),
+        covariance_network=np.where(known & stated, 0.0, np.nan),
+    )
+
+
+def even(points: Keypoints3D) -> Keypoints3D:
+    """Return a record of one device at even times, from its first frame to its last.
+
+    The step is the median one. Places between frames are interpolated, across one missing frame at
+    most; everything else is that of the nearest frame.
+    """
+    time_s = points.time_s
+    if len(time_s) < 3:
+        return points
+    step_s = float(np.median(np.diff(time_s)))
+    count = round((time_s[-1] - time_s[0]) / step_s) + 1
+    wanted_s = np.linspace(time_s[0], time_s[-1], count)
+    if count == len(time_s) and np.abs(wanted_s - time_s).max() <= EVEN_S:
+        return points
+    taken = points.frames(interpolation.nearest(time_s, wanted_s))
+    longest_s = LONGEST_STEPS * step_s
+    xyz = np.stack([interpolation.between(time_s, one, wanted_s, longest_s) for one in points.xyz])
+    lost = np.isnan(xyz[..., 0]) & (taken.reason == missing_reason.OK)
+    reason = np.where(lost, missing_reason.UNSEEN, taken.reason).astype(points.reason.dtype)
+    return replace(taken, time_s=wanted_s, xyz=xyz, reason=reason)
