@@ -97,15 +97,15 @@ def floor(xyz: NDArray, cameras: Sequence[Camera]) -> Sim3:
     ankles = ankles[np.isfinite(ankles).all(axis=1)]
     middle = np.median(ankles, axis=0)
     centres = [camera.centre_in_world for camera in cameras]
-    turn = _axes(up, centres[1] - centres[0])
+    turn = axes(up, centres[1] - centres[0])
     slopes, offset = _lowest_plane((ankles - middle) @ turn.T)
     normal = np.array([*-slopes, 1.0])
-    turn = _axes(rotations.unit(turn.T @ normal), centres[1] - centres[0])
+    turn = axes(rotations.unit(turn.T @ normal), centres[1] - centres[0])
     sole = offset / np.linalg.norm(normal) - ANKLE * length(xyz) / OF_HEIGHT
     return Sim3(1.0, turn, -turn @ middle - [0, 0, sole])
 
 
-def _axes(up: NDArray, along: NDArray) -> NDArray:
+def axes(up: NDArray, along: NDArray) -> NDArray:
     """Return the rotation (3, 3) to axes with z up and x along a direction."""
     x = rotations.unit(along - (along @ up) * up)
     return np.stack([x, np.cross(up, x), up])
@@ -127,20 +127,25 @@ def _lowest_plane(xyz: NDArray) -> tuple[NDArray, float]:
 
 
 def of_shape(
-    cameras: Sequence[Camera], covariance: NDArray, xyz: NDArray, scale_sigma: float
+    cameras: Sequence[Camera],
+    covariance: NDArray,
+    xyz: NDArray,
+    scale_sigma: float | None,
 ) -> NDArray:
     """Return the covariance (K, K) of cameras in the world that people's joints define.
 
     `covariance` is that of a network's columns, with little known of place, direction and scale of
     the whole. Errors of these three are taken out: the world moves with joints `xyz` (N, 3) m (an
-    S-transformation, Baarda 1973). `scale_sigma`, a share, is then added about their middle.
+    S-transformation, Baarda 1973). `scale_sigma`, a share, is then added about their middle; None
+    of cameras whose scale the covariance knows, which stays as it is.
     """
     network, middle = selection.of_cameras(cameras), xyz.mean(axis=0)
     moved = [
         _about(middle, 1.0, rotations.rotation_from_rodrigues(e)) for e in TINY_STEP * np.eye(3)
     ]
     moved += [Sim3(1.0, np.eye(3), e) for e in TINY_STEP * np.eye(3)]
-    moved.append(_about(middle, 1 + TINY_STEP, np.eye(3)))
+    if scale_sigma is not None:
+        moved.append(_about(middle, 1 + TINY_STEP, np.eye(3)))
     of_cameras = np.stack([
         selection.of_cameras([one.camera(camera) for camera in cameras]).difference(network)
         for one in moved
@@ -148,7 +153,7 @@ def of_shape(
     of_points = np.stack([(one.points(xyz) - xyz).ravel() for one in moved], axis=1) / TINY_STEP
     by_column = point_covariance.sensitivity(network, xyz).reshape(xyz.size, -1)
     keep = np.eye(len(covariance)) - of_cameras @ (np.linalg.pinv(of_points) @ by_column)
-    scale = of_cameras[:, -1:] * scale_sigma
+    scale = of_cameras[:, -1:] * (scale_sigma or 0.0)
     return keep @ covariance @ keep.T + scale @ scale.T
 
 
