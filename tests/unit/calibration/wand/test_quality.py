@@ -7,7 +7,7 @@ import pytest
 
 from courtside.calibration.wand import calibration, quality
 from courtside.calibration.wand.calibration import Floor
-from fixtures.cameras.wands_made import LENSES, RIG, SIZES, WAND, seen, swung
+from fixtures.cameras.wands_made import LENSES, SIZES, WAND, floor_points, seen, swung
 
 
 def said(found, lenses=LENSES, wand=WAND, **more):
@@ -31,19 +31,17 @@ def test_numbers_by_camera():
 
 def test_a_camera_that_films_late_is_told():
     xyz = swung(seconds=60)
-    between = 0.5 * (xyz[1:] + xyz[:-1])
-    found, late = seen(xyz[:-1], seed=1), seen(between, seed=2)
-    found.xy[2] = late.xy[2]  # shows its frames half a frame period later
+    later = 0.93 * xyz[:-1] + 0.07 * xyz[1:]  # 0.014 s
+    found, late = seen(xyz[:-1], seed=1), seen(later, seed=2)
+    found.xy[2] = late.xy[2]
     warnings = said(found)["warnings"]
     (told,) = [line for line in warnings if line.startswith("camera c2")]
     assert "frames or more late, as the markers' ways say" in told
 
 
 def test_a_wand_of_another_length_is_told_by_the_floor_s_points():
-    from unit.calibration.wand.test_calibration import points  # noqa: PLC0415
-
     shorter = replace(WAND, along_m=0.98 * WAND.along_m, sigma_m=1e-3)
-    told = said(seen(swung()), wand=shorter, clicks=points(RIG))["warnings"]
+    told = said(seen(swung()), wand=shorter, clicks=floor_points())["warnings"]
     assert any("clicked points say that it is" in line for line in told)
 
 

@@ -24,9 +24,8 @@ STEPS, SETTLED = 12, 1e-4  # of Gauss-Newton within a round, and of the cost
 # Variance of a place with these weights, normal errors in two dimensions, over what the sum of
 # weights says: E[w] E[w^2 s] / (2 E[w^2]^2), w the weight, s the square of an error in sigmas.
 EFFICIENT = 0.84
-WRONG = 3.5  # sigmas: a marker farther off is another spot
+WRONG = 4.0  # sigmas: a marker farther off is another spot
 LEAST_SIGMA_PX = 0.01  # no marker is found better
-MEDIAN_TO_SIGMA = 1.4826
 BLOCKS = 40  # ASSUME: of time, that err each by itself
 RIGID = 6  # place and direction of a world that nothing else defines
 
@@ -88,17 +87,13 @@ def adjust(state: State, active: NDArray, of_wand: NDArray) -> Adjusted:
     `of_wand` (M,) are the views whose sigma is estimated from their residuals; others keep theirs.
     """
     columns = np.append(active, state.length_sigma > 0)
-    sigma_px = _spread(state, of_wand)
+    left = _left(state.bodies, int(columns.sum()), int(of_wand.sum()))
+    sigma_px = _sigma(state, of_wand, left)
     for widened in (*WIDENED, *[1.0] * ROUNDS):
         state = _settled(_weighed(state, of_wand, sigma_px, CAUCHY * widened), columns)
-        last, sigma_px = sigma_px, _spread(state, of_wand)
+        last, sigma_px = sigma_px, _sigma(state, of_wand, left)
         if widened == 1.0 and abs(sigma_px - last) <= 1e-3 * sigma_px:
             break
-    bodies = state.bodies
-    free = 3 * len(bodies.origin) + 2 * len(np.unique(bodies.body[bodies.along_m != 0]))
-    count = 2 * int(of_wand.sum())
-    left = max(1.0, count - free - columns.sum()) / count
-    sigma_px = _scatter(state, of_wand, sigma_px / np.sqrt(left)) / float(np.sqrt(left))
     state = _weighed(state, of_wand, sigma_px, CAUCHY)
     factor = _excess(state, columns)
     wide = float(np.sqrt(EFFICIENT * factor))
@@ -108,21 +103,26 @@ def adjust(state: State, active: NDArray, of_wand: NDArray) -> Adjusted:
     return Adjusted(state, covariance[:-1, :-1], sigma_px, factor)
 
 
-def _spread(state: State, of_wand: NDArray) -> float:
-    """Return the sigma of a marker along an axis, px, by the median of its residuals."""
-    off = problem.residuals(state.network)[of_wand]
-    return max(LEAST_SIGMA_PX, MEDIAN_TO_SIGMA * float(np.nanmedian(np.abs(off))))
+def _left(bodies: Bodies, of_cameras: int, views: int) -> float:
+    """Return the share of the wand's measurements that its places and the cameras do not take."""
+    swung = bodies.sigma_m == np.inf
+    turned = np.unique(bodies.body[bodies.along_m != 0])
+    unknown = 3 * int(swung.sum()) + 2 * len(turned) + of_cameras
+    return max(1.0, 2 * views - unknown) / (2 * views)
 
 
-def _scatter(state: State, of_wand: NDArray, sigma_px: float) -> float:
-    """Return the root mean square of residuals along an axis, px, without those of wrong markers.
+def _sigma(state: State, of_wand: NDArray, left: float) -> float:
+    """Return the sigma of a marker along an axis, px: that of residuals but those of wrong markers.
 
-    Where two cameras see a marker its residuals are smaller than where four do: their median says
-    less than their mean square.
+    Residuals of markers that two cameras see are far smaller across the epipolar lines than along
+    them: the median of lengths tells which markers are wrong, the mean square of others the sigma.
     """
     off = problem.residuals(state.network)[of_wand]
-    inside = np.abs(off) < WRONG * sigma_px
-    return max(LEAST_SIGMA_PX, float(np.sqrt(np.mean(off[inside] ** 2))))
+    length = np.linalg.norm(off, axis=1)
+    typical = float(np.nanmedian(length)) / point_covariance.MEDIAN_2D / np.sqrt(left)
+    inside = length < WRONG * max(LEAST_SIGMA_PX, typical)
+    found = float(np.sqrt(np.mean(off[inside] ** 2) / left)) if inside.any() else typical
+    return max(LEAST_SIGMA_PX, found)
 
 
 def _weighed(state: State, of_wand: NDArray, sigma_px: float, scale: float) -> State:

@@ -12,7 +12,7 @@ from courtside.calibration.bundle.problem import FLEX, IMAGE, LENS
 from courtside.calibration.court import points_alone
 from courtside.calibration.people import world_frame
 from courtside.calibration.people.adjustment import Clicks
-from courtside.calibration.wand import adjustment, start, world
+from courtside.calibration.wand import adjustment, start, timing, world
 from courtside.calibration.wand.adjustment import Adjusted, Bodies, State
 from courtside.calibration.wand.points import Seen, Wand
 from courtside.geometry import similarity
@@ -25,7 +25,8 @@ MOST_PLACES = 200  # markers that the world of the covariance rests on
 FAR_SHARE = 0.0025  # ASSUME: of a picture's longer side: markers so far off are wrong
 LEAST_NEAR = 0.7  # ASSUME: share of the markers that are nearer
 LEAST_WAY = 0.5  # ASSUME: a wand's way over its length in a picture: less is waved in one place
-LEAST_EXTENTS = 0.1, 0.03  # ASSUME: of its ways across their length: else on a line, in a plane
+# ASSUME: least extents of its ways across their length, as shares.
+LEAST_EXTENTS = {"on a line": 0.1, "in a plane": 0.03}
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,9 +80,9 @@ def calibrate(
         state = _state(wand, seen, cameras, lenses)
         found = _adjust(state, cameras, lenses)
         cameras = _cameras(found, cameras, lenses)
-    _check_sync(seen, cameras)
     xyz = start.triangulated(cameras, seen.xy)
-    _check_extent(xyz, lenses, cameras)
+    _check_extent(xyz)
+    _check_sync(seen, cameras, xyz)
     if clicks is not None:
         marked = clicks(cameras)
         named = dict(zip(seen.cameras, marked.xy, strict=True))
@@ -138,37 +139,34 @@ def _check_ways(seen: Seen) -> None:
         )
 
 
-def _check_extent(xyz: NDArray, lenses: Mapping[str, Camera], cameras: Sequence[Camera]) -> None:
-    """Raise an `InputError` if all places are on a line, or in a plane with an unknown lens."""
+def _check_extent(xyz: NDArray) -> None:
+    """Raise an `InputError` if all places are on a line or in a plane."""
     places = xyz.reshape(-1, 3)
     extents = similarity.flatness(places[np.isfinite(places).all(axis=1)])[1:]
-    unknown = [camera.name for camera in cameras if camera.name not in lenses]
-    for extent, least, what in zip(
-        extents, LEAST_EXTENTS, ("on a line", "in a plane"), strict=True
-    ):
-        if extent < least and (what == "on a line" or unknown):
-            lens = f", or give the lenses of {', '.join(unknown)}" if what != "on a line" else ""
+    for extent, (what, least) in zip(extents, LEAST_EXTENTS.items(), strict=True):
+        if extent < least:
             raise InputError(
                 f"wand: expected ways in all directions, found them {what}, "
-                f"{100 * extent:.0f} % as wide as long; {start.HOW}{lens}"
+                f"{100 * extent:.1f} % as wide as long; {start.HOW}"
             )
 
 
-def _check_sync(seen: Seen, cameras: Sequence[Camera]) -> None:
+def _check_sync(seen: Seen, cameras: Sequence[Camera], xyz: NDArray) -> None:
     """Raise an `InputError` if views of the same frames do not show one place of the wand."""
-    placed = start.triangulated(cameras, seen.xy)
     near = []
     for camera, xy in zip(cameras, seen.xy, strict=True):
-        off = np.linalg.norm(project(camera, placed) - xy, axis=-1)
+        off = np.linalg.norm(project(camera, xyz) - xy, axis=-1)
         shown = np.isfinite(xy[..., 0]) & (np.isfinite(seen.xy[..., 0]).sum(axis=0) > 1)
         near.append(float((off[shown] < FAR_SHARE * max(camera.size)).mean()))
     worst = int(np.argmin(near))
     if near[worst] < LEAST_NEAR:
+        frames = timing.late(cameras, seen, xyz)[0][worst]
         raise InputError(
             f"camera {cameras[worst].name}: expected markers within "
             f"{FAR_SHARE * max(cameras[worst].size):.1f} px of where the other cameras see them, "
-            f"found {100 * near[worst]:.0f} % of them; check that the videos are synchronised, and "
-            "which marker is which"
+            f"found {100 * near[worst]:.0f} % of them, as if it filmed {abs(frames):.1f} frames or "
+            f"more {'late' if frames > 0 else 'early'}; check that the videos are synchronised, "
+            "and which marker is which"
         )
 
 

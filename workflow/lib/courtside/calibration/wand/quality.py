@@ -3,16 +3,16 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle.problem import IMAGE, LENS, POSE
+from courtside.calibration.wand import timing
+from courtside.calibration.wand.adjustment import WRONG
 from courtside.calibration.wand.calibration import Found
 from courtside.calibration.wand.points import Seen, Wand
-from courtside.geometry.camera import project
 
 OUT_OF_STEP = 2.0  # ASSUME: excess scatter of blocks of time that is told
-LATE, LATE_SIGMAS = 0.15, 5.0  # ASSUME: frames, and their sigmas: a camera so late is told
+LATE, LATE_SIGMAS = 0.05, 5.0  # ASSUME: frames, and their sigmas: a camera so late is told
 LEAST_WAY = 0.3  # ASSUME: of a picture's diagonal: a lens that is not known needs as much
 LONGER_SIGMAS = 4.0  # ASSUME: a wand that clicked points say is so much longer is told
 
@@ -26,8 +26,8 @@ def said(found: Found, wand: Wand, seen: Seen, known: set[str]) -> dict[str, Any
     stated where two cameras or more place its ends, mean and standard deviation.
     """
     off = found.error_px
-    fine = np.abs(off).max(axis=-1) < 3.5 * found.adjusted.sigma_px
-    late, late_sigma = _late(found, seen, fine)
+    fine = np.abs(off).max(axis=-1) < WRONG * found.adjusted.sigma_px
+    late, late_sigma = timing.late(found.cameras, seen, found.xyz)
     report: dict[str, Any] = {"warnings": [], "world": found.world}
     report |= {"sigma_px": found.adjusted.sigma_px, "covariance_factor": found.adjusted.factor}
     report["length_mm"] = _length_mm(found, wand)
@@ -59,28 +59,6 @@ def _length_mm(found: Found, wand: Wand) -> dict[str, float | int]:
     middle = float(np.median(off)) if len(off) else np.nan
     spread = 1.4826 * float(np.median(np.abs(off - middle))) if len(off) else np.nan
     return {"mean": middle, "standard_deviation": spread, "n": len(off)}
-
-
-def _late(found: Found, seen: Seen, fine: NDArray) -> tuple[NDArray, NDArray]:
-    """Return by how many frames each camera (C,) films late, and the standard deviations.
-
-    From its residuals along the markers' ways in its picture. Less than the truth, because the
-    wand's places follow what the cameras say together.
-    """
-    late, sigma = np.zeros(len(found.cameras)), np.full(len(found.cameras), np.inf)
-    step = float(np.median(np.diff(seen.frames)))
-    for c, camera in enumerate(found.cameras):
-        px = project(camera, found.xyz)
-        way = np.full_like(px, np.nan)
-        apart = (seen.frames[2:] - seen.frames[:-2]) / step
-        way[1:-1] = (px[2:] - px[:-2]) / apart[:, None, None]
-        way[1:-1][apart > 2.5] = np.nan  # frames are missing in between
-        use = fine[c] & np.isfinite(way).all(axis=-1)
-        square = float((way[use] ** 2).sum())
-        if square > 0:
-            late[c] = -float((way[use] * found.error_px[c][use]).sum()) / square
-            sigma[c] = found.adjusted.sigma_px / np.sqrt(square)
-    return late, sigma
 
 
 def _warnings(found: Found, wand: Wand, seen: Seen, known: set[str], late, sigma) -> list[str]:

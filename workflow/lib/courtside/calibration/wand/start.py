@@ -20,12 +20,14 @@ from courtside.geometry.triangulation import triangulate_robust
 from courtside.study.errors import InputError
 
 # ASSUME: focal lengths over the picture's longer side, from action cameras to short telephoto
-# lenses, a fifth apart: the adjustment finds what lies between.
+# lenses. The adjustment finds what lies between.
 FOCAL_SHARES = (0.5, 0.6, 0.7, 0.84, 1.0, 1.2, 1.45, 1.75, 2.1, 2.5)
+COARSE = 2  # of two cameras every other one is tried, of further cameras all
 FEWEST_FRAMES = 20  # ASSUME: that two cameras share, with two markers or more in both
 SAMPLE = 400  # markers that a pair of cameras is estimated from
 REACH = 0.004  # ASSUME: of the picture's longer side: what unknown lenses bend and markers err
 LEAST_SHARE = 0.5  # ASSUME: of two cameras' markers that agree
+LEAST_AGREEING = 0.3  # ASSUME: of a further camera's, whose lens may not be known
 LEAST_SINE = 0.05  # of the angle between rays, 3 degrees: less is no parallax
 PAIRS = 3  # of two cameras that are tried, those that share most
 CONFIDENCE, ROUNDS = 0.9999, 2000  # of the random samples
@@ -63,12 +65,13 @@ def guess(
             for c, candidates in enumerate(cameras)
             if candidates[0].name not in posed
         ]
-        count, camera = max(tried, key=lambda one: one[0])
-        if count < 2 * FEWEST_FRAMES // 2:
+        count, shown, camera = max(tried, key=lambda one: one[0])
+        if count < max(FEWEST_FRAMES, LEAST_AGREEING * shown):
             raise InputError(
-                f"camera {camera.name}: expected {FEWEST_FRAMES} markers or more that agree with "
-                f"the other cameras, found {count}; check its clock, which marker is which, and "
-                "that its video is not mirrored"
+                f"camera {camera.name}: expected {FEWEST_FRAMES} markers or more, and "
+                f"{100 * LEAST_AGREEING:.0f} %, to agree with the other cameras, found {count} of "
+                f"{shown}; check its clock, which marker is which, and that its video is not "
+                "mirrored"
             )
         posed[camera.name] = camera
     return [posed[name] for name in seen.cameras]
@@ -112,6 +115,10 @@ def _candidates(name: str, size: tuple[int, int], lenses: Mapping[str, Camera]) 
     return found
 
 
+def _coarse(candidates: Sequence[Camera]) -> Sequence[Camera]:
+    return candidates[::COARSE]
+
+
 def _reach(camera: Camera) -> float:
     """Return how far markers may be off, on the z = 1 plane."""
     return REACH * max(camera.size) / float(camera.K[1, 1])
@@ -126,7 +133,7 @@ def _first(
     for two in every[:PAIRS]:
         of_pair = [
             one
-            for lenses in product(*(cameras[c] for c in two))
+            for lenses in product(*(_coarse(cameras[c]) for c in two))
             if (one := _related(wand, seen.xy[list(two)], lenses)) is not None
         ]
         most = max((one.agreeing for one in of_pair), default=0)
@@ -192,7 +199,8 @@ def triangulated(cameras: Sequence[Camera], xy: NDArray) -> NDArray:
     flat = xy.reshape(len(xy), -1, 2)
     limit = REACH * max(max(camera.size) for camera in cameras)
     score = np.isfinite(flat[..., 0]).astype(float)
-    found = triangulate_robust(cameras, flat, score, sigma_px=1.0, max_error_px=limit)
+    with np.errstate(divide="ignore", invalid="ignore"):  # markers that one camera sees alone
+        found = triangulate_robust(cameras, flat, score, sigma_px=1.0, max_error_px=limit)
     return found.xyz.reshape(*xy.shape[1:3], 3)
 
 
@@ -207,11 +215,11 @@ def _placed(cameras: Sequence[Camera], seen: Seen) -> NDArray:
     return triangulated(cameras, seen.xy[at])
 
 
-def _resected(candidates: Sequence[Camera], xy: NDArray, xyz: NDArray) -> tuple[int, Camera]:
-    """Return how many markers (F, M, 3) a camera agrees with, and the camera there."""
+def _resected(candidates: Sequence[Camera], xy: NDArray, xyz: NDArray) -> tuple[int, int, Camera]:
+    """Return how many markers (F, M, 3) a camera agrees with, of how many, and the camera there."""
     at = np.argwhere(np.isfinite(xyz).all(axis=-1) & np.isfinite(xy[..., 0]))
     at = at[np.linspace(0, len(at) - 1, min(len(at), SAMPLE)).astype(int)]
-    best = 0, candidates[0]
+    best = 0, len(at), candidates[0]
     if len(at) < 6:
         return best
     place, px = xyz[tuple(at.T)], xy[tuple(at.T)]
@@ -224,5 +232,5 @@ def _resected(candidates: Sequence[Camera], xy: NDArray, xyz: NDArray) -> tuple[
             continue
         pose = np.column_stack([rotations.rotation_from_rodrigues(vector.ravel()), shift])
         if (place[near[:, 0]] @ pose[2, :3] + pose[2, 3] > 0).mean() > LEAST_SHARE:
-            best = len(near), replace(camera, cam_from_world=pose)
+            best = len(near), len(at), replace(camera, cam_from_world=pose)
     return best

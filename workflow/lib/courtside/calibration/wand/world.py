@@ -59,7 +59,7 @@ def of_cameras(xyz: NDArray, cameras: Sequence[Camera]) -> Sim3:
     up = rotations.unit(-np.mean([camera.cam_from_world[1, :3] for camera in cameras], axis=0))
     along = cameras[1].centre_in_world - cameras[0].centre_in_world
     turn = world_frame.axes(up, along)
-    return Sim3(1.0, turn, -turn @ np.nanmedian(xyz.reshape(-1, 3), axis=0))
+    return Sim3(1.0, turn, -np.nanmedian(xyz.reshape(-1, 3) @ turn.T, axis=0))
 
 
 def of_clicks(cameras: Sequence[Camera], points: NDArray, clicks: Mapping[str, NDArray]) -> Sim3:

@@ -116,12 +116,13 @@ def _take_paths(where: str, take: Content) -> Iterator[tuple[str, str]]:
         yield f"{where}.devices.{name}.file", device["file"]
 
 
-def _board_paths(given: Content) -> Iterator[tuple[str, str]]:
-    for key in ("corners", "lenses"):
-        if key in given:
-            yield f"board.{key}", given[key]
+def _target_paths(content: Content) -> Iterator[tuple[str, str]]:
+    """Yield those of a board and of a wand."""
+    for target, keys in (("board", ("corners", "lenses")), ("wand", ("points", "lenses"))):
+        given = content.get(target, {})
+        yield from ((f"{target}.{key}", given[key]) for key in keys if key in given)
     for key in ("images", "videos"):
-        for camera, path in given.get(key, {}).items():
+        for camera, path in content.get("board", {}).get(key, {}).items():
             yield f"board.{key}.{camera}", path
 
 
@@ -129,10 +130,7 @@ def _paths(content: Content) -> Iterator[tuple[str, str]]:
     """Yield (key, path) of all recordings but those of takes."""
     if "calibration" in content:
         yield "calibration.file", content["calibration"]["file"]
-    yield from _board_paths(content.get("board", {}))
-    for key in ("points", "lenses"):
-        if key in content.get("wand", {}):
-            yield f"wand.{key}", content["wand"][key]
+    yield from _target_paths(content)
     for name, camera in content["cameras"].items():
         if camera and "static" in camera:
             yield f"cameras.{name}.static", camera["static"]
