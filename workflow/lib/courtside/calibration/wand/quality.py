@@ -12,7 +12,7 @@ from courtside.calibration.wand.calibration import Found
 from courtside.calibration.wand.points import Seen, Wand
 
 OUT_OF_STEP = 2.0  # ASSUME: excess scatter of blocks of time that is told
-LATE, LATE_SIGMAS = 0.05, 5.0  # ASSUME: frames, and their sigmas: a camera so late is told
+LATE, LATE_SIGMAS = 0.03, 5.0  # ASSUME: frames, and their sigmas: a camera so late is told
 LEAST_WAY = 0.3  # ASSUME: of a picture's diagonal: a lens that is not known needs as much
 LONGER_SIGMAS = 4.0  # ASSUME: a wand that clicked points say is so much longer is told
 

@@ -218,6 +218,16 @@ VIEWS = {  # the columns that the documents show of their tables
         },
         "^`(walk|charuco|hall)",
     ),
+    "wand": View(
+        "wand",
+        {
+            "cameras, noise, lens": "{row}",
+            "volume error, median / 95 %, cm": "{volume}",
+            "largest angle of a camera, median / largest, degrees": "{angles}",
+            "largest error of a focal length, median, %": "{focal}",
+            "in 90 % ellipsoids, %": "{hold}",
+        },
+    ),
     "lines-clicks": View(
         "lines-clicks",
         {
