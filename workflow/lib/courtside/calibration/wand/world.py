@@ -14,7 +14,7 @@ from courtside.geometry.similarity import Sim3
 from courtside.geometry.triangulation import triangulate_all
 from courtside.study.errors import InputError
 
-WIDE = 0.1  # ASSUME: least extent of places on the floor across their line, a share of it
+WIDE = 0.03  # ASSUME: least extent of places on the floor across their line, a share of it
 OFF_M = 0.05  # ASSUME: markers of a wand on a floor that is so far from flat are elsewhere
 FEWEST_CLICKS = 4  # of a camera that is to tell where the court is
 MIRRORED = 4.0  # ASSUME: clicks that fit a mirrored world so much better
