@@ -28,6 +28,7 @@ SAMPLE = 400  # markers that a pair of cameras is estimated from
 REACH = 0.004  # ASSUME: of the picture's longer side: what unknown lenses bend and markers err
 LEAST_SHARE = 0.5  # ASSUME: of two cameras' markers that agree
 LEAST_AGREEING = 0.3  # ASSUME: of a further camera's, whose lens may not be known
+STARTS, ENOUGH = 6, 0.8  # two cameras that are tried; share of markers with which no more are
 LEAST_SINE = 0.05  # of the angle between rays, 3 degrees: less is no parallax
 PAIRS = 3  # of two cameras that are tried, those that share most
 CONFIDENCE, ROUNDS = 0.9999, 2000  # of the random samples
@@ -45,6 +46,15 @@ class _Pair:
     spread: float  # of the wand's length, a share
 
 
+@dataclass(frozen=True, eq=False)
+class _Placed:
+    """Cameras by name, and how well the worst of them agrees with those before it."""
+
+    cameras: dict[str, Camera]
+    agreeing: float  # share of its markers; less than 0 where one is missing
+    fault: str = ""  # why
+
+
 def guess(
     wand: Wand, seen: Seen, sizes: Mapping[str, tuple[int, int]], lenses: Mapping[str, Camera]
 ) -> list[Camera]:
@@ -56,8 +66,23 @@ def guess(
     shared = _shared(seen)
     _check(seen, shared)
     cameras = [_candidates(name, sizes[name], lenses) for name in seen.cameras]
-    first = _first(wand, seen, cameras, shared)
-    posed = {camera.name: camera for camera in first}
+    best: _Placed | None = None
+    for first in _first(wand, seen, cameras, shared):
+        found = _completed(first, seen, cameras)
+        if best is None or found.agreeing > best.agreeing:
+            best = found
+        if best.agreeing >= ENOUGH:
+            break
+    if best is None or best.fault:
+        raise InputError(best.fault if best else "wand: expected cameras, found none")
+    return [best.cameras[name] for name in seen.cameras]
+
+
+def _completed(
+    first: tuple[Camera, Camera], seen: Seen, cameras: Sequence[Sequence[Camera]]
+) -> _Placed:
+    """Return two cameras with all others, each placed by the markers that those before it place."""
+    posed, least = {camera.name: camera for camera in first}, 1.0
     while len(posed) < len(cameras):
         xyz = _placed(list(posed.values()), seen)
         tried = [
@@ -66,15 +91,17 @@ def guess(
             if candidates[0].name not in posed
         ]
         count, shown, camera = max(tried, key=lambda one: one[0])
+        share = count / max(shown, 1)
         if count < max(FEWEST_FRAMES, LEAST_AGREEING * shown):
-            raise InputError(
+            fault = (
                 f"camera {camera.name}: expected {FEWEST_FRAMES} markers or more, and "
                 f"{100 * LEAST_AGREEING:.0f} %, to agree with the other cameras, found {count} of "
                 f"{shown}; check its clock, which marker is which, and that its video is not "
                 "mirrored"
             )
-        posed[camera.name] = camera
-    return [posed[name] for name in seen.cameras]
+            return _Placed(posed, share - 1, fault)  # a start that places all is better
+        posed[camera.name], least = camera, min(least, share)
+    return _Placed(posed, least)
 
 
 def _shared(seen: Seen) -> NDArray:
@@ -126,8 +153,8 @@ def _reach(camera: Camera) -> float:
 
 def _first(
     wand: Wand, seen: Seen, cameras: Sequence[Sequence[Camera]], shared: NDArray
-) -> tuple[Camera, Camera]:
-    """Return the two cameras that tell most: whose wand has one length in every frame."""
+) -> list[tuple[Camera, Camera]]:
+    """Return two cameras to start from, best first: whose wand has one length in every frame."""
     every = sorted(combinations(range(len(cameras)), 2), key=lambda two: -shared[two])
     found: list[_Pair] = []
     for two in every[:PAIRS]:
@@ -149,7 +176,7 @@ def _first(
             f"{np.degrees(np.arcsin(LEAST_SINE)):.0f} degrees or more, found {what}; check that "
             f"the videos are synchronised and none is mirrored, and {HOW}"
         )
-    return min(wide, key=lambda one: one.spread).cameras
+    return [one.cameras for one in sorted(wide, key=lambda one: one.spread)[:STARTS]]
 
 
 def _related(wand: Wand, xy: NDArray, lenses: Sequence[Camera]) -> _Pair | None:
