@@ -1,6 +1,6 @@
 """Cameras from a wand swung in a virtual hall, against the truth.
 
-    python benchmarks/wand.py [--seeds 6] [--seconds 40]
+    python benchmarks/wand.py [--easywand FOLDER] [--seeds 6] [--seconds 40]
 
 A wand of 0.8 m, measured to 0.5 mm, moves over the whole court of `players-b`, up to 2.4 m high.
 Its markers are simulated in the pictures (no pictures are rendered): noise of 0.5 or 1 px, 15 % of
@@ -10,7 +10,11 @@ rigid motion that brings the wand's own markers to their true places. `volume` i
 the seeds of their root mean square, and its 95 % quantile, cm; `angles` the largest error of a
 camera's direction, median and largest over seeds; `focal` that of a focal length; `hold` the share
 of the points within the 90 % ellipsoids that the covariance states. The row of the ways to
-calibrate has 18 clicked court points, which give the world. Writes docs/numbers/wand.csv.
+calibrate has 18 clicked court points, which give the world.
+
+FOLDER has a real wand's `wandpts.csv`, clicked in 50 frames of three cameras, and the cameras'
+nominal lenses in `RGBsetup_profile.txt` (github.com/PeppyHare/EasyWand). Its length is not stated:
+how much it varies says how good cameras are. Writes docs/numbers/wand.csv.
 """
 
 import argparse
@@ -28,7 +32,8 @@ from courtside.calibration.bundle import selection
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court import quality
 from courtside.calibration.people.adjustment import court_clicks
-from courtside.calibration.wand import calibration
+from courtside.calibration.wand import calibration, points
+from courtside.calibration.wand import quality as wand_quality
 from courtside.calibration.wand.points import SIGMA_M, Seen, Wand
 from courtside.evaluation.numbers import stated
 from courtside.geometry import camera as camera_models
@@ -45,7 +50,7 @@ SESSION, COURT = "players-b", court_files.read(ROOT / "config" / "courts" / "bad
 THREE = ("oblique", "mirror", "front")  # not on one line
 LENGTH_M, RATE_HZ, HIDDEN, MISREAD = 0.8, 10.0, 0.15, 0.02
 LOW, HIGH = (0.0, 0.0, 0.4), (*COURT.size_m, 2.4)  # of the wand's middle, m
-MADE = "benchmark", "`python benchmarks/wand.py`"
+MADE = "benchmark", "`python benchmarks/wand.py --easywand FOLDER`"
 
 
 def hall():
@@ -144,8 +149,34 @@ def clicked(real, preset, seconds, seeds):
     return f"{volume}; {np.median(shape):.2f}; hold {held.mean():.0f} %"
 
 
-def rows(seconds, seeds):
+def easywand(folder):
+    """Yield the rows of a real wand: with the lenses stated, without distortion, and found."""
+    given = {"length_m": 1.0, "points": folder / "wandpts.csv", "program": "dltdv"}
+    profile = np.loadtxt(folder / "RGBsetup_profile.txt")
+    names = {f"cam{number:g}": f"cam{number:g}" for number in profile[:, 0]}
+    sizes = {name: (int(w), int(h)) for name, (w, h) in zip(names, profile[:, 2:4], strict=True)}
+    lenses = {
+        name: camera_models.Camera(
+            name, sizes[name], [[f, 0, cx], [0, f, cy], [0, 0, 1]], np.zeros(5), np.eye(3, 4)
+        )
+        for name, (f, cx, cy) in zip(names, profile[:, [1, 4, 5]], strict=True)
+    }
+    wand = Wand.of(given)
+    seen = points.read(given, wand, names, sizes)
+    for known, lens in ((lenses, "stated"), ({}, "found")):
+        found = calibration.calibrate(wand, seen, sizes, lenses=known)
+        told = wand_quality.said(found, wand, seen, set(known))
+        varies = 100 * told["length_mm"]["standard_deviation"] / (1000 * wand.length_m)
+        px = "/".join(f"{value:.1f}" for value in told["rms_px"].values())
+        row = f"`easywand-3cams`: a wand clicked in {len(seen.frames)} frames, lenses {lens}"
+        yield row, f"markers {px} px; its length varies by {varies:.2f} %", len(seen.frames)
+
+
+def rows(seconds, seeds, folder):
     """Yield the rows as docs/make_tables.py reads them."""
+    for row, printed, n in easywand(folder) if folder else ():
+        print(row, printed, flush=True)
+        yield ["ways", row, "alone", printed, "px", "easywand-3cams", n, 0]
     real, preset = hall()
     way = f"`{SESSION}`: wand of {LENGTH_M:g} m for {seconds:g} s and 18 clicks, lens found"
     yield ["ways", way, "alone", clicked(real, preset, seconds, seeds), "cm", SESSION, seeds, 0]
@@ -157,6 +188,9 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seeds", type=int, default=6)
     parser.add_argument("--seconds", type=float, default=40)
+    parser.add_argument("--easywand", type=Path)
     parser.add_argument("--csv", type=Path, default=ROOT / stated.FOLDER / "wand.csv")
     given = parser.parse_args()
-    stated.write(given.csv, [[*row, *MADE] for row in rows(given.seconds, given.seeds)])
+    stated.write(
+        given.csv, [[*row, *MADE] for row in rows(given.seconds, given.seeds, given.easywand)]
+    )

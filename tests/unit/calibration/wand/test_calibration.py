@@ -145,7 +145,10 @@ def test_bad_input_is_one_line():
     good = seen(xyz)
     still = np.repeat(xyz[:1], len(xyz), axis=0)
     refused(r"wand: expected ways of 0.5 of its length or more in a picture", seen(still))
-    refused(r"expected 20 frames or more in which one of each sees two", good.of(np.arange(12)))
+    refused(
+        r"expected 20 frames or more in which one of each sees two",
+        replace(good, frames=good.frames[:12], xy=good.xy[:, :12]),
+    )
     apart = good.xy.copy()
     apart[:2, ::2] = apart[2:, 1::2] = np.nan
     refused(r"wand: cameras c0, c1 and c2, c3: expected 20 frames", replace(good, xy=apart))

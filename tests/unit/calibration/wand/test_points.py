@@ -109,6 +109,7 @@ def test_a_wand_has_two_or_three_markers():
         (OURS.replace("x_px", "u"), {}, "expected the columns camera,marker,x_px,y_px"),
         (OURS.replace(",9\n", ",x\n", 1), {"markers": ["tip", "end"]}, "line 3: expected y_px"),
         (OURS.replace("cam_b", "cam_c"), {"markers": ["tip", "end"]}, "in camera right (cam_b)"),
+        (OURS.replace("cam_", "no_"), {"markers": ["tip", "end"]}, "in camera left (cam_a)"),
         (OURS + "cam_a,3,tip,1,1\n", {"markers": ["tip", "end"]}, "expected one place of"),
         (DLTDV8, {}, "expected the columns camera"),
         (OURS, {"program": "argus"}, "expected columns such as pt1_cam1_X or Track_1_cam_1_x"),

@@ -170,9 +170,14 @@ def _check_sync(seen: Seen, cameras: Sequence[Camera], xyz: NDArray) -> None:
         )
 
 
-def _pinhole(camera: Camera, xy: NDArray) -> NDArray:
-    """Return px that a camera would see without distortion."""
-    return undistort(camera, xy) * np.diag(camera.K)[:2] + camera.K[:2, 2]
+def _straight(cameras, lenses: Mapping[str, Camera], xy: NDArray) -> NDArray:
+    """Return px (C, ...) that cameras of known lenses would see without distortion."""
+    return np.stack([
+        undistort(lens, px) * np.diag(lens.K)[:2] + lens.K[:2, 2]
+        if (lens := lenses.get(camera.name))
+        else px
+        for camera, px in zip(cameras, xy, strict=True)
+    ])  # fmt: skip
 
 
 def _state(
@@ -181,6 +186,11 @@ def _state(
     """Return cameras, and a body for each frame whose markers they agree on."""
     xyz = start.triangulated(cameras, seen.xy)
     frames = np.flatnonzero(np.isfinite(xyz[..., 0]).any(axis=1))
+    if len(frames) < start.FEWEST_FRAMES:
+        raise InputError(
+            f"wand: expected {start.FEWEST_FRAMES} frames or more in which cameras agree about a "
+            f"marker, found {len(frames)}; check that the videos are synchronised, and {start.HOW}"
+        )
     frames = frames[np.linspace(0, len(frames) - 1, min(len(frames), MOST_FRAMES)).astype(int)]
     frame, marker = np.nonzero(np.isfinite(xyz[frames][..., 0]))
     count = np.bincount(frame, minlength=len(frames))
@@ -200,10 +210,7 @@ def _state(
         wand.along_m[marker] - middle[frame],
         (adjustment.BLOCKS * each) // len(frames),
     )
-    xy = np.stack([
-        _pinhole(lenses[camera.name], one) if camera.name in lenses else one
-        for camera, one in zip(cameras, seen.xy[:, frames[frame], marker], strict=True)
-    ])  # fmt: skip
+    xy = _straight(cameras, lenses, seen.xy[:, frames[frame], marker])
     image, point = np.nonzero(np.isfinite(xy[..., 0]))
     network = selection.of_cameras(_without(cameras, lenses))
     network = problem.with_points(
@@ -247,10 +254,7 @@ def _in_front(state: State) -> State:
 def _with_clicks(state: State, cameras, lenses, clicks: Clicks) -> State:
     """Return a state with clicked points as further bodies."""
     bodies, network = state.bodies, state.network
-    xy = np.stack([
-        _pinhole(lenses[camera.name], one) if camera.name in lenses else one
-        for camera, one in zip(cameras, clicks.xy, strict=True)
-    ])  # fmt: skip
+    xy = _straight(cameras, lenses, clicks.xy)
     image, point = np.nonzero(np.isfinite(xy[..., 0]))
     used, at = np.unique(point, return_inverse=True)
     count = np.isfinite(clicks.xy[..., 0]).sum(axis=1)

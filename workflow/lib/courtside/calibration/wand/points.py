@@ -6,7 +6,7 @@ at rest. Files are ours, or those that DLTdv, Argus and easyWand write.
 
 import csv
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -69,10 +69,6 @@ class Seen:
     frames: NDArray  # (F,): numbers, or times in s; increasing
     xy: NDArray  # (C, F, M, 2) px, NaN where not seen
 
-    def of(self, frames: NDArray) -> "Seen":
-        """Return some of the frames, (F,) bool or indices."""
-        return Seen(self.cameras, self.frames[frames], self.xy[:, frames])
-
 
 def read(
     given: Mapping[str, Any],
@@ -95,13 +91,19 @@ def read(
         found = Seen(tuple(names), np.arange(theirs.shape[1], dtype=float), theirs[at])
     else:
         found = _ours(path, wand, names)
-    for name, xy in zip(found.cameras, found.xy, strict=True):
-        if not np.isfinite(xy).any():
-            raise InputError(
-                f"{path}: expected markers of the wand in camera {name} ({names[name]}), found "
-                "none; correct the name, or give the camera its `name_in_calibration`"
-            )
+    _check_cameras(path, names, {
+        name for name, xy in zip(found.cameras, found.xy, strict=True) if np.isfinite(xy).any()
+    })  # fmt: skip
     return found
+
+
+def _check_cameras(path: StrPath, names: Mapping[str, str], seen: Collection[str]) -> None:
+    for name, theirs in names.items():
+        if name not in seen:
+            raise InputError(
+                f"{path}: expected markers of the wand in camera {name} ({theirs}), found none; "
+                "correct the name, or give the camera its `name_in_calibration`"
+            )
 
 
 def _ours(path: StrPath, wand: Wand, names: Mapping[str, str]) -> Seen:
@@ -131,6 +133,7 @@ def _ours(path: StrPath, wand: Wand, names: Mapping[str, str]) -> Seen:
                 f"at {times[0]} {row[times[0]]}, found another; delete one"
             )
         xy[at] = [number(where, key, row[key]) for key in OURS[2:]]
+    _check_cameras(path, names, [name for name, places in each.items() if places])
     return _at_frames(each) if times == ["frame"] else _at_times(each)
 
 

@@ -216,7 +216,7 @@ VIEWS = {  # the columns that the documents show of their tables
             "alone; accepted views by camera, %": "{alone}",
             "refined by people; which cameras were taken": "{refined}",
         },
-        "^`(walk|charuco|hall)",
+        "^`(walk|charuco|hall|easywand)",
     ),
     "wand": View(
         "wand",
