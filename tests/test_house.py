@@ -25,6 +25,10 @@ UNTESTED = {"__init__", "errors", "missing_reason"}  # names and constants only
 TESTED_THROUGH = {  # parts of one thing: the tests of the whole cover them
     "courtside/calibration/records/support": "test_tie_points.py",
     "courtside/calibration/boards/start": "test_adjustment.py",
+    "courtside/calibration/wand/start": "test_calibration.py",
+    "courtside/calibration/wand/adjustment": "test_calibration.py",
+    "courtside/calibration/wand/world": "test_calibration.py",
+    "courtside/calibration/wand/timing": "test_quality.py",
     "courtside/calibration/foreign/known": "../test_file_formats.py",
     "courtside/calibration/foreign/opencv": "../test_file_formats.py",
     "courtside/calibration/foreign/qualisys": "../test_file_formats.py",

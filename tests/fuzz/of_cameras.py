@@ -11,6 +11,7 @@ from courtside.calibration import file_formats
 from courtside.calibration.boards import corners
 from courtside.calibration.boards.board import Board
 from courtside.calibration.court import court
+from courtside.calibration.wand import points
 from courtside.exports import pose2sim, trc
 from courtside.geometry import camera as cameras
 from courtside.reconstruction import error_signs, joint_correction, joint_errors
@@ -44,6 +45,7 @@ centerPointU="61440.0" centerPointV="34816.0"
 </camera>"""
 COURT = court.read(CONFIG / "courts" / "badminton.yaml")
 CAMERAS = ["left", "right"]
+WAND_COLUMNS = "camera", "frame", "marker", "x_px", "y_px"
 NAMED = {"left": "left", "right": "cam_1"}
 BOARD = Board("charuco", (5, 4), 0.1, 0.075, "DICT_4X4_50")
 
@@ -169,6 +171,34 @@ def read_corners(path):
     return found
 
 
+def wand_points(folder):
+    """Write markers of a wand in our columns and in those of DLTdv, Argus and easyWand."""
+    rows = [
+        f"{('left', 'cam_1')[k % 2]},{k // 4},{'ab'[k // 2 % 2]},{10.5 + k},{20.25 + k}"
+        for k in range(24)
+    ]
+    (folder / "ours.csv").write_text(
+        "\n".join([",".join(WAND_COLUMNS), *rows, ""]), encoding="utf-8"
+    )
+    header = [f"pt{p}_cam{c}_{axis}" for p in (1, 2) for c in (1, 2) for axis in "XY"]
+    rows = [",".join(["NaN"] * 4 + [f"{10.5 * k + n}" for n in range(4)]) for k in range(8)]
+    (folder / "dltdv.csv").write_text("\n".join([",".join(header), *rows, ""]), encoding="utf-8")
+    header = [f"Track {p}_cam_{c}_{axis}" for p in (1, 2) for c in (1, 2) for axis in "xy"]
+    (folder / "argus.csv").write_text("\n".join([",".join(header), *rows, ""]), encoding="utf-8")
+    (folder / "bare.csv").write_text("\n".join([*rows, ""]), encoding="utf-8")
+
+
+def read_wand(path):
+    """Read markers of a wand."""
+    given = {"length_m": 0.5, "points": str(path)}
+    if not path.name.startswith("ours"):
+        given["program"] = "argus"
+    sizes = {"left": (1920, 1080), "right": (1280, 720)}
+    found = points.read(given, points.Wand.of(given), NAMED, sizes)
+    require(found.xy.shape == (2, len(found.frames), 2, 2), "markers")
+    return found
+
+
 def read_model(path):
     """Read cameras of a COLMAP model in metres."""
     return checked(file_formats.read(path, "m"))
@@ -253,6 +283,7 @@ FORMATS = [
     Format("opencap-pickle", 800, opencap_pickle, read_cameras),
     Format("colmap-model", 800, colmap_folders, read_model),
     Format("board-corners-csv", 400, board_corners, read_corners),
+    Format("wand-points-csv", 600, wand_points, read_wand),
     Format("trc", 1200, trcs, read_trc),
     Format("clicks-csv", 1200, clicked, read_clicks),
     Format("proposals-csv", 400, proposed, read_proposals),

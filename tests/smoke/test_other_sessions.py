@@ -20,6 +20,7 @@ from courtside.records.keypoints import keypoints, skeleton
 from courtside.records.truth import session_truth
 from courtside.sfm import model
 from courtside.study.errors import InputError
+from fixtures.cameras import wands_made
 from fixtures.recordings import onnx_files
 from fixtures.recordings.real_data import REAL, needs_real
 from smoke.snakemake_runs import copy_repository
@@ -102,6 +103,37 @@ def test_a_board_calibrates_all_cameras(gym):
     known = covariance.read(results / "calibration/board/covariance.npz")
     assert known.cameras == [camera.name for camera in found]
     assert (np.diag(known.covariance)[:6] > 0).all()
+
+
+def test_a_wand_calibrates_all_cameras(gym):
+    folder = gym / "data" / "wand"
+    folder.mkdir(parents=True)
+    seen = wands_made.seen(wands_made.swung(), misread=0.02)
+    rows = [
+        f"{name},{frame:g},{marker},{x},{y}"
+        for name, places in zip(seen.cameras, seen.xy, strict=True)
+        for frame, each in zip(seen.frames, places, strict=True)
+        for marker, (x, y) in zip("ab", each, strict=True)
+        if np.isfinite(x)
+    ]
+    (folder / "wand.csv").write_text("\n".join(["camera,frame,marker,x_px,y_px", *rows, ""]))
+    real = {camera.name: camera for camera in wands_made.RIG}
+    cameras.write_toml(folder / "lenses.toml", list(real.values()), source="test")
+    wand = {"length_m": 0.5, "points": "data/wand/wand.csv", "lenses": "data/wand/lenses.toml"}
+    session = {"description": "a wand in a room", "court": "none", "wand": wand}
+    session |= {"cameras": dict.fromkeys(real)}
+    results = study(gym, "wands", session, calibrations=["wand"])
+    found = {c.name: c for c in cameras.read_toml(results / "calibration/wand/cameras.toml")}
+    for one, other in (("c0", "c1"), ("c0", "c2"), ("c1", "c3")):
+        apart = [np.linalg.norm(rig[one].centre_in_world - rig[other].centre_in_world)
+                 for rig in (found, real)]  # fmt: skip
+        assert apart[0] == pytest.approx(apart[1], abs=0.02)
+    quality = json.loads((results / "calibration/wand/quality.json").read_text())
+    assert quality["sigma_px"] == pytest.approx(0.5, rel=0.1)
+    assert quality["warnings"][0].startswith("wand: the origin is the middle of the wand's ways")
+    assert (
+        np.diag(covariance.read(results / "calibration/wand/covariance.npz").covariance)[:6] > 0
+    ).all()
 
 
 @needs_real

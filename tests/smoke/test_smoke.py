@@ -37,7 +37,7 @@ LARGER_STUDY |= {"find_court"}  # of sessions that wait for clicks
 # Devices beside fixed cameras need a take of both; keypoints of other programs, own networks and
 # boards are in test_other_sessions.py.
 LARGER_STUDY |= {"select_person", "import_pose2d", "import_pose3d", "check_network"}
-LARGER_STUDY |= {"calibrate_boards", "calibrate_from_people"}
+LARGER_STUDY |= {"calibrate_boards", "calibrate_wand", "calibrate_from_people"}
 
 
 def test_every_rule_of_the_study_ran(tiny_study):

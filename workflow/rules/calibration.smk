@@ -6,8 +6,8 @@ Outputs: results/{session}/calibration/{calibration}/, results/{session}/pages/c
 Steps: import_cameras (`file`), check_cameras (by static points and people), calibrate_cameras
 (`sfm-n40`, the default), align_cameras (`paper-n40`, `paper-global-n40`, `sim3-n40`),
 calibrate_lens and resect_cameras (`known18`, `known8-board`, `dlt18`), resect_together (`known`:
-all points, all cameras), calibrate_boards (`board`), calibrate_from_people
-(`people`: nothing else), refine_cameras (`file-people` and the like);
+all points, all cameras), calibrate_boards (`board`), calibrate_wand (`wand`),
+calibrate_from_people (`people`: nothing else), refine_cameras (`file-people` and the like);
 propose_court_points (where the points probably are), find_court (the same without a click),
 build_clicking_page; export_cameras (for EasyMocap and COLMAP, by request).
 """
@@ -171,6 +171,31 @@ rule calibrate_boards:
         names=lambda w: session_of(w).calibration_camera_names(),
     script:
         "../scripts/calibrate_boards.py"
+
+
+rule calibrate_wand:
+    input:
+        files=of_job(calibration.wand_files),
+        lens_tomls=of_job(calibration.wand_lenses),
+        pictures=of_job(calibration.wand_pictures),
+        clicks_csv=lambda w: session_of(w).court_points or [],
+        court_yaml=of_job(Job.court_file),
+    output:
+        cameras_toml=paths.CAMERAS,
+        covariance_npz=paths.CAMERA_COVARIANCE,
+        quality_json=paths.CALIBRATION_QUALITY,
+    log:
+        "results/{session}/logs/calibrate_wand/{calibration}.log",
+    wildcard_constraints:
+        calibration="wand",
+    params:
+        code=code("calibrate_wand.py"),
+        given=lambda w: session_of(w).wand,
+        names=lambda w: session_of(w).calibration_camera_names(),
+        placed=lambda w: session_of(w).placed,
+        weights=of_job(calibration.clicks),
+    script:
+        "../scripts/calibrate_wand.py"
 
 
 rule calibrate_from_people:

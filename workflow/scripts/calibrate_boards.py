@@ -10,7 +10,7 @@ from courtside.geometry import camera as cameras
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json
 from courtside.study.execution.script import run
-from courtside.video import images, reader
+from courtside.video import reader
 
 
 def main(paths, cameras_toml, covariance_npz, quality_json, *, given, names):
@@ -19,7 +19,9 @@ def main(paths, cameras_toml, covariance_npz, quality_json, *, given, names):
     seen = found_in(given, names, board)
     lenses = known_lenses(given, paths.lens_tomls, names)
     sizes = seen.sizes or {name: lens.size for name, lens in lenses.items()}
-    sizes = sizes or {name: size(path) for name, path in zip(names, paths.pictures, strict=True)}
+    sizes = sizes or {
+        name: reader.picture_size(path) for name, path in zip(names, paths.pictures, strict=True)
+    }
     for name, lens in lenses.items():
         cameras.check_size(lens, sizes[name], f"board of camera {name}")
     floor = None if given.get("floor") is None else str(given["floor"])
@@ -52,13 +54,6 @@ def known_lenses(given, lens_tomls, names):
         return {}
     each = zip(names, lens_tomls, strict=True)
     return {name: cameras.read_toml(path)[0] for name, path in each}
-
-
-def size(path):
-    """Return width and height of a picture or video, px."""
-    if str(path).endswith(".png"):
-        return images.read(path).shape[1::-1]
-    return reader.probe(path).size
 
 
 if __name__ == "__main__":

@@ -23,6 +23,8 @@ from courtside.study.methods import Calibration, Fusion, Variant
         ("paper-n5-o2", Calibration("paper-n5-o2", "paper", Variant("incremental", 5, 2))),
         ("known", Calibration("known", "known")),
         ("board", Calibration("board", "board")),
+        ("wand", Calibration("wand", "wand")),
+        ("wand-people", Calibration("wand-people", "people", base="wand")),
         ("people", Calibration("people", "people-alone")),
         ("known18", Calibration("known18", "known", n_points=18)),
         ("known8-board", Calibration("known8-board", "known", n_points=8, board=True)),
@@ -73,10 +75,10 @@ def test_adjusting_all_cameras_together_gives_a_covariance():
     ]
     found = [
         name
-        for name in [*names, "known", "board", "people"]
+        for name in [*names, "known", "board", "wand", "people"]
         if Calibration.parse(name).has_covariance
     ]
-    assert found == ["file-people", "sfm-n40", "known", "board", "people"]
+    assert found == ["file-people", "sfm-n40", "known", "board", "wand", "people"]
 
 
 def test_a_structure_from_motion_is_parsed_and_named():

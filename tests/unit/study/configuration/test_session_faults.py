@@ -59,6 +59,8 @@ ALONE = without(RECORDED, "walks")
 BOARD = {"kind": "charuco", "squares": [4, 5], "square_m": 0.1, "dictionary": "DICT_4X4_50"}
 BOARD |= {"corners": "p.csv", "lenses": "c.toml"}
 BOARDED = {"court": "none", "cameras": RECORDED["cameras"], "board": BOARD}
+WAND = {"length_m": 0.5, "points": "p.csv", "lenses": "c.toml"}
+SWUNG = without(BOARDED, "board") | {"wand": WAND}
 AB = {"a": "a.mp4", "b": "b.mp4"}
 PEOPLE = without(BOARDED, "board") | {"subjects": {"p1": {"height_m": 1.7}}}
 PEOPLE |= {"override": {"calibrations": ["people"]}}
@@ -87,6 +89,8 @@ PLAYERS = VIRTUAL | {"subjects": {"p1": None}, "takes": {"shot": FILMED}}
         RECORDED | OVERRIDDEN | {"static_points": "config/courts/badminton.yaml"},
         RECORDED | {"cameras": {"a": {"static": "a.mp4"}}},
         BOARDED,
+        SWUNG,
+        SWUNG | {"wand": without(WAND, "lenses") | {"program": "argus", "cameras": ["b", "a"]}},
         PEOPLE,
         PEOPLE | LENGTHS,
         PEOPLE | LENGTHS | {"subjects": {"p1": None}},
@@ -180,7 +184,7 @@ def test_good_sessions_have_no_fault(root, content):
         ),
         (
             without(without(RECORDED, "walks"), "court_points"),
-            ["expected `walks`, `court_points`, `board` or `calibration`, or `override: "],
+            ["expected `walks`, `court_points`, `board`, `wand` or `calibration`, or"],
         ),
         (
             PEOPLE | {"court": "badminton"},
@@ -205,6 +209,31 @@ def test_good_sessions_have_no_fault(root, content):
         (
             BOARDED | {"board": without(BOARD, "corners") | {"videos": {"a": "a.mp4"}}},
             ["board.videos: expected every camera, found none for b"],
+        ),
+        (
+            SWUNG | {"wand": WAND | {"points": "q.csv"}},
+            ["wand.points: expected a file, found none at q.csv"],
+        ),
+        (
+            SWUNG | {"wand": WAND | {"program": "dltdv", "cameras": ["b"]}},
+            ["wand.cameras: expected every camera of the session once, found b"],
+        ),
+        (
+            SWUNG | {"wand": WAND | {"cameras": ["b", "a"]}},
+            ["wand.cameras: expected `program` beside it"],
+        ),
+        (
+            SWUNG | {"wand": WAND | {"markers": ["x", "y", "z"]}},
+            ["wand.markers: expected 2 names, found 3", "`middle_m`"],
+        ),
+        (
+            SWUNG | {"wand": WAND | {"middle_m": 0.5}},
+            ["wand.middle_m: expected less than length_m (0.5), found 0.5"],
+        ),
+        (
+            SWUNG
+            | {"wand": without(WAND, "lenses"), "cameras": {"a": {"static": "a.mp4"}, "b": None}},
+            ["cameras.b: expected `static` or a video in a take"],
         ),
         (
             BOARDED | {"board": BOARD | {"corners": "q.csv"}},

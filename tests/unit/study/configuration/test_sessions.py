@@ -52,7 +52,7 @@ def test_a_one_stage_model_has_no_detector():
 
 WAYS = [
     *("file", "sfm-n40", "sim3-n40", "paper-n40", "paper-global-n40"),
-    *("known", "board", "people", "known18", "known8", "dlt18", "known18-board"),
+    *("known", "board", "wand", "people", "known18", "known8", "dlt18", "known18-board"),
 ]
 FILMED = {"take": sessions.Take("take", {"a": "a.mp4", "b": "b.mp4"}, ())}
 BOARD = {"images": "boards", "inner_corners": [7, 4], "square_m": 0.06}
@@ -79,6 +79,8 @@ def session(**changes):
         ({"calibration_file": "c.toml"}, ["file"]),
         ({"board": {"kind": "charuco"}}, ["board"]),
         ({"board": {"kind": "tags"}, "court_points": "p.csv", "placed": True}, ["board"]),
+        ({"wand": {"length_m": 0.5}}, ["wand"]),
+        ({"wand": {"length_m": 0.5}, "court_points": "p.csv", "placed": True}, ["wand"]),
         ({"takes": FILMED}, ["people"]),
         ({"takes": FILMED, "court": "badminton"}, []),
         ({"walks": {"w": "w.mp4"}}, ["sfm-n40"]),
@@ -97,7 +99,7 @@ def session(**changes):
             [
                 way
                 for way in WAYS
-                if way not in ("file", "known", "board", "people", "known18-board")
+                if way not in ("file", "known", "board", "wand", "people", "known18-board")
             ],
         ),
         ({"walks": {"w": "photos"}, "cameras": {}}, []),

@@ -104,6 +104,24 @@ def test_a_board_before_all_cameras_has_pictures_and_lenses(job, study, tmp_path
     assert calibration.board_pictures(tracks) == calibration.of_full_size(tracks)
 
 
+def test_a_wand_before_all_cameras_has_points_and_lenses_or_pictures(job, study, tmp_path):
+    lenses = tmp_path / "c.toml"
+    lenses.touch()
+    session = study.sessions["plain-tiny"]
+
+    def of(wand):
+        made = replace(study, sessions={"plain-tiny": replace(session, wand=wand)})
+        return job(made, **PLAIN)
+
+    tracks = of({"points": "w.csv"})
+    assert calibration.wand_files(tracks) == ["w.csv"]
+    assert calibration.wand_lenses(tracks) == calibration.known_lenses(tracks)
+    assert calibration.wand_pictures(tracks) == calibration.of_full_size(tracks)
+    known = of({"points": "w.csv", "lenses": str(lenses)})
+    assert calibration.wand_files(known) == ["w.csv", str(lenses)]
+    assert calibration.wand_lenses(known) == calibration.wand_pictures(known) == []
+
+
 def test_only_calibrations_with_a_board_take_its_lenses(job):
     lenses = [f"results/plain-tiny/calibration/lens/{name}.toml" for name in ("side", "back")]
     assert calibration.lenses(job(**PLAIN, calibration="known18-board")) == lenses

@@ -1,9 +1,10 @@
 """Calibration of fixed cameras: court points and lines, walks, boards, people, imported files.
 
 The rooms: boards, court, court_lines, bundle, planning, click_proposals, file_check, foreign,
-people, records.
+people, records, wand.
 
 file_formats: read, rename, with_principal_points: calibrations by other programs
 chessboard: find, calibrate: a lens from pictures of a chessboard
-point_covariance: point_covariance, sensitivity, of_columns, pseudo_inverse, mahalanobis, ellipsoid
+point_covariance: point_covariance, sensitivity, of_columns, pseudo_inverse, mahalanobis, ellipsoid,
+    centre_sigma
 """

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from courtside.calibration.bundle import problem
 from courtside.calibration.bundle.problem import Network
 from courtside.calibration.bundle.solver import Normal
+from courtside.geometry.camera import Camera
 
 WITHIN_90 = 1.645  # standard deviations to either side hold 90 % of normal errors
 PLACES = 4096  # at once, for the memory that their derivatives need
@@ -99,3 +100,13 @@ def mahalanobis(error: NDArray, covariance: NDArray) -> NDArray:
 def ellipsoid(share: float) -> float:
     """Return what `mahalanobis` stays within for a share, 0..1, of normal errors."""
     return 2 * scipy.special.gammaincinv(3 / 2, share)
+
+
+def centre_sigma(camera: Camera, covariance: NDArray) -> float:
+    """Return the standard deviation of a camera's centre, m, root of the sum over three axes.
+
+    `covariance` (6, 6) is that of its pose. Of the steps of a network only the shift moves the
+    centre, by the rotation's inverse.
+    """
+    by_shift = camera.cam_from_world[:, :3].T
+    return float(np.sqrt(np.trace(by_shift @ covariance[3:, 3:] @ by_shift.T)))

@@ -7,7 +7,7 @@ from courtside.study.errors import InputError
 
 # The default choice of bridging images is o0; a name leaves it out.
 CALIBRATION = re.compile(
-    r"file|(?P<alone>known|board|people)"
+    r"file|(?P<alone>known|board|wand|people)"
     r"|(?P<points>known|dlt)(?P<n_points>[0-9]+)(?P<board>-board)?"
     r"|(?P<kind>sfm|sim3|paper)(?P<mapped>-global)?-n(?P<n_images>[0-9]+)"
     r"(-o(?P<offset>[0-9]+))?(?P<lines>-lines)?"
@@ -73,15 +73,15 @@ def distinct_offsets(n_images: int, n_frames: int, n_offsets: int) -> list[int]:
 class Calibration:
     """A way to find the fixed cameras of a session."""
 
-    # `file`, `known`, `board`, `sfm-n40`, `sfm-n40-o1`, `sfm-n40-lines`, `sim3-n40`, `paper-n40`,
-    # `paper-global-n40`, `known18`, `known8-board`, `dlt18`, `people`, `file-people`
+    # `file`, `known`, `board`, `wand`, `sfm-n40`, `sfm-n40-o1`, `sfm-n40-lines`, `sim3-n40`,
+    # `paper-n40`, `paper-global-n40`, `known18`, `known8-board`, `dlt18`, `people`, `file-people`
     # and the like
     name: str
     # `file` (made elsewhere); from structure from motion: `sfm` (ties and clicks adjusted
     # together), `sim3` (one similarity), `paper` (the paper's alignment); from clicks alone:
     # `known` (resection; without a number all points, all cameras together), `dlt`; from a board
-    # that several cameras see: `board`; from people in takes and nothing else: `people-alone`;
-    # `people`: another calibration, refined by people in takes
+    # that several cameras see: `board`; from a wand: `wand`; from people in takes and
+    # nothing else: `people-alone`; `people`: another calibration, refined by people in takes
     kind: str
     # The structure from motion that it rests on. Only `paper-n40` is mapped incrementally, as in
     # the paper
@@ -122,7 +122,7 @@ class Calibration:
     @property
     def has_covariance(self) -> bool:
         """Whether the covariance of the cameras is known."""
-        return self.kind in ("sfm", "people", ALONE) or self.name in ("known", "board")
+        return self.kind in ("sfm", "people", ALONE) or self.name in ("known", "board", "wand")
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from courtside.study.errors import InputError, StrPath, reading
 from courtside.study.execution.files import atomic
+from courtside.video import images
 from courtside.video.decoder import decode_checked, display_matrix, pictures
 from courtside.video.packets import list_packets
 
@@ -177,3 +178,11 @@ def sharpness(image: NDArray) -> float:
 def _nearest(times_s: NDArray, wanted_s: NDArray | float) -> NDArray:
     """Return the index of the time nearest to each wanted one; the earlier of two equally near."""
     return np.searchsorted((times_s[:-1] + times_s[1:]) / 2, wanted_s)
+
+
+def picture_size(path: StrPath) -> tuple[int, int]:
+    """Return width and height of a picture (.png) or of a video's pictures, px."""
+    if str(path).endswith(".png"):
+        height, width = images.read(path).shape[:2]
+        return width, height
+    return probe(path).size

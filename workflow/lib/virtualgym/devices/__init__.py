@@ -1,4 +1,4 @@
-"""Simulated devices: depth camera, chessboard, inertial suit.
+"""Simulated devices: depth camera, chessboard, wand, inertial suit.
 
 - depth_camera: `DepthCamera`, `Recorder`, `of_hall`, `of_athletes`
 - depth_noise: `DepthErrors`, `Sensor`
@@ -7,5 +7,6 @@
 - inertial_errors: `Errors`, `STRENGTHS`, `wandering`, `disturbance`
 - inertial_estimate: `guess`, `Turns`
 - mocopi_skeleton: `Rig`, `SHARED`
+- wand: `swing`, `film`: a wand and its markers in the pictures
 - chessboard: `simulate`, `picture`, `poses`, `corners_m`
 """

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.calibration import point_covariance
 from courtside.calibration.boards import start
 from courtside.calibration.boards.board import Board
 from courtside.calibration.boards.corners import Corners
@@ -356,7 +357,8 @@ def said(found: Found, seen: Corners, board: Board, *, stated: bool) -> dict[str
             "n_corners": int(own.sum()),
             "n_pictures": len(np.unique(seen.picture[own])),
             "rms_px": float(np.sqrt(np.mean(found.error_px[own] ** 2))),
-            "place_sigma_mm": 1000 * _place_sigma(camera, found.covariance[np.ix_(at, at)]),
+            "place_sigma_mm": 1000
+            * point_covariance.centre_sigma(camera, found.covariance[np.ix_(at, at)]),
             "f_px": float(camera.K[1, 1]),
             "f_sigma_px": float(np.sqrt(found.covariance[lens, lens])),
         }
@@ -365,15 +367,6 @@ def said(found: Found, seen: Corners, board: Board, *, stated: bool) -> dict[str
     mean, spread, count = neighbours_mm(found, seen, board)
     report["neighbour_mm"] = {"mean": mean, "standard_deviation": spread, "n": count}
     return report
-
-
-def _place_sigma(camera: Camera, covariance: NDArray) -> float:
-    """Return the standard deviation of a camera's centre, m, root of the sum over three axes.
-
-    Of the steps of a network only the shift moves the centre, by the rotation's inverse.
-    """
-    by_shift = camera.cam_from_world[:, :3].T
-    return float(np.sqrt(np.trace(by_shift @ covariance[3:, 3:] @ by_shift.T)))
 
 
 def neighbours_mm(found: Found, seen: Corners, board: Board) -> tuple[float, float, int]:

@@ -1,15 +1,22 @@
-"""Find places of known points that are wrong for a whole camera: all moved by one shift.
+"""Points at known places of a session, and places that are wrong for a whole camera.
+
+All of a camera's may be moved by one shift.
 
 A camera's own picture cannot tell: moved points only move the camera. Places that other cameras'
 points have, too, tell.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.calibration.court import court as court_files
+from courtside.calibration.court.court import ClickedPoints, Court
+from courtside.records.cameras import clicks, placed_points
 from courtside.records.cameras.placed_points import PlacedPoints
+from courtside.study.errors import InputError, StrPath
 
 NEAR_M = 0.1  # ASSUME: places meant to be one differ by less, rounding of one of them included
 MOVED = 0.8  # ASSUME: of a camera's points: so many must meet others once they are moved
@@ -83,3 +90,19 @@ def _spacing(xyz: NDArray) -> float:
     """Return the median distance of places (N, 3) to the nearest that is not the same, m."""
     apart = np.linalg.norm(xyz[:, None] - xyz, axis=-1)
     return float(np.median(np.where(apart < NEAR_M, np.inf, apart).min(axis=1)))
+
+
+def known_points(
+    clicks_csv: StrPath, court_yaml: StrPath, cameras: Sequence[str], placed: bool
+) -> tuple[Court, ClickedPoints]:
+    """Return the court and the clicks; of points with places of their own, these as a court.
+
+    Raises `InputError` if a file is not as it should be, or all places of one camera are moved.
+    """
+    if not placed:
+        court = court_files.read(court_yaml)
+        return court, clicks.read(clicks_csv, cameras, list(court.points))
+    points = placed_points.read(clicks_csv, cameras)
+    if wrong := shifts(points):
+        raise InputError(*(f"{clicks_csv}: {one}" for one in wrong))
+    return court_files.of_places("points", points.points, points.xyz), points.clicks

@@ -269,3 +269,17 @@ def expected_cm(
         variance += list(np.trace(each, axis1=1, axis2=2))
     share = float((seen.sum(axis=1) > 1).mean())
     return (float(100 * np.sqrt(np.mean(variance))) if variance else float("nan")), share
+
+
+def expected_volume(
+    court: Court, cameras: Sequence[Camera], covariance: CameraCovariance
+) -> dict[str, float]:
+    """Return for a JSON file the expected error over a court, cm, and the share of it seen.
+
+    Points at places of their own have no lines: their frame begins anywhere.
+    """
+    grid = volume(court)
+    if not len(court.lines_m):
+        grid[:, :2] += court.xyz[:, :2].min(axis=0)
+    expected, share = expected_cm(cameras, covariance, grid)
+    return {"expected_volume_rms_cm": round(expected, 4), "volume_seen": round(share, 4)}

@@ -39,22 +39,22 @@ def floor(xyz: NDArray, cameras: Sequence[Camera], on_floor: NDArray | None = No
     ankles = ankles[np.isfinite(ankles).all(axis=1)]
     middle = np.median(ankles, axis=0)
     centres = [camera.centre_in_world for camera in cameras]
-    turn = _axes(up, centres[1] - centres[0])
+    turn = axes(up, centres[1] - centres[0])
     slopes, offset = _lowest_plane((ankles - middle) @ turn.T)
     normal = np.array([*-slopes, 1.0])
     up = rotations.unit(turn.T @ normal)
     sole = float(offset / np.linalg.norm(normal)) - ANKLE * unit.length(xyz) / unit.OF_HEIGHT
     if on_floor is not None and len(on_floor):
         about = on_floor - on_floor.mean(axis=0)
-        _, extent, axes = np.linalg.svd(about, full_matrices=False)
+        _, extent, directions = np.linalg.svd(about, full_matrices=False)
         if len(on_floor) >= 3 and extent[1] > TILT_M:
-            up = axes[2] * np.sign(axes[2] @ up)
+            up = directions[2] * np.sign(directions[2] @ up)
         sole = float((on_floor.mean(axis=0) - middle) @ up)
-    turn = _axes(up, centres[1] - centres[0])
+    turn = axes(up, centres[1] - centres[0])
     return Sim3(1.0, turn, -turn @ middle - [0, 0, sole])
 
 
-def _axes(up: NDArray, along: NDArray) -> NDArray:
+def axes(up: NDArray, along: NDArray) -> NDArray:
     """Return the rotation (3, 3) to axes with z up and x along a direction."""
     x = rotations.unit(along - (along @ up) * up)
     return np.stack([x, np.cross(up, x), up])
@@ -76,20 +76,25 @@ def _lowest_plane(xyz: NDArray) -> tuple[NDArray, float]:
 
 
 def of_shape(
-    cameras: Sequence[Camera], covariance: NDArray, xyz: NDArray, scale_sigma: float
+    cameras: Sequence[Camera],
+    covariance: NDArray,
+    xyz: NDArray,
+    scale_sigma: float | None,
 ) -> NDArray:
     """Return the covariance (K, K) of cameras in the world that people's joints define.
 
     `covariance` is that of a network's columns, with little known of place, direction and scale of
     the whole. Errors of these three are taken out: the world moves with joints `xyz` (N, 3) m (an
-    S-transformation, Baarda 1973). `scale_sigma`, a share, is then added about their middle.
+    S-transformation, Baarda 1973). `scale_sigma`, a share, is then added about their middle; None
+    of cameras whose scale the covariance knows, which stays as it is.
     """
     network, middle = selection.of_cameras(cameras), xyz.mean(axis=0)
     moved = [
         _about(middle, 1.0, rotations.rotation_from_rodrigues(e)) for e in TINY_STEP * np.eye(3)
     ]
     moved += [Sim3(1.0, np.eye(3), e) for e in TINY_STEP * np.eye(3)]
-    moved.append(_about(middle, 1 + TINY_STEP, np.eye(3)))
+    if scale_sigma is not None:
+        moved.append(_about(middle, 1 + TINY_STEP, np.eye(3)))
     of_cameras = np.stack([
         selection.of_cameras([one.camera(camera) for camera in cameras]).difference(network)
         for one in moved
@@ -97,7 +102,7 @@ def of_shape(
     of_points = np.stack([(one.points(xyz) - xyz).ravel() for one in moved], axis=1) / TINY_STEP
     by_column = point_covariance.sensitivity(network, xyz).reshape(xyz.size, -1)
     keep = np.eye(len(covariance)) - of_cameras @ (np.linalg.pinv(of_points) @ by_column)
-    scale = of_cameras[:, -1:] * scale_sigma
+    scale = of_cameras[:, -1:] * (scale_sigma or 0.0)
     return keep @ covariance @ keep.T + scale @ scale.T
 
 

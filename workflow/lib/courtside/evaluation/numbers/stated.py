@@ -225,7 +225,17 @@ VIEWS = {  # the columns that the documents show of their tables
             "alone; accepted views by camera, %": "{alone}",
             "refined by people; which cameras were taken": "{refined}",
         },
-        "^`(walk|charuco|hall)",
+        "^`(walk|charuco|hall|easywand)",
+    ),
+    "wand": View(
+        "wand",
+        {
+            "cameras, noise, lens": "{row}",
+            "volume error, median / 95 %, cm": "{volume}",
+            "largest angle of a camera, median / largest, degrees": "{angles}",
+            "largest error of a focal length, median, %": "{focal}",
+            "in 90 % ellipsoids, %": "{hold}",
+        },
     ),
     "lines-clicks": View(
         "lines-clicks",

@@ -34,6 +34,8 @@ CALIBRATED = {  # by the kind of a calibration
     "known": "calibrated from clicked court points alone",
     "board": "calibrated from a board of known size that several cameras saw, all cameras and all "
     "places of the board adjusted together",
+    "wand": "calibrated from a wand of known length that several cameras saw, all cameras and all "
+    "places of the wand adjusted together",
     "dlt": "calibrated from clicked court points alone, by the linear method (DLT)",
     "file": "taken from a calibration made elsewhere",
     "people-alone": "calibrated from the people in takes alone, the unit by their stated heights",

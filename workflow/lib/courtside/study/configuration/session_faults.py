@@ -124,12 +124,13 @@ def _take_paths(where: str, take: Content) -> Iterator[tuple[str, str]]:
         yield f"{where}.devices.{name}.file", device["file"]
 
 
-def _board_paths(given: Content) -> Iterator[tuple[str, str]]:
-    for key in ("corners", "lenses"):
-        if key in given:
-            yield f"board.{key}", given[key]
+def _target_paths(content: Content) -> Iterator[tuple[str, str]]:
+    """Yield those of a board and of a wand."""
+    for target, keys in (("board", ("corners", "lenses")), ("wand", ("points", "lenses"))):
+        given = content.get(target, {})
+        yield from ((f"{target}.{key}", given[key]) for key in keys if key in given)
     for key in ("images", "videos"):
-        for camera, path in given.get(key, {}).items():
+        for camera, path in content.get("board", {}).get(key, {}).items():
             yield f"board.{key}.{camera}", path
 
 
@@ -137,7 +138,7 @@ def _paths(content: Content) -> Iterator[tuple[str, str]]:
     """Yield (key, path) of all recordings but those of takes."""
     if "calibration" in content:
         yield "calibration.file", content["calibration"]["file"]
-    yield from _board_paths(content.get("board", {}))
+    yield from _target_paths(content)
     for name, camera in content["cameras"].items():
         if camera and "static" in camera:
             yield f"cameras.{name}.static", camera["static"]
@@ -181,13 +182,14 @@ def _virtual_faults(file: Path, content: Content) -> Iterator[str]:
 def _recorded_faults(file: Path, content: Content, root: Path) -> Iterator[str]:
     cameras, walks = content["cameras"], content.get("walks", {})
     takes = [take for take in content.get("takes", {}).values() if take]
-    found = {"walks", "calibration", "court_points", "board"} & set(content)
+    found = {"walks", "calibration", "court_points", "board", "wand"} & set(content)
     if not found and not _asks_people(content) and (cameras or not takes):
         yield (
-            f"{file}: expected `walks`, `court_points`, `board` or `calibration`, or `override: "
-            "{calibrations: [people]}`, found none; say how the cameras are to be found"
+            f"{file}: expected `walks`, `court_points`, `board`, `wand` or `calibration`, or "
+            "`override: {calibrations: [people]}`, found none; say how the cameras are to be found"
         )
     yield from _board_faults(file, content)
+    yield from _wand_faults(file, content)
     if len(cameras) < 2 and ("calibration" in content or any(map(take_faults.cameras_of, takes))):
         yield (
             f"{file}: cameras: expected two or more, found {len(cameras)}; one camera sees no depth"
@@ -228,6 +230,37 @@ def _board_faults(file: Path, content: Content) -> Iterator[str]:
             "stands where the board was printed"
         )
     if "corners" in given and "lenses" not in given:
+        yield from _unsized(file, content)
+
+
+def _wand_faults(file: Path, content: Content) -> Iterator[str]:
+    """Yield the faults of a wand that several cameras see."""
+    if "wand" not in content:
+        return
+    given, where = content["wand"], f"{file}: wand"
+    order = given.get("cameras", list(content["cameras"]))
+    if sorted(order) != sorted(content["cameras"]):
+        yield (
+            f"{where}.cameras: expected every camera of the session once, found "
+            f"{', '.join(map(str, order))}; list them in the order of the program"
+        )
+    if "cameras" in given and "program" not in given:
+        yield (
+            f"{where}.cameras: expected `program` beside it, found none; the study's own CSV names "
+            "its cameras: remove it"
+        )
+    n_markers, middle = len(given.get("markers", [])), "middle_m" in given
+    if n_markers and n_markers != 2 + middle:
+        yield (
+            f"{where}.markers: expected {2 + middle} names, found {n_markers}; three markers need "
+            "`middle_m`, from the first to the middle one"
+        )
+    if middle and not given["middle_m"] < given["length_m"]:
+        yield (
+            f"{where}.middle_m: expected less than length_m ({given['length_m']:g}), found "
+            f"{given['middle_m']:g}; measure it from the first marker"
+        )
+    if "lenses" not in given:
         yield from _unsized(file, content)
 
 

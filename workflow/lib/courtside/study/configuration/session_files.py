@@ -98,10 +98,11 @@ def session(
 
 
 def _calibration(content: Content) -> dict[str, Any]:
-    """Return a session's fields of its calibration file and of its board."""
+    """Return a session's fields of its calibration file, its board and its wand."""
     given = content.get("calibration", {})
     return {
         "board": content.get("board"),
+        "wand": content.get("wand"),
         "calibration_file": given.get("file"),
         "calibration_override": {key: given[key] for key in OVERRIDDEN if key in given},
         "calibration_unit": given.get("unit"),

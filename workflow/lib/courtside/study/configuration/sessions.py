@@ -114,6 +114,7 @@ class Session:
     # Of `calibration`, where numbers of the file are replaced: `principal_point_px` and `reason`
     calibration_override: dict[str, Any] = field(default_factory=dict)
     board: dict[str, Any] | None = None  # what several cameras see, and where they do
+    wand: dict[str, Any] | None = None  # the same of a wand
     calibration_unit: str | None = None  # of the lengths in that file, where it states none
     static_points: str | None = None  # points at rest, clicked in several cameras
     # Known lengths between two of them: `points`, `length_m`, perhaps `on_floor`
@@ -130,13 +131,15 @@ class Session:
     def calibrations(self) -> list[str]:
         """Return the study's calibrations for which this session has recordings."""
         clicked, walked = self.court_points is not None and bool(self.cameras), bool(self.walks)
-        alone = clicked and (self.also_known or not (walked or self.calibration_file or self.board))
+        others = walked or self.calibration_file or self.board or self.wand
+        alone = clicked and (self.also_known or not others)
         clicked = clicked and not self.placed
         boards = clicked and all(camera.chessboard for camera in self.cameras.values())
         filmed = any(take.cameras for take in self.takes.values())
         possible = {
             "file": self.calibration_file is not None,
             "board": self.board is not None,
+            "wand": self.wand is not None,
             ALONE: filmed and self.court is None,  # whose world it would not be
             "known": clicked,
             "dlt": clicked,

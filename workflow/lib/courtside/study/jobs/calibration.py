@@ -227,6 +227,24 @@ def board_pictures(job: Job) -> list[str]:
     return of_full_size(job) if "corners" in given and "lenses" not in given else []
 
 
+def wand_files(job: Job) -> list[str]:
+    """Return the files of a wand: where cameras see it, and lenses."""
+    given = job.session.wand or {}
+    lenses = recordings.inside(given["lenses"]) if "lenses" in given else []
+    lens_file = [given["lenses"]] if Path(given.get("lenses", "")).is_file() else []
+    return [given["points"], *lenses, *lens_file]
+
+
+def wand_lenses(job: Job) -> list[str]:
+    """Return the lenses from chessboards of cameras, where a wand does not state others."""
+    return [] if "lenses" in (job.session.wand or {}) else known_lenses(job)
+
+
+def wand_pictures(job: Job) -> list[str]:
+    """Return of each camera what tells its pictures' size, where lenses do not."""
+    return [] if "lenses" in (job.session.wand or {}) else of_full_size(job)
+
+
 def proposals(job: Job) -> str | list:
     """Return proposed court points.
 

@@ -1,0 +1,175 @@
+"""Cameras from a made wand: against the true ones, their stated errors, and bad input."""
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pytest
+
+from courtside.calibration import point_covariance
+from courtside.calibration.bundle import selection
+from courtside.calibration.wand import calibration
+from courtside.calibration.wand.calibration import Floor
+from courtside.geometry import camera as cameras
+from courtside.geometry import similarity
+from courtside.geometry.similarity import Sim3
+from courtside.geometry.triangulation import triangulate_all
+from courtside.study.errors import InputError
+from fixtures.cameras.wands_made import (
+    LENSES,
+    RIG,
+    SIZES,
+    THREE,
+    WAND,
+    WEIGHTS,
+    floor_points,
+    seen,
+    swung,
+)
+
+PLACES = np.stack(np.meshgrid([-1.5, 0, 1.5], [-1.5, 0, 1.5], [0.3, 1.1, 2.0]), -1).reshape(-1, 3)
+
+
+def calibrate(found, wand=WAND, lenses=None, **more):
+    return calibration.calibrate(wand, found, SIZES, lenses=lenses or {}, **more)
+
+
+def errors(found, markers):
+    """Return errors (N, 3) m at `PLACES`, after the rigid motion that fits the wand's markers."""
+    exact = np.stack([cameras.project(camera, markers) for camera in RIG])
+    placed = triangulate_all(found.cameras, exact)
+    best = similarity.umeyama(placed, markers)
+    rigid = Sim3(1.0, best.rotation, markers.mean(axis=0) - best.rotation @ placed.mean(axis=0))
+    there = triangulate_all(found.cameras, np.stack([cameras.project(c, PLACES) for c in RIG]))
+    network = selection.of_cameras(found.cameras)
+    spread = point_covariance.point_covariance(network, found.covariance, there)
+    return rigid.points(there) - PLACES, best.rotation @ spread @ best.rotation.T
+
+
+@pytest.mark.parametrize(
+    ("lenses", "wand"), [(LENSES, WAND), ({}, WAND), ({"c1": LENSES["c1"]}, THREE)]
+)
+def test_without_noise_the_true_cameras_are_found(lenses, wand):
+    xyz = swung(wand.along_m)
+    found = calibrate(seen(xyz, sigma_px=0.0), wand, lenses)
+    off, _ = errors(found, xyz.reshape(-1, 3))
+    assert np.linalg.norm(off, axis=1).max() < (1e-5 if len(lenses) == 4 else 2e-3)
+    for camera, true in zip(found.cameras, RIG, strict=True):
+        assert camera.K[1, 1] == pytest.approx(true.K[1, 1], rel=2e-3)
+        if camera.name in lenses:
+            np.testing.assert_array_equal(camera.dist, true.dist)
+
+
+def test_errors_are_as_large_as_stated():
+    xyz, squares, most = swung(), [], []
+    for seed in range(4):
+        found = calibrate(seen(xyz, seed=seed, hidden=0.15, misread=0.03), lenses=LENSES)
+        assert found.adjusted.sigma_px == pytest.approx(0.5, rel=0.08)
+        off, spread = errors(found, xyz.reshape(-1, 3))
+        squares.append(point_covariance.mahalanobis(off, spread))
+        most.append(np.linalg.norm(off, axis=1).max())
+    assert max(most) < 4e-3
+    assert 1.0 < np.mean(squares) < 6.0  # 3 over many draws: places here err together
+
+
+def test_the_stated_length_is_the_unit_and_its_uncertainty_is_that_of_all_lengths():
+    xyz = swung()
+    longer = replace(WAND, along_m=1.01 * WAND.along_m, sigma_m=0.005)
+    found = calibrate(seen(xyz, sigma_px=0.1), longer, LENSES)
+    placed = triangulate_all(
+        found.cameras, np.stack([cameras.project(camera, PLACES) for camera in RIG])
+    )
+    assert similarity.umeyama(PLACES, placed).scale == pytest.approx(1.01, abs=1e-3)
+    off, spread = errors(found, xyz.reshape(-1, 3))
+    corner = np.linalg.norm(PLACES - xyz.reshape(-1, 3).mean(axis=0), axis=1).argmax()
+    assert np.sqrt(np.trace(spread[corner])) == pytest.approx(np.linalg.norm(off[corner]), rel=0.15)
+
+
+def test_a_wand_on_the_floor_gives_the_floor():
+    xyz = swung()
+    xyz[10] = [[1.0, 0.5, 0.02], [1.0, 1.0, 0.02]]
+    xyz[20] = [[-0.5, 0.0, 0.02], [-1.0, 0.0, 0.02]]
+    floor = Floor((10.0, 20.0), 0.02)
+    found = calibrate(seen(xyz, sigma_px=0.2), lenses=LENSES, floor=floor)
+    for camera, true in zip(found.cameras, RIG, strict=True):
+        # Origin below the first marker, x along the wand, which lies along y.
+        x, y, z = true.centre_in_world - [1.0, 0.5, 0.0]
+        np.testing.assert_allclose(camera.centre_in_world, [y, -x, z], atol=0.03)
+    assert found.stated
+    with pytest.raises(InputError, match=r"wand.floor: expected frames of .* found 999; name"):
+        calibrate(seen(xyz), lenses=LENSES, floor=Floor((10.0, 999.0)))
+    with pytest.raises(InputError, match=r"wand.floor: expected two frames or more"):
+        calibrate(seen(xyz), lenses=LENSES, floor=Floor((10.0,)))
+
+
+def test_without_a_floor_the_frame_is_the_cameras_own():
+    found = calibrate(seen(swung(), sigma_px=0.2), lenses=LENSES)
+    along = found.cameras[1].centre_in_world - found.cameras[0].centre_in_world
+    assert not found.stated
+    assert abs(along[1]) < 1e-6 < along[0]
+    heights = [camera.centre_in_world[2] for camera in found.cameras]
+    assert np.ptp(heights) < 1.5
+    assert np.abs(np.nanmedian(found.xyz, axis=(0, 1))).max() < 1e-9
+
+
+def test_clicked_points_give_the_world():
+    found = calibrate(seen(swung()), clicks=floor_points())
+    for camera, true in zip(found.cameras, RIG, strict=True):
+        assert np.linalg.norm(camera.centre_in_world - true.centre_in_world) < 0.03
+    placed = triangulate_all(
+        found.cameras, np.stack([cameras.project(camera, PLACES) for camera in RIG])
+    )
+    assert np.linalg.norm(placed - PLACES, axis=1).max() < 0.01
+    network = selection.of_cameras(found.cameras)
+    spread = point_covariance.point_covariance(network, found.covariance, placed)
+    square = point_covariance.mahalanobis(placed - PLACES, spread)
+    assert np.mean(square < point_covariance.ellipsoid(0.9)) > 0.7
+
+
+def test_markers_whose_y_runs_up_are_told_by_clicked_points():
+    xyz = swung()
+    upside = seen(xyz)
+    upside.xy[..., 1] = 1080 - upside.xy[..., 1]
+    with pytest.raises(InputError, match=r"mirror image: y of the wand's .* `wand.program`"):
+        calibrate(upside, clicks=floor_points())
+
+
+def refused(match, found, **more):
+    with pytest.raises(InputError, match=match) as error:
+        calibrate(found, lenses=more.pop("lenses", LENSES), **more)
+    assert "\n" not in str(error.value)
+
+
+def test_bad_input_is_one_line():
+    xyz = swung()
+    good = seen(xyz)
+    still = np.repeat(xyz[:1], len(xyz), axis=0)
+    refused(r"wand: expected ways of 0.5 of its length or more in a picture", seen(still))
+    refused(
+        r"expected 20 frames or more in which one of each sees two",
+        replace(good, frames=good.frames[:12], xy=good.xy[:, :12]),
+    )
+    apart = good.xy.copy()
+    apart[:2, ::2] = apart[2:, 1::2] = np.nan
+    refused(r"wand: cameras c0, c1 and c2, c3: expected 20 frames", replace(good, xy=apart))
+    mirrored = good.xy.copy()
+    mirrored[2, ..., 0] = 1919 - mirrored[2, ..., 0]
+    refused(r"camera c2: expected .* its video is not mirrored", replace(good, xy=mirrored))
+    late = good.xy.copy()
+    late[1] = np.roll(late[1], 2, axis=0)
+    refused(r"camera c\d: expected .*(check its clock|are synchronised)", replace(good, xy=late))
+    far = floor_points()
+    shifted = partial(far.func, *far.args[:1], {k: v + 300 for k, v in far.args[1].items()})
+    refused(r"wand: expected clicked points within 38 px", good, clicks=partial(shifted, **WEIGHTS))
+    one = {name: np.full((9, 2), np.nan) for name in LENSES}
+    few = partial(far.func, far.args[0], one, **WEIGHTS)
+    refused(r"wand: expected 4 clicked points or more in one camera", good, clicks=few)
+
+
+def test_a_wand_that_stays_in_a_plane_or_on_a_line_is_refused():
+    xyz = swung()
+    xyz[..., 2] = 1.0
+    refused(r"wand: expected ways in all directions, found them in a plane", seen(xyz), lenses={})
+    middle = xyz.mean(axis=1, keepdims=True)
+    line = middle * [1, 0, 1] + (swung() - swung().mean(axis=1, keepdims=True)) * 0.1
+    refused(r"wand: expected .*", seen(line, sigma_px=0.1))

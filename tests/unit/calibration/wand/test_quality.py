@@ -1,0 +1,54 @@
+"""What is said of cameras from a wand."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from courtside.calibration.wand import calibration, quality
+from courtside.calibration.wand.calibration import Floor
+from fixtures.cameras.wands_made import LENSES, SIZES, WAND, floor_points, seen, swung
+
+
+def said(found, lenses=LENSES, wand=WAND, **more):
+    solved = calibration.calibrate(wand, found, SIZES, lenses=lenses, **more)
+    return quality.said(solved, wand, found, set(lenses))
+
+
+def test_numbers_by_camera():
+    report = said(seen(swung(), misread=0.05))
+    assert report["sigma_px"] == pytest.approx(0.5, rel=0.1)
+    assert set(report["n_frames"]) == set(LENSES)
+    assert "f_px" not in report
+    for key, value, near in (("rms_px", 0.4, 0.15), ("wrong_percent", 5.0, 3.0)):
+        assert np.mean(list(report[key].values())) == pytest.approx(value, abs=near)
+    assert max(report["place_sigma_mm"].values()) < 5
+    assert report["length_mm"]["n"] > 100
+    assert abs(report["length_mm"]["mean"]) < 0.3
+    (world,) = report["warnings"]
+    assert world.startswith("wand: the origin is the middle of the wand's ways")
+
+
+def test_a_camera_that_films_late_is_told():
+    xyz = swung(seconds=60)
+    later = 0.93 * xyz[:-1] + 0.07 * xyz[1:]  # 0.014 s
+    found, late = seen(xyz[:-1], seed=1), seen(later, seed=2)
+    found.xy[2] = late.xy[2]
+    warnings = said(found)["warnings"]
+    (told,) = [line for line in warnings if line.startswith("camera c2")]
+    assert "frames or more late, as the markers' ways say" in told
+
+
+def test_a_wand_of_another_length_is_told_by_the_floor_s_points():
+    shorter = replace(WAND, along_m=0.98 * WAND.along_m, sigma_m=1e-3)
+    told = said(seen(swung()), wand=shorter, clicks=floor_points())["warnings"]
+    assert any("clicked points say that it is" in line for line in told)
+
+
+def test_ways_in_the_middle_of_a_picture_are_told_where_the_lens_is_not_known():
+    xyz = swung(low=(-0.7, -0.7, 0.6), high=(0.7, 0.7, 1.7))
+    xyz[3] = [[0.3, 0, 0], [0.3, 0.5, 0]]
+    xyz[4] = [[0, 0, 0], [0.5, 0, 0]]
+    lenses = {name: lens for name, lens in LENSES.items() if name != "c2"}
+    warnings = said(seen(xyz, sigma_px=0.2), lenses, floor=Floor((3.0, 4.0)))["warnings"]
+    assert all(line.startswith("camera c2: the wand's ways fill") for line in warnings)

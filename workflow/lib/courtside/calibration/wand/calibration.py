@@ -1,0 +1,305 @@
+"""Cameras from a wand: placed, adjusted, stated in a world, and told how well it fits."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.calibration.bundle import problem, selection
+from courtside.calibration.bundle.problem import FLEX, IMAGE, LENS
+from courtside.calibration.court import points_alone
+from courtside.calibration.people import world_frame
+from courtside.calibration.people.adjustment import Clicks
+from courtside.calibration.wand import adjustment, start, timing, world
+from courtside.calibration.wand.adjustment import Adjusted, Bodies, State
+from courtside.calibration.wand.points import Seen, Wand
+from courtside.geometry import similarity
+from courtside.geometry.camera import Camera, project, undistort
+from courtside.geometry.similarity import Sim3
+from courtside.study.errors import InputError
+
+MOST_FRAMES = 1000  # that are adjusted; more take longer, and neighbouring ones say the same
+MOST_PLACES = 200  # markers that the world of the covariance rests on
+FAR_SHARE = 0.0025  # ASSUME: of a picture's longer side: markers so far off are wrong
+LEAST_NEAR = 0.7  # ASSUME: share of the markers that are nearer
+LEAST_WAY = 0.5  # ASSUME: a wand's way over its length in a picture: less is waved in one place
+# ASSUME: least extents of its ways across their length, as shares.
+LEAST_EXTENTS = {"on a line": 0.1, "in a plane": 0.03}
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Cameras from a wand."""
+
+    cameras: list[Camera]
+    covariance: NDArray  # of the network's columns, as of `records.covariance.of_network`
+    world: str  # what it is, in words
+    stated: bool  # whether floor or points define it
+    xyz: NDArray  # (F, M, 3) m: markers where views agree
+    error_px: NDArray  # (C, F, M, 2): predicted less seen; NaN where not both
+    adjusted: Adjusted
+
+
+@dataclass(frozen=True, eq=False)
+class Floor:
+    """Frames in which the wand lies on the floor, and how high its markers' centres are then."""
+
+    frames: tuple[float, ...]
+    above_m: float = 0.0
+
+    @classmethod
+    def of(cls, given: Mapping[str, Any]) -> "Floor | None":
+        """Build it from the keys of a session; None where nothing lies on the floor."""
+        if "floor" not in given:
+            return None
+        frames = tuple(float(frame) for frame in given["floor"])
+        return cls(frames, float(given.get("above_floor_m", 0.0)))
+
+
+def calibrate(
+    wand: Wand,
+    seen: Seen,
+    sizes: Mapping[str, tuple[int, int]],
+    *,
+    lenses: Mapping[str, Camera],
+    floor: Floor | None = None,
+    clicks: Callable[[Sequence[Camera]], Clicks] | None = None,
+) -> Found:
+    """Calibrate cameras by a wand that they see.
+
+    `sizes` px of each camera's pictures. `lenses`, where they are known, are kept; others are
+    adjusted. `clicks` returns those of points at known places, weighted for cameras; they are
+    adjusted with the wand, and their world is that of the cameras. Raises `InputError` where the
+    wand does not tell how cameras stand.
+    """
+    _check_ways(seen)
+    cameras = start.guess(wand, seen, sizes, lenses)
+    for _ in range(2):  # the second time with all frames that the first cameras agree on
+        state = _state(wand, seen, cameras, lenses)
+        found = _adjust(state, cameras, lenses)
+        cameras = _cameras(found, cameras, lenses)
+    xyz = start.triangulated(cameras, seen.xy)
+    _check_extent(xyz)
+    _check_sync(seen, cameras, xyz)
+    if clicks is not None:
+        marked = clicks(cameras)
+        named = dict(zip(seen.cameras, marked.xy, strict=True))
+        moved = world.of_clicks(cameras, marked.xyz, named)
+        cameras = [moved.camera(camera) for camera in cameras]
+        state = _with_clicks(_state(wand, seen, cameras, lenses), cameras, lenses, marked)
+        found = _adjust(state, cameras, lenses)
+        cameras, text = _cameras(found, cameras, lenses), "clicked points"
+        covariance, xyz = found.covariance, start.triangulated(cameras, seen.xy)
+    else:
+        moved, datum, text = _world(seen, xyz, cameras, floor)
+        cameras, xyz = [moved.camera(camera) for camera in cameras], moved.points(xyz)
+        covariance = world_frame.of_shape(cameras, found.covariance, moved.points(datum), None)
+    error_px = np.stack([project(camera, xyz) for camera in cameras]) - seen.xy
+    stated = clicks is not None or floor is not None
+    return Found(cameras, covariance, text, stated, xyz, error_px, found)
+
+
+def _world(
+    seen: Seen, xyz: NDArray, cameras: Sequence[Camera], floor: Floor | None
+) -> tuple[Sim3, NDArray, str]:
+    """Return `world_from_cameras`, the places (N, 3) that define it, and what it is."""
+    if floor is None:
+        places = xyz.reshape(-1, 3)
+        places = places[np.isfinite(places).all(axis=1)]
+        at = np.linspace(0, len(places) - 1, min(len(places), MOST_PLACES)).astype(int)
+        return world.of_cameras(xyz, cameras), places[at], "the cameras' own"
+    missing = [frame for frame in floor.frames if frame not in seen.frames]
+    if missing:
+        raise InputError(
+            f"wand.floor: expected frames of the wand's file, found {missing[0]:g}; name those in "
+            "which the wand lies on the floor"
+        )
+    lying = xyz[[int(np.flatnonzero(seen.frames == frame)[0]) for frame in floor.frames]]
+    places = lying.reshape(-1, 3)
+    moved = world.of_floor(lying, floor.above_m, cameras)
+    return moved, places[np.isfinite(places).all(axis=1)], "the floor's"
+
+
+def _check_ways(seen: Seen) -> None:
+    """Raise an `InputError` if the wand stays in one place in every picture."""
+    longest = 0.0
+    for xy in seen.xy:
+        both = xy[np.isfinite(xy[..., 0]).all(axis=1)]
+        if len(both) < 2:
+            continue
+        own = np.median(np.linalg.norm(both[:, -1] - both[:, 0], axis=1))
+        low, high = np.quantile(both.mean(axis=1), [0.05, 0.95], axis=0)
+        longest = max(longest, float(np.linalg.norm(high - low) / max(float(own), 1.0)))
+    if longest < LEAST_WAY:
+        raise InputError(
+            f"wand: expected ways of {LEAST_WAY:g} of its length or more in a picture, found "
+            f"{longest:.2f}; {start.HOW}"
+        )
+
+
+def _check_extent(xyz: NDArray) -> None:
+    """Raise an `InputError` if all places are on a line or in a plane."""
+    places = xyz.reshape(-1, 3)
+    extents = similarity.flatness(places[np.isfinite(places).all(axis=1)])[1:]
+    for extent, (what, least) in zip(extents, LEAST_EXTENTS.items(), strict=True):
+        if extent < least:
+            raise InputError(
+                f"wand: expected ways in all directions, found them {what}, "
+                f"{100 * extent:.1f} % as wide as long; {start.HOW}"
+            )
+
+
+def _check_sync(seen: Seen, cameras: Sequence[Camera], xyz: NDArray) -> None:
+    """Raise an `InputError` if views of the same frames do not show one place of the wand."""
+    near = []
+    for camera, xy in zip(cameras, seen.xy, strict=True):
+        off = np.linalg.norm(project(camera, xyz) - xy, axis=-1)
+        shown = np.isfinite(xy[..., 0]) & (np.isfinite(seen.xy[..., 0]).sum(axis=0) > 1)
+        near.append(float((off[shown] < FAR_SHARE * max(camera.size)).mean()))
+    worst = int(np.argmin(near))
+    if near[worst] < LEAST_NEAR:
+        frames = timing.late(cameras, seen, xyz)[0][worst]
+        raise InputError(
+            f"camera {cameras[worst].name}: expected markers within "
+            f"{FAR_SHARE * max(cameras[worst].size):.1f} px of where the other cameras see them, "
+            f"found {100 * near[worst]:.0f} % of them, as if it filmed {abs(frames):.1f} frames or "
+            f"more {'late' if frames > 0 else 'early'}; check that the videos are synchronised, "
+            "and which marker is which"
+        )
+
+
+def _straight(cameras, lenses: Mapping[str, Camera], xy: NDArray) -> NDArray:
+    """Return px (C, ...) that cameras of known lenses would see without distortion."""
+    return np.stack([
+        undistort(lens, px) * np.diag(lens.K)[:2] + lens.K[:2, 2]
+        if (lens := lenses.get(camera.name))
+        else px
+        for camera, px in zip(cameras, xy, strict=True)
+    ])  # fmt: skip
+
+
+def _state(
+    wand: Wand, seen: Seen, cameras: Sequence[Camera], lenses: Mapping[str, Camera]
+) -> State:
+    """Return cameras, and a body for each frame whose markers they agree on."""
+    xyz = start.triangulated(cameras, seen.xy)
+    frames = np.flatnonzero(np.isfinite(xyz[..., 0]).any(axis=1))
+    if len(frames) < start.FEWEST_FRAMES:
+        raise InputError(
+            f"wand: expected {start.FEWEST_FRAMES} frames or more in which cameras agree about a "
+            f"marker, found {len(frames)}; check that the videos are synchronised, and {start.HOW}"
+        )
+    frames = frames[np.linspace(0, len(frames) - 1, min(len(frames), MOST_FRAMES)).astype(int)]
+    frame, marker = np.nonzero(np.isfinite(xyz[frames][..., 0]))
+    count = np.bincount(frame, minlength=len(frames))
+    middle = np.bincount(frame, wand.along_m[marker]) / count
+    ends = [np.array([rows[at] for rows in map(np.flatnonzero, _known(xyz[frames]))])
+            for at in (0, -1)]  # fmt: skip
+    each = np.arange(len(frames))
+    along = xyz[frames[each], ends[1]] - xyz[frames[each], ends[0]]
+    along = np.where((count > 1)[:, None], along, [1.0, 0.0, 0.0])
+    origin = np.stack([np.bincount(frame, x) for x in xyz[frames[frame], marker].T], axis=1)
+    bodies = Bodies(
+        origin / count[:, None],
+        along / np.linalg.norm(along, axis=1, keepdims=True),
+        np.zeros((len(frames), 3)),
+        np.full(len(frames), np.inf),
+        frame,
+        wand.along_m[marker] - middle[frame],
+        (adjustment.BLOCKS * each) // len(frames),
+    )
+    xy = _straight(cameras, lenses, seen.xy[:, frames[frame], marker])
+    image, point = np.nonzero(np.isfinite(xy[..., 0]))
+    network = selection.of_cameras(_without(cameras, lenses))
+    network = problem.with_points(
+        network, xyz[frames[frame], marker], image, point, xy[image, point]
+    )
+    sigma = wand.sigma_m / wand.length_m
+    state = State(_with_prior(network, cameras), bodies, 0.0, sigma).placed()
+    return _in_front(state)
+
+
+def _known(xyz: NDArray) -> NDArray:
+    return np.isfinite(xyz[..., 0])
+
+
+def _without(cameras, lenses) -> list[Camera]:
+    """Return cameras; those of known lenses without distortion."""
+    return [
+        replace(camera, dist=np.zeros(5)) if camera.name in lenses else camera for camera in cameras
+    ]
+
+
+def _with_prior(network, cameras: Sequence[Camera]):
+    """Return a network with what lenses usually are, as where points alone calibrate."""
+    mean, sigma = network.lens.copy(), np.full(network.lens.shape, np.inf)
+    mean[:, LENS.index("aspect")] = 1.0
+    mean[:, 2:4] = [[(length - 1) / 2 for length in camera.size] for camera in cameras]
+    sigma[:, 2:4] = [[points_alone.CENTRE_SHARE * camera.size[0]] for camera in cameras]
+    mean[:, 4:] = 0.0
+    for key, value in points_alone.SPREAD.items():
+        sigma[:, LENS.index(key)] = value
+    return replace(network, lens_mean=mean, lens_sigma=sigma)
+
+
+def _in_front(state: State) -> State:
+    """Return a state without the views in which a point is behind the camera."""
+    keep = np.isfinite(problem.residuals(state.network)).all(axis=1)
+    part = {name: getattr(state.network, name)[keep] for name in problem.PER_VIEW}
+    return replace(state, network=replace(state.network, **part))
+
+
+def _with_clicks(state: State, cameras, lenses, clicks: Clicks) -> State:
+    """Return a state with clicked points as further bodies."""
+    bodies, network = state.bodies, state.network
+    xy = _straight(cameras, lenses, clicks.xy)
+    image, point = np.nonzero(np.isfinite(xy[..., 0]))
+    used, at = np.unique(point, return_inverse=True)
+    count = np.isfinite(clicks.xy[..., 0]).sum(axis=1)
+    sigma_px = np.sqrt(clicks.sigma_px**2 + count * clicks.bias_px**2)
+    first, blocks = len(bodies.origin), bodies.block.max() + 1
+    none = np.zeros(len(used))
+    bodies = Bodies(
+        np.concatenate([bodies.origin, clicks.xyz[used]]),
+        np.concatenate([bodies.direction, np.tile([1.0, 0.0, 0.0], (len(used), 1))]),
+        np.concatenate([bodies.known, clicks.xyz[used]]),
+        np.concatenate([bodies.sigma_m, clicks.sigma_m[used]]),
+        np.concatenate([bodies.body, first + np.arange(len(used))]),
+        np.concatenate([bodies.along_m, none]),
+        np.concatenate([bodies.block, blocks + np.arange(len(used))]),
+    )
+    network = replace(
+        network,
+        xyz=np.concatenate([network.xyz, clicks.xyz[used]]),
+        xyz_mean=np.concatenate([network.xyz_mean, clicks.xyz[used]]),
+        xyz_sigma=np.concatenate([network.xyz_sigma, none + np.inf]),
+        image_idx=np.concatenate([network.image_idx, image]),
+        point_idx=np.concatenate([network.point_idx, len(network.xyz) + at]),
+        xy=np.concatenate([network.xy, xy[image, point]]),
+        sigma_px=np.concatenate([network.sigma_px, sigma_px[image]]),
+        loss_scale=np.concatenate([network.loss_scale, np.full(len(image), np.inf)]),
+    )
+    return _in_front(replace(state, bodies=bodies, network=network))
+
+
+def _adjust(state: State, cameras: Sequence[Camera], lenses: Mapping[str, Camera]) -> Adjusted:
+    active = np.zeros(state.network.n_columns, dtype=bool)
+    first = IMAGE * len(cameras)
+    for c, camera in enumerate(cameras):
+        active[IMAGE * c : IMAGE * (c + 1) - len(FLEX)] = True
+        active[first + len(LENS) * c + np.arange(len(LENS))] = camera.name not in lenses
+    of_point = np.isinf(state.bodies.sigma_m)[state.bodies.body]
+    return adjustment.adjust(state, active, of_point[state.network.point_idx])
+
+
+def _cameras(found: Adjusted, cameras, lenses) -> list[Camera]:
+    names, sizes = [c.name for c in cameras], [c.size for c in cameras]
+    solved = selection.cameras(found.state.network, names, sizes)
+    return [
+        replace(lenses[one.name], name=one.name, cam_from_world=one.cam_from_world)
+        if one.name in lenses
+        else one
+        for one in solved
+    ]

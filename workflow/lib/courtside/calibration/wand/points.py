@@ -1,0 +1,260 @@
+"""Where cameras see the markers of a wand, frame after frame.
+
+Rows of one frame show the wand at one place: frames of synchronised videos, or pictures of a wand
+at rest. Files are ours, or those that DLTdv, Argus and easyWand write.
+"""
+
+import csv
+import re
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.records.user_tables import number, table
+from courtside.study.errors import InputError, StrPath, reading
+
+OURS = ("camera", "marker", "x_px", "y_px")
+TIMES = ("frame", "time_s")  # one of them
+# As DLTdv writes a column, and as Argus does: point, camera, axis.
+THEIRS = re.compile(r"(?P<point>.+)_cam_?(?P<camera>[0-9]+)_(?P<axis>[xXyY])")
+# Their first pixel's centre along x and, where y runs down, along y; where it runs up, None: y of
+# the lowest row is 1 in DLTdv, and half a pixel more or less does not matter.
+PROGRAMS = {"dltdv8": (1.0, 1.0), "dltdv": (1.0, None), "argus": (0.0, None)}
+LONGEST_GAP = 2.5  # ASSUME: frame periods between which a marker moves on a straight line
+SIGMA_M = 5e-4  # ASSUME: of a length measured with a tape
+
+
+@dataclass(frozen=True, eq=False)
+class Wand:
+    """Markers on one line."""
+
+    markers: tuple[str, ...]  # names in a file, in the order along the wand; empty: not stated
+    along_m: NDArray  # (M,): their places on it, the first at 0
+    sigma_m: float  # of its length
+
+    @property
+    def length_m(self) -> float:
+        """From the first marker to the last."""
+        return float(self.along_m[-1])
+
+    @classmethod
+    def of(cls, given: Mapping[str, Any]) -> "Wand":
+        """Build a wand from the keys of a session."""
+        length_m = float(given["length_m"])
+        middle_m = [float(given["middle_m"])] if "middle_m" in given else []
+        if middle_m and not middle_m[0] < length_m:
+            raise InputError(
+                f"wand.middle_m: expected less than length_m ({length_m:g}), found {middle_m[0]:g};"
+                " it is measured from the first marker to the middle one"
+            )
+        along_m = np.array([0.0, *middle_m, length_m])
+        markers = tuple(str(name) for name in given.get("markers", ()))
+        if markers and len(markers) != len(along_m):
+            raise InputError(
+                f"wand.markers: expected {len(along_m)} names in the order along the wand, found "
+                f"{len(markers)}; three markers need `middle_m`, too"
+            )
+        return cls(markers, along_m, float(given.get("length_sigma_m", SIGMA_M)))
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """Markers of one wand, seen by some cameras."""
+
+    cameras: tuple[str, ...]
+    frames: NDArray  # (F,): numbers, or times in s; increasing
+    xy: NDArray  # (C, F, M, 2) px, NaN where not seen
+
+
+def read(
+    given: Mapping[str, Any],
+    wand: Wand,
+    names: Mapping[str, str],
+    sizes: Mapping[str, tuple[int, int]],
+) -> Seen:
+    """Read where cameras see the markers of a wand, from the file that a session names.
+
+    `names` maps the cameras of the session to those in a table of ours. Another program numbers
+    them, in the order of `given["cameras"]`. The heights of the pictures, whose `sizes` are px,
+    turn round y that runs up. Raises `InputError` if the file is no such table, or a camera has no
+    marker.
+    """
+    path = given["points"]
+    if "program" in given:
+        order = given.get("cameras", list(names))
+        theirs = _theirs(path, wand, [sizes[name] for name in order], given["program"])
+        at = [order.index(name) for name in names]
+        found = Seen(tuple(names), np.arange(theirs.shape[1], dtype=float), theirs[at])
+    else:
+        found = _ours(path, wand, names)
+    _check_cameras(path, names, {
+        name for name, xy in zip(found.cameras, found.xy, strict=True) if np.isfinite(xy).any()
+    })  # fmt: skip
+    return found
+
+
+def _check_cameras(path: StrPath, names: Mapping[str, str], seen: Collection[str]) -> None:
+    for name, theirs in names.items():
+        if name not in seen:
+            raise InputError(
+                f"{path}: expected markers of the wand in camera {name} ({theirs}), found none; "
+                "correct the name, or give the camera its `name_in_calibration`"
+            )
+
+
+def _ours(path: StrPath, wand: Wand, names: Mapping[str, str]) -> Seen:
+    rows = table(path, OURS, TIMES)
+    if not rows:
+        raise InputError(f"{path}: expected rows of a wand's markers, found none; write it again")
+    times = [key for key in TIMES if key in rows[0][1]]
+    if len(times) != 1:
+        raise InputError(
+            f"{path}: expected the column frame or time_s, found {' and '.join(times) or 'none'}; "
+            "say with one of them which rows are of one moment"
+        )
+    markers = wand.markers or tuple(dict.fromkeys(row["marker"] for _, row in rows))
+    _check_markers(path, wand, markers)
+    wanted = {theirs: name for name, theirs in names.items()}
+    each: dict[str, dict[float, NDArray]] = {name: {} for name in names}
+    for line, row in rows:
+        if row["marker"] not in markers or row["camera"] not in wanted:
+            continue
+        where, at = f"{path}: line {line}", markers.index(row["marker"])
+        time = number(where, times[0], row[times[0]])
+        places = each[wanted[row["camera"]]]
+        xy = places.setdefault(time, np.full((len(markers), 2), np.nan))
+        if np.isfinite(xy[at]).any():
+            raise InputError(
+                f"{where}: expected one place of marker {row['marker']} in camera {row['camera']} "
+                f"at {times[0]} {row[times[0]]}, found another; delete one"
+            )
+        xy[at] = [number(where, key, row[key]) for key in OURS[2:]]
+    _check_cameras(path, names, [name for name, places in each.items() if places])
+    return _at_frames(each) if times == ["frame"] else _at_times(each)
+
+
+def _check_markers(path: StrPath, wand: Wand, found: Sequence[str]) -> None:
+    if len(found) != len(wand.along_m):
+        raise InputError(
+            f"{path}: expected {len(wand.along_m)} markers, found {', '.join(found)[:80]}; name "
+            "those of the wand in their order along it in `wand.markers`"
+        )
+
+
+def _at_frames(each: Mapping[str, Mapping[float, NDArray]]) -> Seen:
+    frames = sorted({frame for places in each.values() for frame in places})
+    n_markers = next(len(xy) for places in each.values() for xy in places.values())
+    none = np.full((n_markers, 2), np.nan)
+    xy = [[places.get(frame, none) for frame in frames] for places in each.values()]
+    return Seen(tuple(each), np.array(frames), np.array(xy))
+
+
+def _at_times(each: Mapping[str, Mapping[float, NDArray]]) -> Seen:
+    """Return markers at the times of the camera that sees most, on straight lines in between."""
+    most = max(each.values(), key=len)
+    times = np.array(sorted(most))
+    xy = []
+    for places in each.values():
+        own = np.array(sorted(places))
+        every = np.array([places[time] for time in own]).reshape(len(own), -1)
+        xy.append(_between(own, every, times).reshape(len(times), -1, 2))
+    return Seen(tuple(each), times, np.array(xy))
+
+
+def _between(own: NDArray, values: NDArray, times: NDArray) -> NDArray:
+    """Return values (T, K) at `times`; NaN outside, and where the neighbours are far apart."""
+    if len(own) < 2:
+        return np.full((len(times), values.shape[1]), np.nan)
+    gap = LONGEST_GAP * float(np.median(np.diff(own)))
+    after = np.clip(np.searchsorted(own, times), 1, len(own) - 1)
+    start, stop = own[after - 1], own[after]
+    share = ((times - start) / (stop - start))[:, None]
+    found = (1 - share) * values[after - 1] + share * values[after]
+    found = np.where(share == 0, values[after - 1], np.where(share == 1, values[after], found))
+    inside = (times >= own[0]) & (times <= own[-1]) & (stop - start <= gap)
+    return np.where(inside[:, None], found, np.nan)
+
+
+def _theirs(path: StrPath, wand: Wand, sizes: Sequence[tuple[int, int]], program: str) -> NDArray:
+    """Return px (C, F, M, 2) of an `xypts.csv`: rows of frames, columns of points and cameras."""
+    kinds = (OSError, UnicodeDecodeError, csv.Error)
+    advice = "export it again as CSV (dense, not sparse)"
+    with (
+        reading(path, "a readable CSV file", advice, kinds=kinds),
+        Path(path).open(newline="", encoding="utf-8-sig") as stream,
+    ):
+        lines = [[cell.strip() for cell in row] for row in csv.reader(stream, strict=True)]
+    lines = [row for row in lines if any(row)]
+    header = lines[0] if lines else []
+    plain = bool(header) and not any(
+        re.search("[A-Za-z]", re.sub("(?i)nan", "", c)) for c in header
+    )
+    columns = _numbered(wand, len(sizes)) if plain else _named(path, header)
+    order = _points(path, wand, columns)
+    if sorted({camera for _, camera, _ in columns}) != list(range(1, len(sizes) + 1)):
+        raise InputError(
+            f"{path}: expected columns of {len(sizes)} cameras, numbered from 1, found those of "
+            f"{len({camera for _, camera, _ in columns})}; name them in their order in "
+            "`wand.cameras`"
+        )
+    values = _values(path, lines[0 if plain else 1 :], len(columns), 1 if plain else 2)
+    xy = np.full((len(sizes), len(values), len(order), 2), np.nan)
+    for column, (point, camera, axis) in enumerate(columns):
+        if point in order:
+            xy[camera - 1, :, order.index(point), "xy".index(axis)] = values[:, column]
+    xy[~np.isfinite(xy).all(axis=-1)] = np.nan
+    first_x, first_y = PROGRAMS[program]
+    for one, (_, height) in zip(xy, sizes, strict=True):
+        one[..., 0] -= first_x
+        one[..., 1] = height - one[..., 1] if first_y is None else one[..., 1] - first_y
+    return xy
+
+
+def _named(path: StrPath, header: Sequence[str]) -> list[tuple[str, int, str]]:
+    """Return point, camera and axis of each column of a header."""
+    found = [THEIRS.fullmatch(cell) for cell in header]
+    columns = [(m["point"], int(m["camera"]), m["axis"].lower()) for m in found if m]
+    if not columns or len(columns) < len(header) or len(set(columns)) < len(columns):
+        raise InputError(
+            f"{path}: expected columns such as pt1_cam1_X or Track_1_cam_1_x, each once, found "
+            f"{','.join(header)[:80] or 'an empty file'}; give the xypts.csv of DLTdv or Argus"
+        )
+    return columns
+
+
+def _numbered(wand: Wand, n_cameras: int) -> list[tuple[str, int, str]]:
+    """Return those of a file without a header, as easyWand takes it: points, cameras, axes."""
+    points = range(1, len(wand.along_m) + 1)
+    each = ((p, c) for p in points for c in range(1, n_cameras + 1))
+    return [(f"pt{point}", camera, axis) for point, camera in each for axis in "xy"]
+
+
+def _points(path: StrPath, wand: Wand, columns: Iterable[tuple[str, int, str]]) -> list[str]:
+    points = list(dict.fromkeys(point for point, _, _ in columns))
+    order = list(wand.markers) or points
+    _check_markers(path, wand, order)
+    if missing := [name for name in order if name not in points]:
+        raise InputError(
+            f"{path}: expected markers of {', '.join(points)[:80]}, found {', '.join(missing)}; "
+            "correct `wand.markers`"
+        )
+    return order
+
+
+def _values(path: StrPath, rows: Sequence[Sequence[str]], width: int, first: int) -> NDArray:
+    """Return the numbers of rows (F, K), NaN of empty cells."""
+    found = np.full((len(rows), width), np.nan)
+    for at, row in enumerate(rows):
+        where = f"{path}: row {at + first}"
+        if len(row) != width:
+            raise InputError(f"{where}: expected {width} cells, found {len(row)}; correct it")
+        for k, cell in enumerate(row):
+            if cell and cell.lower() != "nan":
+                found[at, k] = number(where, f"column {k + 1}", cell)
+    if not len(found):
+        raise InputError(f"{path}: expected rows of a wand's markers, found none; export it again")
+    return found

@@ -1,0 +1,143 @@
+"""The frame that cameras of a wand are stated in: the floor's, the cameras' own, or a court's."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.calibration.people import world_frame
+from courtside.geometry import rotations, similarity
+from courtside.geometry.camera import Camera, project, undistort
+from courtside.geometry.similarity import Sim3
+from courtside.geometry.triangulation import triangulate_all
+from courtside.study.errors import InputError
+
+WIDE = 0.03  # ASSUME: least extent of places on the floor across their line, a share of it
+OFF_M = 0.05  # ASSUME: markers of a wand on a floor that is so far from flat are elsewhere
+FEWEST_CLICKS = 4  # of a camera that is to tell where the court is
+MIRRORED = 4.0  # ASSUME: clicks that fit a mirrored world so much better
+FAR_SHARE = 0.02  # ASSUME: of a picture's longer side: clicks so far off are of other points
+
+
+def of_floor(xyz: NDArray, above_m: float, cameras: Sequence[Camera]) -> Sim3:
+    """Return `world_from_cameras` of markers (F, M, 3) m of a wand that lies on the floor.
+
+    `above_m` is how high the markers' centres are then. The origin lies below the first marker of
+    the first place, x runs along the wand there, z is up. Raises `InputError` if the places do not
+    tell a plane.
+    """
+    places = xyz.reshape(-1, 3)
+    places = places[np.isfinite(places).all(axis=1)]
+    if not np.isfinite(xyz[0]).all() or len(places) < 3 or similarity.flatness(places)[1] < WIDE:
+        raise InputError(
+            "wand.floor: expected two frames or more in which two cameras see the wand on the "
+            "floor, not all on one line, found fewer; name others"
+        )
+    middle = places.mean(axis=0)
+    up = np.linalg.svd(places - middle)[2][2]
+    off_m = float(np.abs((places - middle) @ up).max())
+    if off_m > OFF_M:
+        raise InputError(
+            f"wand.floor: expected markers in one plane, found one {off_m:.2f} m off; name frames "
+            "in which the wand lies on the floor"
+        )
+    centres = np.array([camera.centre_in_world for camera in cameras])
+    up = up if np.median((centres - middle) @ up) > 0 else -up
+    turn = world_frame.axes(up, xyz[0, -1] - xyz[0, 0])
+    origin = xyz[0, 0] - ((xyz[0, 0] - middle) @ up + above_m) * up
+    return Sim3(1.0, turn, -turn @ origin)
+
+
+def of_cameras(xyz: NDArray, cameras: Sequence[Camera]) -> Sim3:
+    """Return `world_from_cameras` where nothing tells the floor, from all markers (F, M, 3) m.
+
+    The origin is the middle of the wand's ways, z points against the mean of the pictures' y axes,
+    and x runs as the line from the first camera to the second, across z.
+    """
+    up = rotations.unit(-np.mean([camera.cam_from_world[1, :3] for camera in cameras], axis=0))
+    along = cameras[1].centre_in_world - cameras[0].centre_in_world
+    turn = world_frame.axes(up, along)
+    return Sim3(1.0, turn, -np.nanmedian(xyz.reshape(-1, 3) @ turn.T, axis=0))
+
+
+def of_clicks(cameras: Sequence[Camera], points: NDArray, clicks: Mapping[str, NDArray]) -> Sim3:
+    """Return `world_from_cameras` from clicks (P, 2) px by camera of points (P, 3) m.
+
+    Raises `InputError` if too few are clicked, or they fit the cameras' mirror image only.
+    """
+    found = _best(cameras, points, clicks)
+    if found is None:
+        raise InputError(
+            f"wand: expected {FEWEST_CLICKS} clicked points or more in one camera, found fewer; "
+            "click more, or remove `court_points` and name `wand.floor`"
+        )
+    off, world = found
+    other = _best([_flipped(camera) for camera in cameras], points, clicks)
+    if other is not None and off > MIRRORED * max(1.0, other[0]):
+        raise InputError(
+            "wand: expected clicked points of the cameras that the wand gives, found those of "
+            "their mirror image: y of the wand's markers runs the other way; correct "
+            "`wand.program`"
+        )
+    limit = FAR_SHARE * max(max(camera.size) for camera in cameras)
+    if off > limit:
+        raise InputError(
+            f"wand: expected clicked points within {limit:.0f} px of the cameras that the wand "
+            f"gives, found {off:.0f} px; check the order of the cameras, `length_m`, and the clicks"
+        )
+    return world
+
+
+def _best(cameras, points: NDArray, clicks) -> tuple[float, Sim3] | None:
+    """Return the world that fits clicks best, with its typical error, px."""
+    tried = [(_error(world, cameras, points, clicks), world)
+             for world in _worlds(cameras, points, clicks)]  # fmt: skip
+    return min(tried, key=lambda one: one[0], default=None)
+
+
+def _worlds(cameras, points: NDArray, clicks) -> Iterator[Sim3]:
+    """Yield worlds by what each camera alone says, and by points that several see."""
+    xy = np.stack([clicks[camera.name] for camera in cameras])
+    for camera, px in zip(cameras, xy, strict=True):
+        at = np.isfinite(px).all(axis=1)
+        if at.sum() < FEWEST_CLICKS:
+            continue
+        fine, vector, shift = cv2.solvePnP(
+            points[at], undistort(camera, px[at]), np.eye(3), None, flags=cv2.SOLVEPNP_SQPNP
+        )
+        if fine:
+            turn = rotations.rotation_from_rodrigues(vector.ravel())
+            world_from_cam = rotations.invert(np.column_stack([turn, shift]))
+            rotation = world_from_cam[:, :3] @ camera.cam_from_world[:, :3]
+            move = world_from_cam[:, :3] @ camera.cam_from_world[:, 3] + world_from_cam[:, 3]
+            yield Sim3(1.0, rotation, move)
+    placed = triangulate_all(cameras, xy)
+    seen = np.isfinite(placed).all(axis=1)
+    if seen.sum() >= 3 and not similarity.is_collinear(points[seen]):
+        best = similarity.umeyama(placed[seen], points[seen])
+        middle = points[seen].mean(axis=0) - best.rotation @ placed[seen].mean(axis=0)
+        yield Sim3(1.0, best.rotation, middle)
+
+
+def _error(world: Sim3, cameras, points: NDArray, clicks) -> float:
+    """Return the median distance of clicks to projected points, px; inf of too few in front."""
+    off = [
+        np.linalg.norm(project(world.camera(camera), points) - clicks[camera.name], axis=1)
+        for camera in cameras
+    ]
+    clicked = np.concatenate([np.isfinite(clicks[camera.name][:, 0]) for camera in cameras])
+    return float(np.median(np.nan_to_num(np.concatenate(off)[clicked], nan=np.inf)))
+
+
+def _flipped(camera: Camera) -> Camera:
+    """Return a camera of the mirrored world whose pictures are upside down."""
+    turn = np.diag([1.0, -1.0, 1.0])
+    matrix = camera.K.copy()
+    matrix[1, 2] = camera.size[1] - 1 - matrix[1, 2]
+    pose = np.column_stack([
+        turn @ camera.cam_from_world[:, :3] @ turn, turn @ camera.cam_from_world[:, 3]
+    ])  # fmt: skip
+    dist = camera.dist * [1, 1, -1, 1, 1]
+    return replace(camera, K=matrix, dist=dist, cam_from_world=pose)

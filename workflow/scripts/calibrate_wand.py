@@ -1,0 +1,58 @@
+"""Calibrate all fixed cameras by a wand: its markers in the pictures -> cameras, covariance."""
+
+from functools import partial
+
+import cv2
+
+from courtside.calibration import file_formats
+from courtside.calibration.court import place_checks
+from courtside.calibration.court import quality as court_quality
+from courtside.calibration.people import adjustment as clicked
+from courtside.calibration.records import covariance as camera_covariance
+from courtside.calibration.wand import calibration, points, quality
+from courtside.geometry import camera as cameras
+from courtside.study.execution import log
+from courtside.study.execution.files import write_json
+from courtside.study.execution.script import run
+from courtside.video import reader
+
+
+def main(paths, cameras_toml, covariance_npz, quality_json, *, given, names, placed, weights):
+    cv2.setNumThreads(1)  # of several, sums depend on which ends first
+    wand = points.Wand.of(given)
+    lenses = known_lenses(given, paths.lens_tomls, names)
+    sizes = {name: lens.size for name, lens in lenses.items()}
+    for name, path in zip(names, paths.pictures, strict=bool(paths.pictures)):
+        size = reader.picture_size(path)
+        if name in lenses:
+            cameras.check_size(lenses[name], size, f"wand, picture of camera {name}")
+        sizes[name] = size
+    seen = points.read(given, wand, names, sizes)
+    court, clicks = None, None
+    if paths.clicks_csv:
+        known = paths.clicks_csv, paths.court_yaml, list(names), placed
+        court, marked = place_checks.known_points(*known)
+        clicks = partial(clicked.court_clicks, court, marked, **weights)
+    floor = calibration.Floor.of(given)
+    found = calibration.calibrate(wand, seen, sizes, lenses=lenses, floor=floor, clicks=clicks)
+    report = quality.said(found, wand, seen, set(lenses))
+    for warning in report["warnings"]:
+        log.logger.warning("%s", warning)
+    covariance = camera_covariance.of_network(list(seen.cameras), found.covariance)
+    if court is not None:
+        report |= court_quality.expected_volume(court, found.cameras, covariance)
+    cameras.write_toml(cameras_toml, found.cameras, source=f"wand, {len(seen.frames)} frames")
+    camera_covariance.write(covariance_npz, covariance)
+    write_json(quality_json, report)
+
+
+def known_lenses(given, lens_tomls, names):
+    """Return the lenses that are known, by camera: of a file, and from chessboards."""
+    if "lenses" in given:
+        read = file_formats.read(given["lenses"])
+        return {lens.name: lens for lens in file_formats.rename(read, names)}
+    return {lens.name: lens for path in lens_tomls for lens in cameras.read_toml(path)}
+
+
+if __name__ == "__main__":
+    run(main, snakemake)
