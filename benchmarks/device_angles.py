@@ -32,6 +32,7 @@ import fit_source
 from courtside.body_model import source, take
 from courtside.evaluation import joints, kinematics
 from courtside.evaluation.numbers import stated
+from courtside.evaluation.numbers.players import NETWORK as MODEL
 from courtside.exports import device
 from courtside.geometry import interpolation, rotations, similarity
 from courtside.inertial import heading
@@ -41,7 +42,6 @@ from courtside.records.truth import take_truth
 from courtside.study.configuration import yaml_files
 
 SESSIONS, DEVELOPMENT = ("single-view",), "single-dev"
-MODEL = "blazepose-heavy"
 SKELETONS = {"inertial": "mocopi27", "nuitrack": "nuitrack19"}
 LIMBS = list(skeleton.JOINTS)
 ANGLES = ("knee_flexion", "hip_flexion", "elbow_flexion", "shoulder_elevation", "trunk_lean")

@@ -27,6 +27,7 @@ from courtside.calibration.bundle import selection
 from courtside.calibration.court import joint_adjustment
 from courtside.calibration.people import unit
 from courtside.evaluation.numbers import stated
+from courtside.evaluation.numbers.players import NETWORK as MODEL
 from courtside.geometry import camera as camera_models
 from courtside.geometry import similarity
 from courtside.geometry.similarity import Sim3
@@ -37,7 +38,7 @@ from courtside.records.truth import session_truth, take_truth
 from courtside.study.configuration import yaml_files
 from courtside.synchronisation import cameras as camera_sync
 
-MODEL, TAKES = CONFIG["models"][0], ("footwork", "crossing")
+TAKES = "footwork", "crossing"
 THREE = ("oblique", "mirror", "front")  # not on one line
 MADE = "benchmark", "`python benchmarks/people_alone.py RESULTS`"
 # Known lengths on the floor, m; heights are then not stated.

@@ -165,7 +165,7 @@ def easywand(folder):
     seen = points.read(given, wand, names, sizes)
     for known, lens in ((lenses, "stated"), ({}, "found")):
         found = calibration.calibrate(wand, seen, sizes, lenses=known)
-        told = wand_quality.said(found, wand, seen, set(known))
+        told = wand_quality.summary(found, wand, seen, set(known))
         varies = 100 * told["length_mm"]["standard_deviation"] / (1000 * wand.length_m)
         px = "/".join(f"{value:.1f}" for value in told["rms_px"].values())
         row = f"`easywand-3cams`: a wand clicked in {len(seen.frames)} frames, lenses {lens}"

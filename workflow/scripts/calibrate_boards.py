@@ -26,7 +26,7 @@ def main(paths, cameras_toml, covariance_npz, quality_json, *, given, names):
         cameras.check_size(lens, sizes[name], f"board of camera {name}")
     floor = None if given.get("floor") is None else str(given["floor"])
     found = adjustment.calibrate(board, seen, sizes, lenses=lenses or None, floor=floor)
-    report = adjustment.said(found, seen, board, stated=floor is not None)
+    report = adjustment.summary(found, seen, board, stated=floor is not None)
     for warning in report["warnings"]:
         log.logger.warning("%s", warning)
     cameras.write_toml(cameras_toml, found.cameras, source=f"board, {len(seen.pictures)} places")

@@ -37,7 +37,7 @@ def main(
     found = self_calibration.calibrate(names, lenses, timed, heights_m, limits, known)
     camera_models.write_toml(cameras_toml, found.cameras, source="people alone")
     camera_covariance.write(covariance_npz, found.covariance)
-    report = from_nothing.said(found, [take["take"] for take in takes])
+    report = from_nothing.summary(found, [take["take"] for take in takes])
     for line in (report["line"], *report["warnings"]):
         log.logger.info("%s", line)
     write_json(quality_json, report)

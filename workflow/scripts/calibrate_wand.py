@@ -35,7 +35,7 @@ def main(paths, cameras_toml, covariance_npz, quality_json, *, given, names, pla
         clicks = partial(clicked.court_clicks, court, marked, **weights)
     floor = calibration.Floor.of(given)
     found = calibration.calibrate(wand, seen, sizes, lenses=lenses, floor=floor, clicks=clicks)
-    report = quality.said(found, wand, seen, set(lenses))
+    report = quality.summary(found, wand, seen, set(lenses))
     for warning in report["warnings"]:
         log.logger.warning("%s", warning)
     covariance = camera_covariance.of_network(list(seen.cameras), found.covariance)

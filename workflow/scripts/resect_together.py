@@ -31,7 +31,7 @@ def main(
     for warning in found.warnings:
         log.logger.warning("%s", warning)
     covariance = camera_covariance.of_network(cameras, found.solution.covariance)
-    report = {"calibration": calibration, **points_alone.said(found)}
+    report = {"calibration": calibration, **points_alone.summary(found)}
     report |= quality.expected_volume(court, found.solution.cameras, covariance)
     report["left_out"] = quality.leave_one_out_errors(court, found.solution.cameras, marked)[1]
     camera_models.write_toml(cameras_toml, found.solution.cameras, source=calibration)

@@ -54,7 +54,7 @@ def test_errors_are_as_large_as_stated():
     for seed in range(4):
         seen, found = solved(places, 0.4, seed)
         assert found.sigma_px == pytest.approx(0.4, rel=0.15)
-        assert adjustment.said(found, seen, BOARD, stated=True)["warnings"] == []
+        assert adjustment.summary(found, seen, BOARD, stated=True)["warnings"] == []
         for k, true in enumerate(in_world_of_first(places)):
             camera = found.cameras[k]
             at = IMAGE * k + 3 + np.arange(3)
@@ -133,7 +133,7 @@ def test_a_real_recording_against_caliscope():
     assert -0.3 < mean < 0.3
     assert spread < 0.9
     assert count > 900
-    (floor, scatter) = adjustment.said(found, seen, board, stated=False)["warnings"]
+    (floor, scatter) = adjustment.summary(found, seen, board, stated=False)["warnings"]
     assert "z = 0 its plane" in floor
     assert "the cameras did not film at one time" in scatter
     ours, others = (np.array([c.centre_in_world for c in one]) for one in (found.cameras, theirs))

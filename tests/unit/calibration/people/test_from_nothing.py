@@ -57,7 +57,7 @@ def test_cameras_with_unknown_lenses_are_found_from_two_persons_and_their_height
     square = np.einsum("ni,nij,nj->n", off, np.linalg.inv(spread), off)
     assert 0.2 < square.mean() < 9  # 3 over many draws; all joints here err together
     assert np.abs(placed[:, 2] - xyz[:, 2]).max() < 0.06
-    said = from_nothing.said(found, ["walk"])
+    said = from_nothing.summary(found, ["walk"])
     assert min(said["accepted_percent"].values()) > 95
     assert said["line"].startswith("people alone: joints that the fit left out disagree by ")
 

@@ -12,7 +12,7 @@ from fixtures.cameras.wands_made import LENSES, SIZES, WAND, floor_points, seen,
 
 def said(found, lenses=LENSES, wand=WAND, **more):
     solved = calibration.calibrate(wand, found, SIZES, lenses=lenses, **more)
-    return quality.said(solved, wand, found, set(lenses))
+    return quality.summary(solved, wand, found, set(lenses))
 
 
 def test_numbers_by_camera():

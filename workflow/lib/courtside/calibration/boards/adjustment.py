@@ -327,7 +327,7 @@ def _covariance(state: _State, fixed: _Problem, sigma_px: float) -> tuple[NDArra
     return whole, factor
 
 
-def said(found: Found, seen: Corners, board: Board, *, stated: bool) -> dict[str, Any]:
+def summary(found: Found, seen: Corners, board: Board, *, stated: bool) -> dict[str, Any]:
     """Return for a JSON file how well the corners fit.
 
     By camera: corners, pictures, `rms_px` per axis, standard deviations of the place (mm) and of

@@ -86,7 +86,7 @@ def calibrate(
     return Found(solved, dict(zip(sizes, table.error_px, strict=True)), wrong, warnings)
 
 
-def said(found: Found) -> dict[str, Any]:
+def summary(found: Found) -> dict[str, Any]:
     """Return the fit of the points, and the lenses with their uncertainty, for a JSON file.
 
     By camera: `n_points`; `rms_px`, per axis; `f_px` and `k1` with their standard deviations.

@@ -222,7 +222,7 @@ def adjust(
     return Found(cameras, named, score, scale, doubtful)
 
 
-def said(found: Found, takes: Sequence[str]) -> dict[str, Any]:
+def summary(found: Found, takes: Sequence[str]) -> dict[str, Any]:
     """Return the quality of cameras as numbers and one `line`."""
     share = 1000 * found.score.typical()
     accepted = dict(

@@ -6,5 +6,5 @@ adjustment: `adjust`: cameras and all places of the wand together, with covarian
 world: `of_floor`, `of_cameras`, `of_clicks`: the frame that cameras are stated in
 timing: `late`: cameras that do not film at the time of the others
 calibration: `calibrate`: all of these
-quality: `said`: how well the wand fits
+quality: `summary`: how well the wand fits
 """

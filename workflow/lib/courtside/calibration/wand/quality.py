@@ -17,7 +17,7 @@ LEAST_WAY = 0.3  # ASSUME: of a picture's diagonal: a lens that is not known nee
 LONGER_SIGMAS = 4.0  # ASSUME: a wand that clicked points say is so much longer is told
 
 
-def said(found: Found, wand: Wand, seen: Seen, known: set[str]) -> dict[str, Any]:
+def summary(found: Found, wand: Wand, seen: Seen, known: set[str]) -> dict[str, Any]:
     """Return how well the markers fit; `known` are the cameras whose lens was given.
 
     By camera: frames, `rms_px` per axis of the markers that are not wrong, their share

@@ -81,7 +81,6 @@ def session(
         withheld=withheld,
         **_calibration(content),
         static_points=of_configuration(content.get("static_points"), config),
-        known_lengths=tuple(content.get("known_lengths", ())),
         people=of_configuration(content.get("people"), config),
         walks=recordings.get("walks") or {k: w.get("video") or w["images"] for k, w in walks},
         court_points=recordings.get("court_points") or clicked,
@@ -98,11 +97,12 @@ def session(
 
 
 def _calibration(content: Content) -> dict[str, Any]:
-    """Return a session's fields of its calibration file, its board and its wand."""
+    """Return a session's fields of its calibration file, board, wand and known lengths."""
     given = content.get("calibration", {})
     return {
         "board": content.get("board"),
         "wand": content.get("wand"),
+        "known_lengths": tuple(content.get("known_lengths", ())),
         "calibration_file": given.get("file"),
         "calibration_override": {key: given[key] for key in OVERRIDDEN if key in given},
         "calibration_unit": given.get("unit"),
