@@ -7,6 +7,9 @@ import pytest
 
 from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.from_nothing import Guess
+from courtside.calibration.people.unit import KnownLength
+from courtside.geometry import camera as camera_models
+from courtside.geometry.triangulation import triangulate_all
 from courtside.reconstruction import self_calibration
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import skeleton
@@ -85,15 +88,16 @@ def calibrated():
     ]
     lenses, limits = {one.name: one for one in CAMERAS}, Limits(score=0.05, limit=0.05, fade=0.067)
 
-    def calibrate(*clocks):
+    def calibrate(*clocks, heights_m=(1.6, 1.8), known=()):
         """Clocks are those of camera c1: without cameras, by those guessed, and so on."""
         each = iter(clocks)
         return self_calibration.calibrate(
             NAMES,
             lenses,
             lambda _: [("walk", views, dict.fromkeys(NAMES, Clock()) | {"c1": next(each)})],
-            [[1.6, 1.8]],
+            [list(heights_m)],
             limits,
+            known,
         )
 
     return calibrate
@@ -111,6 +115,17 @@ def test_cameras_are_adjusted_again_if_they_change_clocks(calibrated):
     assert min(twice.score.accepted_percent()) > 95
     assert twice.score.typical() == pytest.approx(once.score.typical(), rel=0.1)
     assert once.score.typical() < 0.8 * calibrated(late, late, late).score.typical()
+
+
+def test_a_known_length_gives_the_scale_without_heights(calibrated):
+    ends = np.array([[-1.0, 1.0, 0.0], [1.0, 1.0, 0.0]])
+    xy = np.stack([camera_models.project(camera, ends) for camera in CAMERAS])
+    line = KnownLength("left to right", 2.0, xy, click_sigma_px=1.0)
+    right = Clock(0.0004)
+    found = calibrated(right, right, right, heights_m=(None, None), known=[line])
+    assert found.scale.by == "left to right"
+    placed = triangulate_all(found.cameras, xy)
+    assert np.linalg.norm(placed[1] - placed[0]) == pytest.approx(2.0, abs=0.01)
 
 
 def test_a_camera_that_filmed_in_two_sizes_is_named_with_the_take():

@@ -82,7 +82,7 @@ def calibrate(
         if last and _apart_s(last, takes) < SAME_S:
             break
         found = from_nothing.adjust(
-            first.cameras, lenses, seen(first, takes), of, heights_m, limits
+            first.cameras, lenses, seen(first, takes), of, heights_m, limits, known
         )
         first, last = replace(first, cameras=found.cameras), list(takes)
     return found
