@@ -1,4 +1,4 @@
-"""Calibrate all fixed cameras by a wand: its markers in the pictures -> cameras, covariance."""
+"""Calibrate all fixed cameras with a wand: markers in the pictures -> cameras, covariance."""
 
 from functools import partial
 
@@ -18,7 +18,7 @@ from courtside.video import reader
 
 
 def main(paths, cameras_toml, covariance_npz, quality_json, *, given, names, placed, weights):
-    cv2.setNumThreads(1)  # of several, sums depend on which ends first
+    cv2.setNumThreads(1)  # with several, the order of sums changes
     wand = points.Wand.of(given)
     lenses = known_lenses(given, paths.lens_tomls, names)
     sizes = {name: lens.size for name, lens in lenses.items()}
@@ -47,7 +47,7 @@ def main(paths, cameras_toml, covariance_npz, quality_json, *, given, names, pla
 
 
 def known_lenses(given, lens_tomls, names):
-    """Return the lenses that are known, by camera: of a file, and from chessboards."""
+    """Return the known lenses by camera, from the file of the session or from chessboards."""
     if "lenses" in given:
         read = file_formats.read(given["lenses"])
         return {lens.name: lens for lens in file_formats.rename(read, names)}
