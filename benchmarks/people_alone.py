@@ -120,7 +120,7 @@ def rows(results, name, takes, names):
         found = self_calibration.calibrate(names, {}, of_takes, heights, LIMITS, known)
         joint, shape, scale, inside = errors(found, real, xyz)
         accepted = found.score.accepted_percent()
-        print(names, what, joint, shape, scale, inside, accepted, found.scale, found.doubts)
+        print(names, what, joint, shape, scale, inside, accepted, found.scale, found.warnings)
         row = f"`{name}`: people alone, {len(names)} cameras, {seconds} s, {what}"
         said = f"joints after a rigid motion {joint:.0f} mm, scale {scale:+.1f} %"
         yield row, "alone", f"{said}, hold {inside:.0f} %", "mm", 1

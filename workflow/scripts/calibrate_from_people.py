@@ -1,4 +1,4 @@
-"""Calibrate fixed cameras from the people that they film: keypoints, heights -> cameras."""
+"""Calibrate fixed cameras from people alone: keypoints, heights or known lengths -> cameras."""
 
 from courtside.calibration.people import from_nothing, unit
 from courtside.calibration.people.adjustment import Limits
@@ -27,7 +27,7 @@ def main(
         known = unit.of_clicks(known_lengths, points, xy, **weights)
 
     def timed(cameras):
-        """Return of each take its name, keypoints and clocks, by cameras where they are known."""
+        """Return the name, keypoints and clocks of each take; clocks by cameras if known."""
         return [
             (take["take"], each, clocks_of(each, cameras, **take["timing"], **steps["clock_step"]))
             for take, each in zip(takes, filmed, strict=True)
@@ -38,8 +38,9 @@ def main(
     camera_models.write_toml(cameras_toml, found.cameras, source="people alone")
     camera_covariance.write(covariance_npz, found.covariance)
     report = from_nothing.summary(found, [take["take"] for take in takes])
-    for line in (report["line"], *report["warnings"]):
-        log.logger.info("%s", line)
+    log.logger.info("%s", report["line"])
+    for warning in report["warnings"]:
+        log.logger.warning("%s", warning)
     write_json(quality_json, report)
 
 

@@ -57,9 +57,9 @@ def test_cameras_with_unknown_lenses_are_found_from_two_persons_and_their_height
     square = np.einsum("ni,nij,nj->n", off, np.linalg.inv(spread), off)
     assert 0.2 < square.mean() < 9  # 3 over many draws; all joints here err together
     assert np.abs(placed[:, 2] - xyz[:, 2]).max() < 0.06
-    said = from_nothing.summary(found, ["walk"])
-    assert min(said["accepted_percent"].values()) > 95
-    assert said["line"].startswith("people alone: joints that the fit left out disagree by ")
+    summary = from_nothing.summary(found, ["walk"])
+    assert min(summary["accepted_percent"].values()) > 95
+    assert summary["line"].startswith("people alone: views of held-out joints disagree by ")
 
 
 def test_a_lens_of_a_board_is_not_guessed():
@@ -77,7 +77,7 @@ def test_a_person_whom_one_camera_does_not_see_is_not_given_up():
 
 def test_a_person_who_stands_still_tells_nothing():
     take = tracks_made.take(TRUE, tracks_made.persons(still=True)[:1])
-    with pytest.raises(InputError, match="expected somebody who moves by"):
+    with pytest.raises(InputError, match="expected a person who moves by"):
         guessed(take, [[1.7]])
 
 
