@@ -131,6 +131,13 @@ def test_faults_are_one_line(tmp_path, text, given, message):
     assert message in refused(tmp_path, text, **given)
 
 
+def test_markers_outside_the_picture_are_refused(tmp_path):
+    message = refused(tmp_path, OURS.replace("99,9", "1500,9"), markers=["tip", "end"])
+    assert (
+        "camera left: expected markers inside its picture of 1280 x 720 px, found 1 of" in message
+    )
+
+
 def test_neither_frame_nor_time_or_both_is_refused(tmp_path):
     neither = OURS.replace("frame,", "").replace(",3,", ",").replace(",4,", ",")
     assert "expected one column frame or time_s, found none" in refused(tmp_path, neither)

@@ -26,6 +26,7 @@ THEIRS = re.compile(r"(?P<point>.+)_cam_?(?P<camera>[0-9]+)_(?P<axis>[xXyY])")
 PROGRAMS = {"dltdv8": (1.0, 1.0), "dltdv": (1.0, None), "argus": (0.0, None)}
 LONGEST_GAP = 2.5  # ASSUME: frame periods across which markers are interpolated
 SIGMA_M = 5e-4  # ASSUME: of a length measured with a tape
+MARGIN, MOST_OUTSIDE = 0.02, 0.05  # ASSUME: of a picture's size; share of markers beyond it
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +84,22 @@ def read(
     _check_cameras(path, names, {
         name for name, xy in zip(found.cameras, found.xy, strict=True) if np.isfinite(xy).any()
     })  # fmt: skip
+    _check_inside(path, found, sizes)
     return found
+
+
+def _check_inside(path: StrPath, found: Seen, sizes: Mapping[str, tuple[int, int]]) -> None:
+    """Raise an `InputError` if many markers of a camera are outside its picture."""
+    for name, xy in zip(found.cameras, found.xy, strict=True):
+        size = np.array(sizes[name])
+        known = np.isfinite(xy[..., 0])
+        outside = ((xy < -MARGIN * size) | (xy > (1 + MARGIN) * size)).any(axis=-1)
+        if outside.sum() > MOST_OUTSIDE * known.sum():
+            raise InputError(
+                f"{path}: camera {name}: expected markers inside its picture of {size[0]} x "
+                f"{size[1]} px, found {outside.sum()} of {known.sum()} outside; check the size of "
+                "the digitised video, and the order of the cameras"
+            )
 
 
 def _check_cameras(path: StrPath, names: Mapping[str, str], seen: Collection[str]) -> None:
