@@ -1,5 +1,6 @@
 """Calibrate fixed cameras from people alone: keypoints, heights or known lengths -> cameras."""
 
+from courtside.calibration import file_formats
 from courtside.calibration.people import from_nothing, unit
 from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.records import covariance as camera_covariance
@@ -16,9 +17,7 @@ from courtside.synchronisation.cameras import of_take as clocks_of
 def main(
     paths, cameras_toml, covariance_npz, quality_json, *, names, takes, known_lengths, **steps
 ):
-    lenses = {
-        lens.name: lens for path in paths.lens_tomls for lens in camera_models.read_toml(path)
-    }
+    lenses = file_formats.known_lenses(None, {}, paths.lens_tomls)
     filmed = [[keypoints.read_2d(path) for path in take["pose2d"]] for take in takes]
     heights_m, known = [take["heights_m"] for take in takes], []
     if known_lengths:
