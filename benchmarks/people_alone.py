@@ -30,7 +30,6 @@ from courtside.evaluation.numbers import stated
 from courtside.evaluation.numbers.players import NETWORK as MODEL
 from courtside.geometry import camera as camera_models
 from courtside.geometry import similarity
-from courtside.geometry.similarity import Sim3
 from courtside.geometry.triangulation import triangulate_all
 from courtside.reconstruction import self_calibration
 from courtside.records.keypoints import keypoints
@@ -68,8 +67,7 @@ def errors(found, real, xyz):
     cameras, covariance = found.cameras, found.covariance.of_columns()
     exact = np.stack([camera_models.project(camera, xyz) for camera in real])
     placed = triangulate_all(cameras, exact)
-    best = similarity.umeyama(placed, xyz)
-    rigid = Sim3(1.0, best.rotation, xyz.mean(axis=0) - best.rotation @ placed.mean(axis=0))
+    best, rigid = similarity.umeyama(placed, xyz), similarity.rigid(placed, xyz)
     off = rigid.points(placed) - xyz
     spread = point_covariance.point_covariance(selection.of_cameras(cameras), covariance, placed)
     spread = best.rotation @ spread @ best.rotation.T

@@ -87,9 +87,7 @@ def errors(found, real, markers):
     grid = quality.volume(COURT)
     rigid = Sim3(1.0, np.eye(3), np.zeros(3))
     if markers is not None:
-        there = placed(found, real, markers)
-        turn = similarity.umeyama(there, markers).rotation
-        rigid = Sim3(1.0, turn, markers.mean(axis=0) - turn @ there.mean(axis=0))
+        rigid = similarity.rigid(placed(found, real, markers), markers)
     xyz = placed(found, real, grid)
     network = selection.of_cameras(found.cameras)
     spread = point_covariance.point_covariance(network, found.covariance, xyz)

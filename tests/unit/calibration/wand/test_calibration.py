@@ -12,7 +12,6 @@ from courtside.calibration.wand import calibration
 from courtside.calibration.wand.calibration import Floor
 from courtside.geometry import camera as cameras
 from courtside.geometry import similarity
-from courtside.geometry.similarity import Sim3
 from courtside.geometry.triangulation import triangulate_all
 from courtside.study.errors import InputError
 from fixtures.cameras.wands_made import (
@@ -38,12 +37,11 @@ def errors(found, markers):
     """Return errors (N, 3) m at `PLACES`, after the rigid motion that fits the wand's markers."""
     exact = np.stack([cameras.project(camera, markers) for camera in RIG])
     placed = triangulate_all(found.cameras, exact)
-    best = similarity.umeyama(placed, markers)
-    rigid = Sim3(1.0, best.rotation, markers.mean(axis=0) - best.rotation @ placed.mean(axis=0))
+    rigid = similarity.rigid(placed, markers)
     there = triangulate_all(found.cameras, np.stack([cameras.project(c, PLACES) for c in RIG]))
     network = selection.of_cameras(found.cameras)
     spread = point_covariance.point_covariance(network, found.covariance, there)
-    return rigid.points(there) - PLACES, best.rotation @ spread @ best.rotation.T
+    return rigid.points(there) - PLACES, rigid.rotation @ spread @ rigid.rotation.T
 
 
 @pytest.mark.parametrize(

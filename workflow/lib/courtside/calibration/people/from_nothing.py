@@ -29,6 +29,7 @@ from courtside.calibration.people.views import Seen
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance
 from courtside.geometry import boxes
+from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
 from courtside.geometry.triangulation import triangulate_all
 from courtside.study.errors import InputError
@@ -125,14 +126,10 @@ def _check_ways(takes: Sequence[Take]) -> None:
 
 def _with_lenses(names, sizes, lenses: Mapping[str, Camera], share: float) -> list[Camera]:
     """Return cameras at the origin with their known lenses, the others with one focal length."""
-    found = []
-    for name in names:
-        width, height = sizes[name]
-        f_px = share * max(width, height)
-        matrix = np.array([[f_px, 0, (width - 1) / 2], [0, f_px, (height - 1) / 2], [0, 0, 1]])
-        plain = Camera(name, (width, height), matrix, np.zeros(5), np.eye(3, 4))
-        found.append(replace(lenses.get(name, plain), name=name))
-    return found
+    each = {
+        name: lenses.get(name) or camera_models.plain(name, sizes[name], share) for name in names
+    }
+    return [replace(camera, name=name) for name, camera in each.items()]
 
 
 def _scaled(camera: Camera, factor: float) -> Camera:

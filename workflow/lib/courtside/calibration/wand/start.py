@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration.wand.points import Seen, Wand
+from courtside.geometry import camera as camera_models
 from courtside.geometry import epipolar, rotations
 from courtside.geometry.camera import Camera, undistort
 from courtside.geometry.triangulation import triangulate_robust
@@ -133,13 +134,7 @@ def _candidates(name: str, size: tuple[int, int], lenses: Mapping[str, Camera]) 
     """Return a camera at the origin with its known lens, or one for each focal length to try."""
     if name in lenses:
         return [replace(lenses[name], name=name, cam_from_world=np.eye(3, 4))]
-    width, height = size
-    found = []
-    for share in FOCAL_SHARES:
-        f_px = share * max(size)
-        matrix = np.array([[f_px, 0, (width - 1) / 2], [0, f_px, (height - 1) / 2], [0, 0, 1]])
-        found.append(Camera(name, (width, height), matrix, np.zeros(5), np.eye(3, 4)))
-    return found
+    return [camera_models.plain(name, size, share) for share in FOCAL_SHARES]
 
 
 def _tolerance(camera: Camera) -> float:

@@ -122,9 +122,7 @@ def _worlds(cameras, points: NDArray, clicks) -> Iterator[Sim3]:
     placed = triangulate_all(cameras, xy)
     seen = np.isfinite(placed).all(axis=1)
     if seen.sum() >= 3 and not similarity.is_collinear(points[seen]):
-        best = similarity.umeyama(placed[seen], points[seen])
-        middle = points[seen].mean(axis=0) - best.rotation @ placed[seen].mean(axis=0)
-        yield Sim3(1.0, best.rotation, middle)
+        yield similarity.rigid(placed[seen], points[seen])
 
 
 def _error(world: Sim3, cameras, points: NDArray, clicks) -> float:
