@@ -15,7 +15,7 @@ from courtside.calibration.people.adjustment import Clicks
 from courtside.calibration.wand import adjustment, start, timing, world
 from courtside.calibration.wand.adjustment import Adjusted, Bodies, State
 from courtside.calibration.wand.points import Seen, Wand
-from courtside.geometry import similarity
+from courtside.geometry import rotations, similarity
 from courtside.geometry.camera import Camera, project, undistort
 from courtside.geometry.similarity import Sim3
 from courtside.study.errors import InputError
@@ -192,37 +192,38 @@ def _state(
             f"and {start.HOW}"
         )
     frames = frames[np.linspace(0, len(frames) - 1, min(len(frames), MOST_FRAMES)).astype(int)]
-    frame, marker = np.nonzero(np.isfinite(xyz[frames][..., 0]))
-    count = np.bincount(frame, minlength=len(frames))
-    middle = np.bincount(frame, wand.along_m[marker]) / count
-    ends = [np.array([rows[at] for rows in map(np.flatnonzero, _known(xyz[frames]))])
-            for at in (0, -1)]  # fmt: skip
-    each = np.arange(len(frames))
-    along = xyz[frames[each], ends[1]] - xyz[frames[each], ends[0]]
-    along = np.where((count > 1)[:, None], along, [1.0, 0.0, 0.0])
-    origin = np.stack([np.bincount(frame, x) for x in xyz[frames[frame], marker].T], axis=1)
-    bodies = Bodies(
-        origin / count[:, None],
-        along / np.linalg.norm(along, axis=1, keepdims=True),
-        np.zeros((len(frames), 3)),
-        np.full(len(frames), np.inf),
-        frame,
-        wand.along_m[marker] - middle[frame],
-        (adjustment.BLOCKS * each) // len(frames),
-    )
-    xy = _straight(cameras, lenses, seen.xy[:, frames[frame], marker])
+    xyz = xyz[frames]
+    known = np.isfinite(xyz[..., 0])
+    xy = _straight(cameras, lenses, seen.xy[:, frames][:, known])
     image, point = np.nonzero(np.isfinite(xy[..., 0]))
     network = selection.of_cameras(_without(cameras, lenses))
-    network = problem.with_points(
-        network, xyz[frames[frame], marker], image, point, xy[image, point]
-    )
+    network = problem.with_points(network, xyz[known], image, point, xy[image, point])
     sigma = wand.sigma_m / wand.length_m
-    state = State(_with_prior(network, cameras), bodies, 0.0, sigma).placed()
+    state = State(_with_prior(network, cameras), _bodies(wand, xyz), 0.0, sigma).placed()
     return _in_front(state)
 
 
-def _known(xyz: NDArray) -> NDArray:
-    return np.isfinite(xyz[..., 0])
+def _bodies(wand: Wand, xyz: NDArray) -> Bodies:
+    """Return a body for each frame of markers (F, M, 3), NaN where unknown; one or more is known.
+
+    The origin is the mean of the known markers.
+    """
+    known = np.isfinite(xyz[..., 0])
+    each, count = np.arange(len(xyz)), known.sum(axis=1)
+    first, last = known.argmax(axis=1), known.shape[1] - 1 - known[:, ::-1].argmax(axis=1)
+    along = xyz[each, last] - xyz[each, first]
+    along[count == 1] = [1.0, 0.0, 0.0]
+    origin_m = known @ wand.along_m / count
+    frame, marker = np.nonzero(known)
+    return Bodies(
+        origin=np.nansum(xyz, axis=1) / count[:, None],
+        direction=rotations.unit(along),
+        known=np.zeros((len(xyz), 3)),
+        sigma_m=np.full(len(xyz), np.inf),
+        body=frame,
+        along_m=wand.along_m[marker] - origin_m[frame],
+        block=(adjustment.BLOCKS * each) // len(xyz),
+    )
 
 
 def _without(cameras, lenses) -> list[Camera]:
