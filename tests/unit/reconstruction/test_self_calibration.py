@@ -5,8 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from courtside.calibration.people import unit
 from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.from_nothing import Guess
+from courtside.geometry import camera as camera_models
+from courtside.geometry import triangulation
 from courtside.reconstruction import self_calibration
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import skeleton
@@ -85,18 +88,30 @@ def calibrated():
     ]
     lenses, limits = {one.name: one for one in CAMERAS}, Limits(score=0.05, limit=0.05, fade=0.067)
 
-    def calibrate(*clocks):
+    def calibrate(*clocks, heights_m=(1.6, 1.8), known=()):
         """Clocks are those of camera c1: without cameras, by those guessed, and so on."""
         each = iter(clocks)
         return self_calibration.calibrate(
             NAMES,
             lenses,
             lambda _: [("walk", views, dict.fromkeys(NAMES, Clock()) | {"c1": next(each)})],
-            [[1.6, 1.8]],
+            [list(heights_m)],
             limits,
+            known,
         )
 
     return calibrate
+
+
+def test_a_known_length_stands_for_heights(calibrated):
+    ends = np.array([[-1.0, 1.0, 0.0], [1.0, 1.0, 0.0]])
+    xy = np.stack([camera_models.project(camera, ends) for camera in CAMERAS])
+    known = unit.KnownLength("line", 2.0, xy, click_sigma_px=1.0, on_floor=True)
+    found = calibrated(*[Clock()] * 3, heights_m=(None, None), known=[known])
+    placed = triangulation.triangulate_all(found.cameras, xy)
+    assert np.linalg.norm(placed[1] - placed[0]) == pytest.approx(2.0, rel=1e-3)
+    assert placed[:, 2].mean() == pytest.approx(0, abs=1e-6)
+    assert found.scale.by == "line"
 
 
 def test_clocks_that_are_not_sure_are_refused(calibrated):

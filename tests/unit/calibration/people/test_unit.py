@@ -19,9 +19,10 @@ LINE = np.array([[-1.0, 1.0, 0.0], [1.0, 1.0, 0.0]])
 CLICK_PX = {"click_sigma_px": 2.0, "click_bias_px": 0.0}
 
 
-def body(height_m, frames=100, first=0.0, last=10.0, take=0):
+def body(height_m, frames=100, first=0.0, last=10.0, take=0, tracklets=()):
     """Return the body of somebody so tall."""
-    return Body(take, UNITS_PER_M * OF_HEIGHT * height_m, frames, first, last)
+    length = UNITS_PER_M * OF_HEIGHT * height_m
+    return Body(take, length, frames, first, last, frozenset(tracklets))
 
 
 def test_a_body_is_as_long_in_every_posture():
@@ -68,6 +69,17 @@ def test_tracks_at_one_time_are_different_persons():
     both = [body(1.70, 100, 0, 10), body(1.74, 100, 5, 10), body(1.72, 50, 0, 4)]
     found = unit.by_heights(both, [[1.74, 1.70]])
     assert found.metres == pytest.approx(2.5, rel=0.01)
+
+
+def test_tracks_that_share_a_tracklet_may_be_one_person():
+    """One camera exchanged two people: both tracks are of the tall one, the other is not seen."""
+    alone = body(1.85, take=1)
+    exchanged = [body(1.84, tracklets={(0, 1), (1, 0)}), body(1.86, tracklets={(0, 1), (1, 1)})]
+    found = unit.by_heights([*exchanged, alone], [[1.85, 1.65], [1.85]])
+    assert found.metres == pytest.approx(2.5, rel=0.005)
+    assert found.doubts == (
+        "one person's height alone tells the unit; a second person makes it surer",
+    )
 
 
 def test_it_is_said_that_another_way_to_give_heights_agrees_as_well():

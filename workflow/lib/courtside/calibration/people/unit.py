@@ -31,7 +31,7 @@ MEASURED_SIGMA = 0.01  # ASSUME: of the length of one track, share
 KNOWN_SIGMA_M = 0.003  # ASSUME: of a known length: ends of painted lines, of rackets, of staffs
 LEAST_FRAMES = 20  # ASSUME: that the length of a body needs
 SURE = 2.0  # standard deviations
-NOBODY = 3.0  # standard deviations that it costs to leave a track to nobody of the stated persons
+NOBODY = 3.0  # standard deviations: cost of a track of nobody, and of a stated person not seen
 HEIGHTS = "stated heights"
 MOST_WAYS = 4096  # of giving tracks to persons that are tried in one take; the longest tracks count
 MOST_PERSONS = 5  # of a take whose tracks are tried; of more, the tallest is taken for the longest
@@ -47,6 +47,7 @@ class Body:
     frames: int
     first: float  # and last time that it is seen, in the take
     last: float
+    tracklets: frozenset[tuple[int, int]] = frozenset()  # camera and row of those that it joins
 
 
 @dataclass(frozen=True)
@@ -184,10 +185,11 @@ def by_heights(bodies: Sequence[Body], heights_m: Sequence[Sequence[float | None
     """Return the unit by the stated heights of each take's persons.
 
     Whose height is whose is found with the unit: the way to give tracks to persons in which all
-    bodies agree best. Tracks seen at one time are different persons; a track may be of nobody. A
-    take counts if all its heights are stated and all these persons can be seen. Where another way
-    agrees about as well and gives another unit, this is a doubt, and so are heights that
-    contradict each other. Raises `InputError` where no take counts.
+    bodies agree best. Tracks seen at one time are different persons, unless they share a tracklet:
+    then a camera exchanged two people. A track may be of nobody, and a person unseen. A take counts
+    if all its heights are stated and it has as many tracks. Where another way agrees about as well
+    and gives another unit, this is a doubt, and so are heights that contradict each other. Raises
+    `InputError` where no take counts.
     """
     takes = [
         ways
@@ -221,6 +223,7 @@ class _Ways:
     height_m: NDArray  # (W, B): of the person of each track; NaN for nobody
     length: NDArray  # (B,)
     weight: NDArray  # (B,): share of the frames
+    n_unseen: NDArray  # (W,): stated persons without a track
 
     def ratio(self) -> NDArray:
         """Return the logarithm (W, B) of metres per unit by each track."""
@@ -230,7 +233,7 @@ class _Ways:
         """Return of the way that agrees best its cost, in variances, heights and ratios (B,)."""
         own = np.hypot(OF_HEIGHT_SIGMA, STATED_SIGMA_M / self.height_m)
         off = (self.ratio() - unit) / np.hypot(own, MEASURED_SIGMA)
-        cost = np.nan_to_num(off**2, nan=NOBODY**2) @ self.weight
+        cost = np.nan_to_num(off**2, nan=NOBODY**2) @ self.weight + NOBODY**2 * self.n_unseen
         at = int(cost.argmin())
         return float(cost[at]), self.height_m[at], self.ratio()[at]
 
@@ -248,14 +251,16 @@ def _ways(bodies: Sequence[Body], stated: Sequence[float | None]) -> _Ways | Non
     weight *= len(heights) / weight[: len(heights)].sum()
     if len(heights) > MOST_PERSONS:
         order = np.argsort(np.argsort(length))
-        return _Ways(np.sort(heights)[order][None], length, weight)
+        return _Ways(np.sort(heights)[order][None], length, weight, np.zeros(1))
     every = np.array(list(product(range(len(heights) + 1), repeat=len(known))))
-    fine = np.all([(every == who).any(axis=1) for who in range(len(heights))], axis=0)
+    fine = (every < len(heights)).any(axis=1)
     for (a, one), (b, other) in combinations(enumerate(known), 2):
-        if min(one.last, other.last) > max(one.first, other.first):
+        together = min(one.last, other.last) > max(one.first, other.first)
+        if together and not one.tracklets & other.tracklets:
             fine &= (every[:, a] != every[:, b]) | (every[:, a] == len(heights))
+    seen = np.sum([(every[fine] == who).any(axis=1) for who in range(len(heights))], axis=0)
     whose = np.append(heights, np.nan)[every[fine]]
-    return _Ways(whose, length, weight) if len(whose) else None
+    return _Ways(whose, length, weight, len(heights) - seen) if len(whose) else None
 
 
 def _settled(takes: Sequence[_Ways], unit: float) -> tuple[float, float, dict[float, float]]:
