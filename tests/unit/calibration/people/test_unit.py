@@ -123,8 +123,8 @@ def test_a_known_length_gives_metres_as_uncertain_as_its_clicks(cameras):
     assert unit.by_length(SMALL, clicked(cameras=cameras)).metres == pytest.approx(2.5)
     noisy = [unit.by_length(SMALL, clicked(1.0, seed, cameras=cameras)) for seed in range(200)]
     scatter = np.std([one.metres / 2.5 for one in noisy])
-    of_line = unit.KNOWN_SIGMA_M / 2.0
-    assert np.hypot(scatter, of_line) == pytest.approx(noisy[0].sigma, rel=0.15)
+    expected = np.linalg.norm([scatter, unit.KNOWN_SIGMA_M / 2.0, unit.BEND_SIGMA])
+    assert noisy[0].sigma == pytest.approx(expected, rel=0.05)
     assert noisy[0].by == "left to right"
 
 
@@ -133,20 +133,20 @@ def test_the_shape_of_cameras_makes_a_known_length_less_certain():
         SMALL, rotation_deg=0.1, position_m=0.01, focal_percent=1, principal_point_percent=1, k1=0
     ).of_columns()
     exact = unit.by_length(SMALL, clicked())
-    assert unit.by_length(SMALL, clicked(), loose).sigma > 3 * exact.sigma
+    assert unit.by_length(SMALL, clicked(), loose).sigma > 1.5 * exact.sigma
 
 
 def test_a_known_length_counts_more_than_heights_and_stands_for_them():
     bodies = [body(1.80), body(1.60)]
     found = unit.find(SMALL, bodies, [[1.83, 1.63]], [clicked()])
-    assert found.metres == pytest.approx(2.5, rel=0.003)
+    assert found.metres == pytest.approx(2.5, rel=0.006)  # heights alone: 1.8 % off
     assert found.by == "left to right, stated heights"
     assert found.sigma < unit.by_length(SMALL, clicked()).sigma
     assert not found.doubts
     without = unit.find(SMALL, bodies, [[None, 1.6]], [clicked()])
     assert (without.metres, without.by) == (pytest.approx(2.5), "left to right")
     (doubt,) = unit.find(SMALL, bodies, [[1.9, 1.69]], [clicked()]).doubts
-    assert doubt.startswith("stated heights: all lengths would be +5.4 % by it alone, expected 2.")
+    assert doubt.startswith("stated heights: all lengths would be +3.9 % by it alone, expected 2.")
 
 
 def test_a_known_length_without_clicks_is_named():
