@@ -180,8 +180,8 @@ def by_length(cameras: Sequence[Camera], known: KnownLength, shape: NDArray | No
         one, other = point_covariance.sensitivity(selection.of_cameras(cameras), ends)
         by_column = along / own @ (other - one)
         variance += by_column @ shape @ by_column
-    clicks, ends = np.sqrt(variance) / own, KNOWN_SIGMA_M / known.length_m
-    sigma = float(np.linalg.norm([clicks, ends, BEND_SIGMA]))
+    shares = [np.sqrt(variance) / own, KNOWN_SIGMA_M / known.length_m, BEND_SIGMA]
+    sigma = float(np.linalg.norm(shares))
     return Unit(known.length_m / own, sigma, known.name)
 
 
