@@ -242,21 +242,16 @@ def rows(table):
             for words, (pattern, stage) in SOLVERS.items():
                 one = known.loc[[(session, pattern.format(name), stage)]].reset_index()
                 yield from _measured("device-solvers", f"`{session}`, `{name}`: {words}", one, "")
-    seconds = table[table["session"].isin(SESSIONS) & (table["stage"] == "model")]["seconds"]
-    about = ("s", ", ".join(SESSIONS), seconds.count(), 0, "benchmark", COMMAND)
-    yield ["device-costs", "fits of all sources", "seconds", f"{seconds.sum():.0f}", *about]
 
 
 def _measured(name, label, part, suffix):
-    """Yield the numbers of one row: median and worst value over its takes."""
+    """Yield the numbers of one row, the median over takes."""
     measures = {f"{angle}_deg": "degrees" for angle in ANGLES}
     measures |= {f"{angle}_within": "%" for angle in ANGLES} | {"median_mm": "mm", "p95_mm": "mm"}
     for measure, unit in measures.items():
         digits = 1 if unit == "degrees" else 0
         about = (unit, part["session"].iloc[0], len(part), 0, "benchmark", COMMAND)
-        worst = part[measure].min() if unit == "%" else part[measure].max()
-        for end, value in (("", part[measure].median()), ("_worst", worst)):
-            yield [name, label, f"{measure}{suffix}{end}", f"{value:.{digits}f}", *about]
+        yield [name, label, f"{measure}{suffix}", f"{part[measure].median():.{digits}f}", *about]
 
 
 def main():

@@ -7,6 +7,7 @@ players with new seeds play as well: their true joints, with the errors of the j
 `players-b/footwork` (measured less true, shifted in time at random) added. Each published
 hypothesis is then a time of its own, the extremum nearest to the stroke. Parameters of the method
 come from players-dev and seeds 3000 to 3031 (`--first 3000 --seeds 32`), which are not reported.
+With the default seeds it writes docs/numbers/strokes.csv, a source of docs/make_tables.py.
 """
 
 import argparse
@@ -22,12 +23,13 @@ sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.court import court
 from courtside.calibration.point_covariance import WITHIN_90
 from courtside.evaluation.movement import contacts, strokes
+from courtside.evaluation.numbers import stated
 from courtside.evaluation.numbers.players import NETWORK
 from courtside.footwork import feet
 from courtside.kinematics import cutoffs
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.records.truth import take_truth
-from courtside.strokes import cues, detect, reaction
+from courtside.strokes import detect, reaction
 from courtside.strokes.signals import HANDS
 from virtualgym.body.skinned_body import JOINTS
 from virtualgym.session import take as virtual
@@ -39,6 +41,16 @@ BODIES = ("m3", "f3", "f4", "m1")
 PARTS = ("shoulder", "elbow", "wrist", "hip")
 USED = [f"{side}_{part}" for side in HANDS for part in PARTS]
 RATE_HZ, SECONDS = 30.0, 14.0
+SEEDS, FIRST = 40, 7000
+ERRORS = {  # in the columns of `strokes.table`
+    "error": "`find_strokes`",
+    "wrist_far": "wrist farthest from the waist",
+    "wrist_fast": "wrist fastest",
+    "wrist_slow": "wrist slowest",
+    "trunk_pc1": "trunk, first principal component",
+    "trunk_pc2": "trunk, second principal component",
+}
+MADE = "benchmark", "`python benchmarks/strokes.py RESULTS`"
 
 
 def made(results, session, take, what, suffix):
@@ -125,14 +137,14 @@ def played(results, errors, seed):
     return rows.assign(session="new players", take=f"seed {seed}", true_hand=hand)
 
 
-def said(rows):
+def show(rows):
     """Print counts, errors of times, and the errors of each hypothesis."""
     found = rows[rows.result == "found"]
     line = {key: round(float(value), 2) for key, value in strokes.summary(rows, RATE_HZ).items()}
     print(rows.session.iloc[0] if rows.session.nunique() == 1 else "all filmed takes", line)
     for overhead, part in found.groupby(found.overhead.astype(bool)):
         print("  overhead" if overhead else "  low", f"n = {len(part)}")
-        for name in ("error", *cues.CUES):
+        for name in ERRORS:
             frames = part[f"{name}_ms"].dropna() * RATE_HZ / 1000
             print(
                 f"    {name:11s} n {len(frames):3d}, median {frames.median():6.2f}, "
@@ -140,16 +152,63 @@ def said(rows):
             )
 
 
+def counts(row, rows, sessions):
+    """Yield the numbers of the table of hits."""
+    each = strokes.summary(rows, RATE_HZ)
+    n, missed = int(each["hits"]), int((rows.result == "missed").sum())
+    about = sessions, n, missed, *MADE
+    yield "strokes", row, "hits", n, "", *about
+    yield "strokes", row, "found", f"{each['found_percent']:.3g} %", "%", *about
+    false = 100 * each["false"] / n
+    yield "strokes", row, "false", f"{false:.2g} %", "%", *about
+    yield "strokes", row, "median", f"{each['median_frames']:.2f}", "frames", *about
+    yield "strokes", row, "p95", f"{each['p95_frames']:.2f}", "frames", *about
+    yield "strokes", row, "held", f"{each['within_90_percent']:.3g} %", "%", *about
+
+
+def hypotheses(rows, sessions):
+    """Yield the errors of each hypothesis: median and deviation, and the share within a frame."""
+    found = rows[rows.result == "found"]
+    for name, row in ERRORS.items():
+        for overhead, part in ((True, "overhead"), (False, "low")):
+            frames = found[found.overhead.astype(bool) == overhead][f"{name}_ms"] * RATE_HZ / 1000
+            frames = frames.dropna()
+            near = 100 * (frames.abs() <= 1).mean()
+            printed = f"{frames.median():.1f}, {frames.std():.1f} ({near:.0f} %)"
+            yield "stroke-cues", row, part, printed, "frames", sessions, len(frames), 0, *MADE
+
+
+def numbers(results, films, new):
+    """Return the rows as docs/make_tables.py reads them."""
+    takes = sum(len(list(Path(results, "virtual", one, "takes").iterdir())) for one in SESSIONS)
+    hits = films[films.result.isin(["found", "missed"])]
+    empty = takes - hits.groupby(["session", "take"]).ngroups
+    sessions = ", ".join(f"`{session}`" for session in SESSIONS)
+    filmed_takes = (
+        f"filmed takes of {sessions} ({empty} of {takes} show no hit far enough from their ends), "
+        "hands found"
+    )
+    played_takes = (
+        f"{SEEDS} new virtual players of {SECONDS:.0f} s, not filmed: true joints with the errors "
+        f"of `{'/'.join(LENDER)}`"
+    )
+    return [
+        *counts(filmed_takes, films, " ".join(SESSIONS)),
+        *counts(played_takes, new, LENDER[0]),
+        *hypotheses(new, LENDER[0]),
+    ]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("results")
-    parser.add_argument("--seeds", type=int, default=40)
-    parser.add_argument("--first", type=int, default=7000)
+    parser.add_argument("--seeds", type=int, default=SEEDS)
+    parser.add_argument("--first", type=int, default=FIRST)
     given = parser.parse_args()
     films = filmed(given.results)
     for _, part in films.groupby("session"):
-        said(part)
-    said(films)
+        show(part)
+    show(films)
     error, sigma = next_steps(given.results).T
     within = (np.abs(error) <= WITHIN_90 * sigma).sum()
     print(
@@ -159,10 +218,12 @@ def main():
     errors = joint_errors(given.results)
     seeds = range(given.first, given.first + given.seeds)
     new = pd.concat([played(given.results, errors, seed) for seed in seeds], ignore_index=True)
-    said(new)
+    show(new)
     hands = new[new.result == "found"].groupby("take")
     right = sum((part.hand == part.true_hand).all() for _, part in hands)
     print(f"playing hand right in {right} of {hands.ngroups} drills")
+    if (given.seeds, given.first) == (SEEDS, FIRST):
+        stated.write(ROOT / stated.FOLDER / "strokes.csv", numbers(given.results, films, new))
 
 
 if __name__ == "__main__":

@@ -56,23 +56,20 @@ class Walk:
             if found is not None:
                 self.seen[camera.name] = found
 
-    def solve(self, clicked, lines=None):
-        """Return the solution of ties and clicks, and of what lines tell."""
+    def solve(self, clicked):
+        """Return the solution of ties and clicks."""
         court = self.one.court
-        return joint_adjustment.solve_with_factors(
-            self.ties, clicked, court, lines=lines, **WEIGHTS
-        )
+        return joint_adjustment.solve_with_factors(self.ties, clicked, court, **WEIGHTS)
 
     def ways(self, clicked):
         """Yield the cameras of each way."""
         base, court = self.solve(clicked), self.one.court
         yield base
         told = walk_and_lines.from_edges(base, self.ties, clicked, court, self.seen, **WEIGHTS)
-        yield self.solve(clicked, told.knowledge)
+        yield told.solution
         nothing = {name: np.full_like(xy, np.nan) for name, xy in clicked.items()}
         told = walk_and_lines.from_edges(base, self.ties, nothing, court, self.seen, **WEIGHTS)
-        lines = {"lines": told.knowledge, **WEIGHTS}
-        yield joint_adjustment.solve(self.ties, nothing, court, **lines)
+        yield told.solution
 
     def errors(self, n_draws):
         """Return volume error, cm, and coverage of the 90 % ellipsoids, (draws, ways, 2)."""

@@ -344,4 +344,6 @@ if __name__ == "__main__":
     parser.add_argument("--seeds", type=int, default=8)
     given = parser.parse_args()
     made = list(rows(given.results, given.halls, given.charuco, given.seeds))
-    stated.write(ROOT / stated.FOLDER / "ways_to_calibrate.csv", stated.joined(made))
+    path = ROOT / stated.FOLDER / "ways_to_calibrate.csv"
+    others = stated.of_other_sessions(path, {row[5] for row in made})
+    stated.write(path, [*stated.joined(made), *others])

@@ -76,7 +76,12 @@ def solve(record, clicks_csv, court_yaml, *, pictures, search=None, **options):
         record.ties, marked, court, dict(shown), **search, **options
     )
     found, checked = quality.adjust_and_check(
-        court, record.ties, marked, lines=constraints.knowledge, **options
+        court,
+        record.ties,
+        marked,
+        solved=constraints.solution,
+        lines=constraints.knowledge,
+        **options,
     )
     warnings = [*checked["warnings"], *constraints.warnings]
     return found, checked | constraints.summary() | {"warnings": warnings}

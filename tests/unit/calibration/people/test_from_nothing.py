@@ -41,7 +41,7 @@ def test_cameras_with_unknown_lenses_are_found_from_two_persons_and_their_height
     take = tracks_made.take(TRUE, WALK)
     start = guessed(take)
     found = from_nothing.adjust(
-        start.cameras, {}, seen(take, start.tracks), [0, 0], HEIGHTS, LIMITS
+        start.cameras, {}, seen(take, start.tracks), start.tracks, HEIGHTS, LIMITS
     )
     xyz = WALK[:, ::4].reshape(-1, 3)
     placed = triangulate_all(found.cameras, np.stack([cameras.project(c, xyz) for c in TRUE]))

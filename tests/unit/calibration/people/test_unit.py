@@ -19,9 +19,10 @@ LINE = np.array([[-1.0, 1.0, 0.0], [1.0, 1.0, 0.0]])
 CLICK_PX = {"click_sigma_px": 2.0, "click_bias_px": 0.0}
 
 
-def body(height_m, frames=100, first=0.0, last=10.0, take=0):
+def body(height_m, frames=100, first=0.0, last=10.0, take=0, tracklets=()):
     """Return the body of somebody so tall."""
-    return Body(take, UNITS_PER_M * OF_HEIGHT * height_m, frames, first, last)
+    length = UNITS_PER_M * OF_HEIGHT * height_m
+    return Body(take, length, frames, first, last, frozenset(tracklets))
 
 
 def test_a_body_is_as_long_in_every_posture():
@@ -69,6 +70,16 @@ def test_tracks_at_one_time_are_different_persons():
     assert found.metres == pytest.approx(2.5, rel=0.01)
 
 
+def test_tracks_that_share_a_tracklet_may_be_one_person():
+    """One camera exchanged two people: both tracks are of the tall one, the other is not seen."""
+    alone = body(1.85, take=1)
+    exchanged = [body(1.84, tracklets={(0, 1), (1, 0)}), body(1.86, tracklets={(0, 1), (1, 1)})]
+    found = unit.by_heights([*exchanged, alone], [[1.85, 1.65], [1.85]])
+    assert found.metres == pytest.approx(2.5, rel=0.005)
+    (warning,) = found.warnings
+    assert warning.startswith("only one person's height defines the scale")
+
+
 def test_another_assignment_that_agrees_as_well_gives_a_warning():
     """Two bodies at different times and a third: the lower two or the upper two."""
     bodies = [body(1.6, 100, 0, 3), body(1.7, 100, 4, 7), body(1.8, 100, 8, 10)]
@@ -110,8 +121,8 @@ def test_a_known_length_gives_metres_as_uncertain_as_its_clicks(cameras):
     assert unit.by_length(SMALL, clicked(cameras=cameras)).metres == pytest.approx(2.5)
     noisy = [unit.by_length(SMALL, clicked(1.0, seed, cameras=cameras)) for seed in range(200)]
     scatter = np.std([one.metres / 2.5 for one in noisy])
-    of_line = unit.KNOWN_SIGMA_M / 2.0
-    assert np.hypot(scatter, of_line) == pytest.approx(noisy[0].sigma, rel=0.15)
+    expected = np.linalg.norm([scatter, unit.KNOWN_SIGMA_M / 2.0, unit.BEND_SIGMA])
+    assert noisy[0].sigma == pytest.approx(expected, rel=0.05)
     assert noisy[0].by == "left to right"
 
 
@@ -120,13 +131,13 @@ def test_the_shape_of_cameras_makes_a_known_length_less_certain():
         SMALL, rotation_deg=0.1, position_m=0.01, focal_percent=1, principal_point_percent=1, k1=0
     ).of_columns()
     exact = unit.by_length(SMALL, clicked())
-    assert unit.by_length(SMALL, clicked(), loose).sigma > 3 * exact.sigma
+    assert unit.by_length(SMALL, clicked(), loose).sigma > 1.5 * exact.sigma
 
 
 def test_a_known_length_counts_more_than_heights_and_stands_for_them():
     bodies = [body(1.80), body(1.60)]
     found = unit.find(SMALL, bodies, [[1.83, 1.63]], [clicked()])
-    assert found.metres == pytest.approx(2.5, rel=0.003)
+    assert found.metres == pytest.approx(2.5, rel=0.006)  # heights alone: 1.8 % off
     assert found.by == "left to right, stated heights"
     assert found.sigma < unit.by_length(SMALL, clicked()).sigma
     assert not found.warnings
@@ -134,7 +145,7 @@ def test_a_known_length_counts_more_than_heights_and_stands_for_them():
     assert (without.metres, without.by) == (pytest.approx(2.5), "left to right")
     (warning,) = unit.find(SMALL, bodies, [[1.9, 1.69]], [clicked()]).warnings
     assert warning.startswith("stated heights: expected a change of all lengths by 2.")
-    assert "found +5.4 %; check them against left to right" in warning
+    assert "found +3.9 %; check them against left to right" in warning
 
 
 def test_heights_of_persons_who_are_not_seen_are_not_needed_beside_a_known_length():

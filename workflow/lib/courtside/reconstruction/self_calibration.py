@@ -73,7 +73,6 @@ def calibrate(
     do not determine the cameras, or if a clock is uncertain.
     """
     first, last = guess(names, lenses, timed(None), heights_m, known), list[Filmed]()
-    of = [take for take, _ in first.tracks]
     for _ in range(ROUNDS):
         takes = timed({camera.name: camera for camera in first.cameras})
         for name, _, clocks in takes:
@@ -82,7 +81,7 @@ def calibrate(
         if last and _apart_s(last, takes) < SAME_S:
             break
         found = from_nothing.adjust(
-            first.cameras, lenses, seen(first, takes), of, heights_m, limits, known
+            first.cameras, lenses, seen(first, takes), first.tracks, heights_m, limits, known
         )
         first, last = replace(first, cameras=found.cameras), list(takes)
     return found

@@ -72,22 +72,30 @@ def check_cameras(
 
 
 def adjust_and_check(
-    court: Court, ties: joint_adjustment.Ties, clicks: ClickedPoints, **weights: Any
+    court: Court,
+    ties: joint_adjustment.Ties,
+    clicks: ClickedPoints,
+    *,
+    solved: joint_adjustment.Solution | None = None,
+    **weights: Any,
 ) -> tuple[joint_adjustment.Solution, dict[str, Any]]:
     """Adjust the fixed cameras with the clicked court points, and check them, as `check_cameras`.
 
-    `**weights` are those of the clicks, as for `joint_adjustment.solve`; warnings judge clicks by
-    the scatter found. The result also holds `variance_factors`. Raises `InputError` if the points
-    cannot be this court. A model of structure from motion is bent by what its ties leave
-    open, mostly focal lengths: with 12 small pictures by 0.02 to 0.4 m at the court points, where
-    clicks are 1 cm off. The adjustment removes as much of the bend as the ties' own covariance
-    allows: what is left is the fault of the clicks or the court.
+    `solved` are the cameras where another adjustment has found them. `**weights` are those of the
+    clicks, as for `joint_adjustment.solve`; warnings judge clicks by the scatter found. The result
+    also holds `variance_factors`. Raises `InputError` if the points cannot be this court. A model
+    of structure from motion is bent by what its ties leave open, mostly focal lengths: with 12
+    small pictures by 0.02 to 0.4 m at the court points, where clicks are 1 cm off. The adjustment
+    removes as much of the bend as the ties' own covariance allows: what is left is the fault of the
+    clicks or the court.
     """
 
     def adjust(clicks: ClickedPoints) -> list[Camera]:
         return joint_adjustment.solve(ties, clicks, court, max_iterations=30, **weights).cameras
 
-    solved = joint_adjustment.solve_with_factors(ties, clicks, court, max_iterations=30, **weights)
+    if solved is None:
+        options = {"max_iterations": 30, **weights}
+        solved = joint_adjustment.solve_with_factors(ties, clicks, court, **options)
     sigma_px = joint_adjustment.found_click_sigma(weights["click_sigma_px"], solved)
     quality = check_cameras(
         court,

@@ -1,12 +1,11 @@
 """Adjust the cameras of a walk together with the court's painted lines.
 
 An edge is measured only across its line. Its error has three parts. First, a painted line deviates
-by some millimetres from the court's file, by one value for all its stretches in all cameras.
-Second, a thin line in the picture has a bias from blur, pixels and its surroundings, which is
-similar in neighbouring stretches. Third, each stretch has noise. The covariance of the edges
-contains the first two parts, so that many stretches of one line are not treated as independent. The
-deviation of the painted lines is estimated from the lines themselves, with the court's file as
-prior.
+by some millimetres from the court's file, by one value for all its stretches in all cameras, and
+for the clicked points on it. Second, a thin line in the picture has a bias from blur, pixels and
+its surroundings, which is similar in neighbouring stretches. Third, each stretch has noise. The
+covariance of edges and clicks contains all of them, so that many stretches and points of one line
+are not treated as independent. Lines that deviate more than expected enlarge the covariance.
 """
 
 from collections.abc import Mapping
@@ -14,11 +13,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from courtside.calibration.bundle import problem, selection, solver
 from courtside.calibration.bundle.problem import IMAGE, POSE, Network
-from courtside.calibration.court import joint_adjustment
+from courtside.calibration.court import joint_adjustment, line_edges
 from courtside.calibration.court.court import ClickedPoints, Court
 from courtside.calibration.court.joint_adjustment import Solution, Ties
 from courtside.calibration.court_lines import edges
@@ -35,6 +35,7 @@ LOSS = 3.0  # ASSUME: sigmas; scale of the Cauchy loss of a stretch
 # chosen as above, on halls whose lines deviate by 3 to 10 mm.
 PAINTING = 2.0
 PAINTING_PRIOR = 6.0  # ASSUME: weight of the court's file, in lines, for the painting deviation
+ON_LINE_M = 0.001  # ASSUME: standard deviation of a named point across its painted line
 MAX_ITERATIONS = 30  # of each adjustment
 ROUNDS = 4  # of adjusting, reweighting, and estimating the painting deviation
 # ASSUME: limit in sigmas for the root mean square distance of a camera's edges from the walk's
@@ -44,9 +45,10 @@ CONTRADICTED = 4.0
 
 @dataclass(frozen=True, eq=False)
 class LineConstraints:
-    """Constraints of court lines on the fixed cameras of a walk."""
+    """Fixed cameras by walk, clicks and court lines, and the constraints of the lines alone."""
 
-    knowledge: solver.Quadratic | None  # for `joint_adjustment.solve`; None where no line is seen
+    solution: Solution | None  # None where no line is seen
+    knowledge: solver.Quadratic | None  # of lines alone, for `joint_adjustment.solve`
     n_edges: dict[str, int]  # by camera
     off_sigmas: dict[str, float]  # by camera: root mean square distance from the walk's prediction
     painting_m: float  # standard deviation of the painting deviation, across the line
@@ -111,22 +113,50 @@ def from_edges(
         if name not in found
     ]
     n_edges = {c.name: len(found[c.name].line) if c.name in found else 0 for c in base.cameras}
-    stated_m = painting_m = _painting_m(court)
+    stated_m = _painting_m(court)
     if not found:
-        return LineConstraints(None, n_edges, off, stated_m, warnings)
-    solved, trust = base, np.ones(sum(n_edges.values()))
-    known = _linearised(base, found, court).knowledge(painting_m, trust)
+        return LineConstraints(None, None, n_edges, off, stated_m, warnings)
+    solved, knowledge, painting_m = _adjusted(base, ties, clicks, court, found, **weights)
+    return LineConstraints(solved, knowledge, n_edges, off, painting_m, warnings)
+
+
+def _adjusted(
+    base: Solution,
+    ties: Ties,
+    clicks: ClickedPoints,
+    court: Court,
+    found: Mapping[str, Edges],
+    **weights: Any,
+) -> tuple[Solution, solver.Quadratic, float]:
+    """Return cameras by ties, clicks and edges, what edges alone tell, and the painting deviation.
+
+    Clicks and edges are linearised together; the adjustment sees no clicks besides.
+    """
+    nothing = {name: np.full_like(xy, np.nan) for name, xy in clicks.items()}
+    options = {"factors": base.factors, **weights}
+
+    def observed(solved: Solution) -> _Observations:
+        of_clicks = _of_clicks(solved, clicks, court, weights)
+        return _joined(_of_edges(solved, found, court), of_clicks)
+
+    stated_m = painting_m = _painting_m(court)
+    solved, seen = base, observed(base)
+    trust = seen.trusted(painting_m, np.ones(len(seen.off_px)))
     for _ in range(ROUNDS):
-        solved = joint_adjustment.solve(
-            ties, clicks, court, lines=known, factors=base.factors, start=solved.network, **weights
-        )
-        seen = _linearised(solved, found, court)
-        trust = 1 / (1 + (seen.noise(painting_m, trust) / LOSS) ** 2)
-        squares = seen.painted_squares(painting_m, trust, solved.covariance)
-        lines_and_prior = PAINTING_PRIOR + len(squares)
-        painting_m = np.sqrt((PAINTING_PRIOR * stated_m**2 + squares.sum()) / lines_and_prior)
         known = seen.knowledge(painting_m, trust)
-    return LineConstraints(known, n_edges, off, float(painting_m), warnings)
+        solved = joint_adjustment.solve(
+            ties, nothing, court, lines=known, start=solved.network, **options
+        )
+        seen = observed(solved)
+        trust = seen.trusted(painting_m, trust)
+        squares = seen.painted_squares(painting_m, trust, solved.covariance)
+        mean = (PAINTING_PRIOR * stated_m**2 + squares.sum()) / (PAINTING_PRIOR + len(squares))
+        painting_m = max(stated_m, float(np.sqrt(mean)))
+    lines = _of_edges(solved, found, court)
+    known = lines.knowledge(painting_m, trust[: len(lines.off_px)])
+    clicked = any(np.isfinite(xy).any() for xy in clicks.values())
+    widening = base.factors.widening if clicked else 1.0
+    return replace(solved, covariance=solved.covariance * widening), known, painting_m
 
 
 def _painting_m(court: Court) -> float:
@@ -136,44 +166,44 @@ def _painting_m(court: Court) -> float:
 
 def _off_sigmas(base: Solution, name: str, seen: Edges, court: Court) -> float:
     """Return the root mean square distance, in sigmas, of edges from a camera's prediction."""
-    one = _linearised(base, {name: seen}, court)
+    one = _of_edges(base, {name: seen}, court)
     spread = np.einsum("mk,kl,ml->m", one.rows, base.covariance, one.rows)
     spread += np.diag(one.covariance(_painting_m(court), 1.0))
     return float(np.sqrt(np.mean(one.off_px**2 / spread)))
 
 
 @dataclass(frozen=True, eq=False)
-class _Linearised:
-    """Edges of all cameras about a network."""
+class _Observations:
+    """Edges or clicks of all cameras about a network; each measurement has one axis or two."""
 
     network: Network
-    off_px: NDArray  # (M,): predicted minus observed, across
+    off_px: NDArray  # (M,): predicted minus observed
     rows: NDArray  # (M, K): its derivatives by the network's columns
-    px_of_m: NDArray  # (M,): of a line that is painted off
-    line: NDArray  # (M,)
-    variance: NDArray  # (M,): px2, of each stretch alone
-    alike: NDArray  # (M, M): px2, of stretches of one line in one picture
+    by_line: NDArray  # (M, L): and by how far each line is painted off, px / m
+    variance: NDArray  # (M,): px2, of each measurement alone
+    shared: NDArray  # (M, M): px2, of what measurements share besides lines
+    measurement: NDArray  # (M,) int
+    loss: NDArray  # (M,): scale of the Cauchy loss, sigmas
 
     def covariance(self, painting_m: float, trust: NDArray | float) -> NDArray:
-        """Return the covariance of `off_px` (M, M); `trust` weights the noise of each stretch."""
-        same = self.line[:, None] == self.line
-        painted = same * np.outer(self.px_of_m, self.px_of_m) * painting_m**2
-        return np.diag(self.variance / trust) + self.alike + painted
+        """Return the covariance of `off_px` (M, M); `trust` weights the noise of measurements."""
+        painted = painting_m**2 * self.by_line @ self.by_line.T
+        return np.diag(self.variance / trust) + self.shared + painted
 
     def knowledge(self, painting_m: float, trust: NDArray | float) -> solver.Quadratic:
-        """Return the information of the edges on images and lenses, all else eliminated."""
+        """Return the information of the observations on images and lenses, all else eliminated."""
         weighed = np.linalg.solve(self.covariance(painting_m, trust), self.rows)
         return solver.Quadratic(self.network, self.rows.T @ weighed, weighed.T @ self.off_px)
 
-    def noise(self, painting_m: float, trust: NDArray | float) -> NDArray:
-        """Return the part of `off_px` that is each stretch's own, in its sigmas, (M,)."""
+    def trusted(self, painting_m: float, trust: NDArray) -> NDArray:
+        """Return the weights (M,) of the Cauchy loss for the noise of each measurement."""
         pull = np.linalg.solve(self.covariance(painting_m, trust), self.off_px)
-        return np.sqrt(self.variance) / trust * pull
+        noise = np.sqrt(self.variance) / trust * pull  # in sigmas
+        squares = np.bincount(self.measurement, noise**2)[self.measurement]
+        return 1 / (1 + squares / self.loss**2)
 
-    def painted_squares(
-        self, painting_m: float, trust: NDArray | float, spread: NDArray
-    ) -> NDArray:
-        """Return the expected square of each line's painting deviation, m2.
+    def painted_squares(self, painting_m: float, trust: NDArray, spread: NDArray) -> NDArray:
+        """Return the expected square of the painting deviation of each line that is seen, m2.
 
         `spread` is the covariance of the network's columns. The step of expectation maximisation
         (Dempster, Laird & Rubin 1977).
@@ -181,13 +211,36 @@ class _Linearised:
         inverse = np.linalg.inv(self.covariance(painting_m, trust))
         weighed = inverse @ self.rows
         left = inverse - weighed @ spread @ weighed.T
-        each = (self.line[:, None] == np.unique(self.line)) * self.px_of_m[:, None]
+        each = self.by_line[:, self.by_line.any(axis=0)]
         mean = painting_m**2 * each.T @ (inverse @ self.off_px)
         known = painting_m**4 * np.einsum("ml,mn,nl->l", each, left, each)
         return mean**2 + np.maximum(painting_m**2 - known, 0.0)
 
 
-def _linearised(solved: Solution, found: Mapping[str, Edges], court: Court) -> _Linearised:
+def _joined(one: _Observations, other: _Observations) -> _Observations:
+    after = 1 + one.measurement.max(initial=-1)
+    both = ("off_px", "rows", "by_line", "variance", "loss")
+    return _Observations(
+        network=one.network,
+        shared=scipy.linalg.block_diag(one.shared, other.shared),
+        measurement=np.concatenate([one.measurement, after + other.measurement]),
+        **{key: np.concatenate([getattr(one, key), getattr(other, key)]) for key in both},
+    )
+
+
+def _linearised(
+    network: Network, xyz: NDArray, image: NDArray, xy: NDArray
+) -> tuple[NDArray, NDArray, NDArray]:
+    """Return predicted minus observed (M, 2), derivatives by columns (M, 2, K), by points."""
+    seen = problem.with_points(network, xyz, image, np.arange(len(xyz)), xy)
+    residual, by_camera, by_point = problem.linearised(seen)
+    by_camera[:, :, len(POSE) : IMAGE] = 0.0  # no flex: a static camera
+    rows = np.zeros((len(xyz), 2, network.n_columns))
+    np.put_along_axis(rows, seen.columns()[:, None].repeat(2, axis=1), by_camera, axis=2)
+    return residual, rows, by_point
+
+
+def _of_edges(solved: Solution, found: Mapping[str, Edges], court: Court) -> _Observations:
     """Return the edges of cameras, by name, about the solution's network."""
     names = [camera.name for camera in solved.cameras]
     image = np.concatenate(
@@ -198,22 +251,64 @@ def _linearised(solved: Solution, found: Mapping[str, Edges], court: Court) -> _
         for key in ("line", "xyz", "across", "xy", "normal", "sigma_px")
     )
     network = selection.of_cameras(solved.cameras)
-    seen = problem.with_points(network, xyz, image, np.arange(len(xyz)), xy)
-    residual, by_camera, by_point = problem.linearised(seen)
-    by_camera = np.einsum("mr,mrk->mk", normal, by_camera)
-    by_camera[:, len(POSE) : IMAGE] = 0.0  # the flex stands for the bias of clicks
-    rows = np.zeros((len(line), network.n_columns))
-    np.put_along_axis(rows, seen.columns(), by_camera, axis=1)
+    residual, rows, by_point = _linearised(network, xyz, image, xy)
     px_of_m = np.einsum("mr,mrk,mk->m", normal, by_point, across)
     shared_px = THIN_PX / (np.abs(px_of_m) * court.line_width_m)
     same = (image[:, None] == image) & (line[:, None] == line)
     away_m = np.linalg.norm(xyz[:, None] - xyz, axis=2)
-    return _Linearised(
+    return _Observations(
         network,
         np.sum(residual * normal, axis=1),
-        rows,
-        px_of_m,
-        line,
+        np.einsum("mr,mrk->mk", normal, rows),
+        (line[:, None] == np.arange(len(court.lines_m))) * px_of_m[:, None],
         sigma_px**2 + FINE_PX**2,
         same * np.outer(shared_px, shared_px) * np.exp(-away_m / ALIKE_M),
+        np.arange(len(line)),
+        np.full(len(line), LOSS),
     )
+
+
+def _of_clicks(
+    solved: Solution, clicks: ClickedPoints, court: Court, weights: Mapping[str, Any]
+) -> _Observations:
+    """Return the clicked points about the solution's network; points move with their lines."""
+    every = np.stack([clicks[camera.name] for camera in solved.cameras])
+    image, point = np.nonzero(np.isfinite(every).all(axis=2))
+    n, n_images = len(image), len(every)
+    network = selection.of_cameras(solved.cameras)
+    residual, rows, by_point = _linearised(network, court.xyz[point], image, every[image, point])
+    by_line, sigma_m = of_points(court)
+    own = np.zeros((n, 2, *sigma_m.shape))
+    own[np.arange(n), :, point] = by_point * sigma_m[point][:, None]
+    size = np.array([joint_adjustment.click_sigma(1.0, camera.size) for camera in solved.cameras])
+    bias = np.zeros((n, 2, n_images, 2))
+    bias[np.arange(n), :, image] = np.eye(2) * size[image, None, None]
+    bias *= weights["click_bias_px"] * np.sqrt(solved.factors.bias)
+    shared = [own.reshape(2 * n, sigma_m.size), bias.reshape(2 * n, 2 * n_images)]
+    shared_px = np.concatenate(shared, axis=1)
+    scatter = (weights["click_sigma_px"] * size[:, None]) ** 2 * solved.factors.clicks
+    return _Observations(
+        network,
+        residual.ravel(),
+        rows.reshape(2 * n, network.n_columns),
+        np.einsum("nrk,nkl->nrl", by_point, by_line[point]).reshape(2 * n, by_line.shape[2]),
+        scatter[image].ravel(),
+        shared_px @ shared_px.T,
+        np.repeat(np.arange(n), 2),
+        np.full(2 * n, weights["click_loss"]),
+    )
+
+
+def of_points(court: Court) -> tuple[NDArray, NDArray]:
+    """Return how named points move with each line (P, 3, L), and their own sigma (P, 3), m.
+
+    Across a line on which it lies a point moves with it; otherwise it is as far off as a line.
+    """
+    moved = np.zeros((len(court.points), 3, len(court.lines_m)))
+    sigma = np.repeat(court.sigma_m[:, None], 3, axis=1)
+    sigma[court.xyz[:, 2] == 0, :2] = _painting_m(court)
+    for point, lines in enumerate(line_edges.named(court)):
+        for edge in lines:
+            moved[point, edge.axis, edge.line] = 1.0
+            sigma[point, edge.axis] = ON_LINE_M
+    return moved, sigma

@@ -97,7 +97,7 @@ def guess(
         raise fault or InputError("people: expected cameras, found none")
     _, cameras, tracks = max(tried, key=lambda one: one[0])
     joints = [_placed(cameras, takes, track) for track in tracks]
-    bodies = [_body(take, xyz) for (take, _), xyz in zip(tracks, joints, strict=True)]
+    bodies = [_body(track, xyz) for track, xyz in zip(tracks, joints, strict=True)]
     scale = unit.find(cameras, bodies, heights_m, known).metres
     cameras = [_scaled(camera, scale) for camera in cameras]
     world = world_frame.floor(scale * np.concatenate(joints), cameras)
@@ -174,27 +174,29 @@ def _explained(cameras, takes: Sequence[Take], tracks: Sequence[Track]) -> float
     return total
 
 
-def _body(take: int, xyz: NDArray, time_s: NDArray | None = None) -> unit.Body:
-    """Return the body of joints (T, J, 3) at times (T,); without times, of frames."""
+def _body(track: Track, xyz: NDArray, time_s: NDArray | None = None) -> unit.Body:
+    """Return the body of a track's joints (T, J, 3) at times (T,); without times, of frames."""
     seen = np.flatnonzero(np.isfinite(xyz).all(axis=-1).any(axis=-1))
     times = np.arange(len(xyz)) if time_s is None else time_s
     first, last = (float(times[at]) for at in seen[[0, -1]]) if len(seen) else (0.0, 0.0)
-    return unit.Body(take, unit.length(xyz), len(seen), first, last)
+    take, rows = track
+    tracklets = frozenset((camera, row) for camera, own in enumerate(rows) for row in own)
+    return unit.Body(take, unit.length(xyz), len(seen), first, last, tracklets)
 
 
 def adjust(
     start: Sequence[Camera],
     lenses: Mapping[str, Camera],
     seen: Seen,
-    takes_of: Sequence[int],
+    tracks: Sequence[Track],
     heights_m: Sequence[Sequence[float | None]],
     limits: Limits,
     known: Sequence[unit.KnownLength] = (),
 ) -> Found:
     """Adjust cameras, initially in metres, with the people that they see.
 
-    `takes_of` has the take of each track of `seen`. Raises `InputError` if there are too few
-    people, if they stay in one place, or if a camera disagrees with the others on held-out joints.
+    `tracks` are those of `seen`. Raises `InputError` if there are too few people, if they stay in
+    one place, or if a camera disagrees with the others on held-out joints.
     """
     seen = seen.thinned(MOST_ROWS)
     views.check(start, seen, limits.score)
@@ -203,7 +205,7 @@ def adjust(
         fitted = _refined(cameras, lenses, seen, limits)
         joints = _joints(fitted.cameras, seen, limits)
         shape = world_frame.of_shape(fitted.cameras, fitted.covariance, _places(joints), 0.0)
-        bodies = _bodies(joints, seen, takes_of)
+        bodies = _bodies(joints, seen, tracks)
         scale = unit.find(fitted.cameras, bodies, heights_m, known, shape)
         cameras = [_scaled(camera, scale.metres) for camera in fitted.cameras]
     joints = _joints(cameras, seen, limits)
@@ -264,9 +266,9 @@ def _places(joints: NDArray) -> NDArray:
     return places[np.linspace(0, len(places) - 1, MOST_PLACES).astype(int)]
 
 
-def _bodies(joints: NDArray, seen: Seen, takes_of: Sequence[int]) -> list[unit.Body]:
+def _bodies(joints: NDArray, seen: Seen, tracks: Sequence[Track]) -> list[unit.Body]:
     each = [(track, seen.track == track) for track in np.unique(seen.track)]
-    return [_body(takes_of[track], joints[own], seen.time_s[own]) for track, own in each]
+    return [_body(tracks[track], joints[own], seen.time_s[own]) for track, own in each]
 
 
 def check(cameras: Sequence[Camera], score: Score) -> None:

@@ -258,7 +258,7 @@ VIEWS = {
         "device-solvers",
         {
             "session, suit: solver": "{row}",
-            **{words: f"{{{name}_deg}}, {{{name}_deg_worst}}" for words, name in ANGLES.items()},
+            **{words: f"{{{name}_deg}}" for words, name in ANGLES.items()},
             "joints, median / 95 %, mm": "{median_mm} / {p95_mm}",
             "takes": "{median_mm.n}",
         },
