@@ -113,6 +113,7 @@ def _draw_angles(
                 face = fill or look.colour
                 axis.plot(x, y, look.marker, color=look.colour, markerfacecolor=face, markersize=4)
         axis.set_title(angle.replace("_", " "))
+        axis.margins(x=0.1)
         axis.set_xlim(left=0)
         axis.grid(axis="x")
     axes[0].set_ylim(len(looks) - 0.5, -0.5)
@@ -120,8 +121,7 @@ def _draw_angles(
     for tick, look in zip(axes[0].get_yticklabels(), looks.values(), strict=True):
         tick.set_color(look.colour)
     axes[len(ANGLES) // 2].set_xlabel(
-        "root mean square error of joint angles (degrees): hollow: of the source; filled: after "
-        "the fit of the skeletal model"
+        "root mean square error of joint angles (degrees): source (hollow), skeletal model (filled)"
     )
 
 
