@@ -1,15 +1,15 @@
-"""Joint angles of devices, as they are and by the skeletal model, against the truth.
+"""Errors of the joint angles of devices, before and after the fit of the skeletal model.
 
     python benchmarks/device_angles.py RESULTS [--sessions NAME ...] [--sigma]
 
-RESULTS hold a default run, or takes of these sessions with `devices/` and `sync/`. Each source of
-each virtual take is fitted by the script of the rule fit_source, and compared as
-evaluate_source_angles does. Suits are also fitted together with the depth camera's joints, without
-a correction of their own, to see if the model's fit could replace that. It writes
-docs/numbers/device_angles.csv, a source of docs/make_tables.py, of the default sessions.
+RESULTS are those of a default run, or takes of these sessions with `devices/` and `sync/`. The
+script of the rule fit_source fits the model to each source of each virtual take; the comparison is
+that of evaluate_source_angles. Suits are also fitted together with the joints of the depth camera,
+without their own correction, to test if this fit could replace the correction. For the default
+sessions it writes docs/numbers/device_angles.csv, which docs/make_tables.py reads.
 
-`--sigma` prints the errors of joints per axis, after a turn about the vertical and a shift of each
-frame: of session single-dev, those of `fit_source.sigma_m`.
+`--sigma` prints the errors of joints per axis, after a rotation about the vertical and a shift of
+each frame. Those of session single-dev are the values of `fit_source.sigma_m`.
 """
 
 import argparse
@@ -31,7 +31,7 @@ import fit_source
 
 from courtside.body_model import source, take
 from courtside.evaluation import joints, kinematics
-from courtside.evaluation.numbers import stated
+from courtside.evaluation.numbers import stated, views
 from courtside.evaluation.numbers.players import NETWORK as MODEL
 from courtside.exports import device
 from courtside.geometry import interpolation, rotations, similarity
@@ -40,14 +40,14 @@ from courtside.records.devices import clocks, device_motion
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.records.truth import take_truth
 from courtside.study.configuration import yaml_files
+from courtside.study.jobs.devices import OF_KIND
 
 SESSIONS, DEVELOPMENT = ("single-view",), "single-dev"
-SKELETONS = {"inertial": "mocopi27", "nuitrack": "nuitrack19"}
 LIMBS = list(skeleton.JOINTS)
-ANGLES = ("knee_flexion", "hip_flexion", "elbow_flexion", "shoulder_elevation", "trunk_lean")
+ANGLES = list(views.ANGLES.values())
 STAGES = ("source", "model")
 UP, SUIT_UP = np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])
-SLOW_S = 0.5  # of the shift between a suit and a depth camera
+SLOW_S = 0.5  # standard deviation of the filter of the shift between suit and depth camera
 COMMAND = "`python benchmarks/device_angles.py results`"
 
 
@@ -57,7 +57,7 @@ def parameters():
 
 
 def read(results, session, name):
-    """Return of a take: truth, person, and by source its file, motion, clock."""
+    """Return the truth and the person of a take, and the file, motion and clock of each source."""
     base = results / session / "takes" / name
     truth = take_truth.read(results / "virtual" / session / "takes" / name / "truth.npz")
     _, known = clocks.read(base / "sync" / f"devices.{MODEL}.json")
@@ -76,16 +76,16 @@ def heights(session):
 
 
 def kind(motion):
-    """Return the entry of `fit_source.sigma_m` of a source."""
+    """Return the key of `fit_source.sigma_m` for a source."""
     if motion.source.endswith("-corrected"):
         return "corrected"
     return {"rgbd": "depth"}.get(motion.kind, motion.kind)
 
 
 def fitted(path, motion, subject, folder):
-    """Fit a source by the rule's script; return both stages and processor seconds.
+    """Fit the model with the rule's script; return both stages and the processor time, s.
 
-    `subject` holds the person's name and height.
+    `subject` has the person's name and height.
     """
     known = parameters()
     sigma_m = known["fit_source"]["sigma_m"][kind(motion)]
@@ -93,7 +93,7 @@ def fitted(path, motion, subject, folder):
     before = time.process_time()
     fit_source.main(
         path,
-        ROOT / "config" / "skeletons" / f"{SKELETONS.get(motion.kind, 'blazepose33')}.yaml",
+        ROOT / "config" / "skeletons" / f"{OF_KIND.get(motion.kind, 'blazepose33')}.yaml",
         *files,
         person=subject[0],
         height_m=subject[1],
@@ -107,10 +107,10 @@ def fitted(path, motion, subject, folder):
 
 
 def together(depth, suit, person):
-    """Return the model's joints fitted to a depth camera's and a suit's joints at once.
+    """Return the model's joints fitted to the joints of a depth camera and a suit together.
 
-    Of each: motion, clock. The suit is turned to the depth camera by its drifting heading, and
-    shifted to it slowly.
+    `depth` and `suit` have motion and clock. The suit's drift of heading is removed, and it is
+    shifted slowly to the joints of the depth camera.
     """
     (seen, own), (worn, other) = depth, suit
     at_s = own.to_reference(seen.time_s)
@@ -144,9 +144,9 @@ def together(depth, suit, person):
 
 
 def apart(points, clock, truth, turn_any=True):
-    """Return the limb joints less the true ones (T, 12, 3) mm, each frame turned and shifted.
+    """Return the errors of limb joints (T, 12, 3) mm after a rotation and a shift of each frame.
 
-    By any rotation, or by one about the vertical.
+    The rotation is free with `turn_any`, otherwise about the vertical.
     """
     names = points.joints.tolist()
     true = joints.at_times(truth.time_s, truth.xyz, clock.to_reference(points.time_s))[0]
@@ -166,7 +166,7 @@ def apart(points, clock, truth, turn_any=True):
 
 
 def numbers(points, clock, truth, person):
-    """Return the errors of one source and stage."""
+    """Return the errors of joint angles and joints of one source and stage."""
     angles = kinematics.angles_of(points, truth, person, clock).set_index("angle")
     found = {}
     for angle in ANGLES:
@@ -221,7 +221,7 @@ def sigmas(results, session=DEVELOPMENT):
     ).T
 
 
-SOLVERS = {  # what a suit's errors are after: source and stage, of a suit named {}
+SOLVERS = {  # source and stage of each row, for a suit named {}
     "as it is": ("{}", "source"),
     "its own correction": ("{}-corrected", "source"),
     "its own correction, then the model": ("{}-corrected", "model"),
@@ -230,7 +230,7 @@ SOLVERS = {  # what a suit's errors are after: source and stage, of a suit named
 
 
 def rows(table):
-    """Yield the rows of docs/numbers: of reported sessions, then of suits after each solver."""
+    """Yield the rows of docs/numbers: of reported sessions, then of suits by solver."""
     for (session, name), part in table.groupby(["session", "source"], sort=False):
         label, stages = f"`{session}`: `{name}`", dict(list(part.groupby("stage")))
         if session in SESSIONS and len(stages) == 2:

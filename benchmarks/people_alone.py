@@ -1,15 +1,15 @@
-"""Cameras from the people that they film and nothing else, against the truth.
+"""Errors of cameras calibrated from the people that they film, and nothing else.
 
     python benchmarks/people_alone.py RESULTS [--session SESSION] [--takes TAKE ...]
         [--cameras NAME ...]
 
-RESULTS are those of a run that detected poses in the takes of a virtual session. Lenses are not
-known; three cameras film two players, whose heights are stated to the centimetre; or a length on
-the floor is known instead, clicked in every picture. Joints are the
-true ones as true cameras see them, placed by the cameras found. `joints` is their median error
-after the best rigid motion, `shape` after the best similarity, `scale` the length of a true metre,
-`hold` the share of joints within the 90 % ellipsoids that the cameras' covariance states. Accepted
-are views of limb joints that the fit left out. Writes docs/numbers/people_alone.csv.
+RESULTS are those of a run that detected poses in the takes of a virtual session. Lenses are
+unknown. Three cameras film two players, whose heights are stated to the centimetre; in other rows a
+length on the floor is known instead, clicked in every picture. True joints are projected by the
+true cameras and triangulated by the estimated ones. `joints`: median error after the best rigid
+motion. `shape`: the same after the best similarity. `scale`: error of all lengths. `hold`: share of
+the joints inside the 90 % ellipsoids of the cameras' covariance. `accepted`: views of held-out limb
+joints that agree with the others. Writes docs/numbers/people_alone.csv.
 """
 
 import argparse
@@ -30,7 +30,6 @@ from courtside.evaluation.numbers import stated
 from courtside.evaluation.numbers.players import NETWORK as MODEL
 from courtside.geometry import camera as camera_models
 from courtside.geometry import similarity
-from courtside.geometry.similarity import Sim3
 from courtside.geometry.triangulation import triangulate_all
 from courtside.reconstruction import self_calibration
 from courtside.records.keypoints import keypoints
@@ -48,12 +47,11 @@ KNOWN = {
 }
 CLICK = {key: WEIGHTS[key] for key in ("click_sigma_px", "click_bias_px")}
 SEED = 0  # of the clicks
-EVERY = 12  # of the true frames: neighbouring ones say the same
-QUANTILE_90 = 6.251  # of chi-squared with 3 degrees of freedom
+EVERY = 12  # of the true frames: neighbouring ones are nearly equal
 
 
 def timed(results, session, takes, names, cameras):
-    """Return takes as `self_calibration` needs them; clocks by cameras where they are known."""
+    """Return the takes for `self_calibration`, with clocks by cameras if these are known."""
     found = []
     for name, take in takes.items():
         folder = results / session / "takes" / name / "pose2d" / MODEL
@@ -69,12 +67,11 @@ def errors(found, real, xyz):
     cameras, covariance = found.cameras, found.covariance.of_columns()
     exact = np.stack([camera_models.project(camera, xyz) for camera in real])
     placed = triangulate_all(cameras, exact)
-    best = similarity.umeyama(placed, xyz)
-    rigid = Sim3(1.0, best.rotation, xyz.mean(axis=0) - best.rotation @ placed.mean(axis=0))
+    best, rigid = similarity.umeyama(placed, xyz), similarity.rigid(placed, xyz)
     off = rigid.points(placed) - xyz
     spread = point_covariance.point_covariance(selection.of_cameras(cameras), covariance, placed)
     spread = best.rotation @ spread @ best.rotation.T
-    inside = np.einsum("ni,nij,nj->n", off, np.linalg.inv(spread), off) <= QUANTILE_90
+    inside = point_covariance.mahalanobis(off, spread) <= point_covariance.ellipsoid(0.9)
     shape = np.linalg.norm(best.points(placed) - xyz, axis=1)
     return (
         1000 * np.median(np.linalg.norm(off, axis=1)),
@@ -85,7 +82,7 @@ def errors(found, real, xyz):
 
 
 def clicked(real, ends, seed):
-    """Return a known length with clicks as config.yaml states them; outside a picture is none."""
+    """Return a known length with simulated clicks, of the errors in config.yaml."""
     rng, length_m = np.random.default_rng(seed), float(np.linalg.norm(ends[1] - ends[0]))
     xy = np.stack([camera_models.project(camera, ends) for camera in real])
     for camera, px in zip(real, xy, strict=True):
@@ -98,13 +95,13 @@ def clicked(real, ends, seed):
 
 
 def rows(results, name, takes, names):
-    """Yield the rows as docs/make_tables.py reads them."""
+    """Yield the parts of the rows of docs/numbers/people_alone.csv."""
     session = yaml_files.read(ROOT / "config" / "sessions" / f"{name}.yaml")
-    told = {take: session["takes"][take] for take in takes}
+    stated_takes = {take: session["takes"][take] for take in takes}
     everybody = list(session["subjects"])
     heights_m = [
         [session["subjects"][who]["height_m"] for who in take.get("subjects", everybody)]
-        for take in told.values()
+        for take in stated_takes.values()
     ]
     folder = results / "virtual" / name
     real = session_truth.read(folder / "truth.npz").cameras
@@ -112,18 +109,18 @@ def rows(results, name, takes, names):
     names = [camera.name for camera in real]
     true = [take_truth.read(folder / "takes" / take / "truth.npz") for take in takes]
     xyz = np.concatenate([one.xyz[:, ::EVERY, :12].reshape(-1, 3) for one in true])
-    seconds = sum(take["virtual"]["seconds"] for take in told.values())
-    of_takes = partial(timed, results, name, told, names)
+    seconds = sum(take["virtual"]["seconds"] for take in stated_takes.values())
+    of_takes = partial(timed, results, name, stated_takes, names)
     for what, ends in (("heights stated", None), *KNOWN.items()):
         heights = heights_m if ends is None else [[None] * len(one) for one in heights_m]
         known = [] if ends is None else [clicked(real, ends, SEED)]
         found = self_calibration.calibrate(names, {}, of_takes, heights, LIMITS, known)
         joint, shape, scale, inside = errors(found, real, xyz)
         accepted = found.score.accepted_percent()
-        print(names, what, joint, shape, scale, inside, accepted, found.scale, found.doubts)
+        print(names, what, joint, shape, scale, inside, accepted, found.scale, found.warnings)
         row = f"`{name}`: people alone, {len(names)} cameras, {seconds} s, {what}"
-        said = f"joints after a rigid motion {joint:.0f} mm, scale {scale:+.1f} %"
-        yield row, "alone", f"{said}, hold {inside:.0f} %", "mm", 1
+        text = f"joints after a rigid motion {joint:.0f} mm, scale {scale:+.1f} %"
+        yield row, "alone", f"{text}, hold {inside:.0f} %", "mm", 1
         yield row, "alone_shape", f"{shape / 10:.2f}", "cm", 1
         yield row, "alone_accepted", f"{accepted.mean():.1f}", "%", 1
 

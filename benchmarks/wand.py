@@ -1,20 +1,21 @@
-"""Cameras from a wand swung in a virtual hall, against the truth.
+"""Errors of cameras calibrated with a simulated wand in a virtual hall.
 
     python benchmarks/wand.py [--easywand FOLDER] [--seeds 6] [--seconds 40]
 
-A wand of 0.8 m, measured to 0.5 mm, moves over the whole court of `players-b`, up to 2.4 m high.
-Its markers are simulated in the pictures (no pictures are rendered): noise of 0.5 or 1 px, 15 % of
-the time hidden, 2 % on another spot nearby. Lenses are known, or focal length and distortion are
-found. Points of the volume are seen by the true cameras and placed by the cameras found, after the
-rigid motion that brings the wand's own markers to their true places. `volume` is the median over
-the seeds of their root mean square, and its 95 % quantile, cm; `angles` the largest error of a
-camera's direction, median and largest over seeds; `focal` that of a focal length; `hold` the share
-of the points within the 90 % ellipsoids that the covariance states. The row of the ways to
-calibrate has 18 clicked court points, which give the world.
+A wand of 0.8 m, measured to 0.5 mm, moves over the whole court of `players-b`, up to a height of
+2.4 m. Its markers in the pictures are simulated without rendering: noise of 0.5 or 1 px, hidden for
+15 % of the time, 2 % on another spot nearby. Lenses are known, or focal length and distortion are
+estimated. Points of the volume are projected by the true cameras and triangulated by the estimated
+ones, after the rigid motion that moves the wand's markers to their true positions. `volume`: root
+mean square error of these points, median and 95 % quantile over the seeds, cm. `angles`: largest
+error of a camera's direction, median and maximum over the seeds. `focal`: largest error of a focal
+length, median. `hold`: share of the points inside their stated 90 % ellipsoids. The row of the ways
+to calibrate has 18 clicked court points, which define the world frame.
 
-FOLDER has a real wand's `wandpts.csv`, clicked in 50 frames of three cameras, and the cameras'
-nominal lenses in `RGBsetup_profile.txt` (github.com/PeppyHare/EasyWand). Its length is not stated:
-how much it varies says how good cameras are. Writes docs/numbers/wand.csv.
+FOLDER contains `wandpts.csv` of a real wand, clicked in 50 frames of three cameras, and the
+cameras' nominal lenses in `RGBsetup_profile.txt` (github.com/PeppyHare/EasyWand). The length of
+this wand is not stated; its variation measures the quality of the cameras. Writes
+docs/numbers/wand.csv.
 """
 
 import argparse
@@ -54,40 +55,39 @@ MADE = "benchmark", "`python benchmarks/wand.py --easywand FOLDER`"
 
 
 def hall():
-    """Return the true cameras of the session and its preset, by its configuration alone."""
+    """Return the true cameras of the session and its preset, from its configuration."""
     given = yaml_files.read(ROOT / "config" / "sessions" / f"{SESSION}.yaml")["virtual"]
     settings = virtual.Settings(**given | {"size_px": tuple(given["size_px"])})
     return virtual.plan(settings, COURT)[0], presets.PRESETS[given["preset"]]
 
 
 def swung(real, sigma_px, seconds, seed):
-    """Return the wand as stated, the true places of its markers, and what cameras see of them."""
+    """Return the stated wand, the true positions of its markers, and those in the pictures."""
     rng = np.random.default_rng(seed)
     wand = Wand((), np.array([0.0, LENGTH_M]), SIGMA_M)
     true_m = [0.0, LENGTH_M + SIGMA_M * rng.standard_normal()]
-    said = {"rate_hz": RATE_HZ, "rng": rng}
-    xyz = simulated.swing(true_m, LOW, HIGH, seconds=seconds, **said)
-    xy = simulated.film(real, xyz, sigma_px=sigma_px, hidden=HIDDEN, misread=MISREAD, **said)
+    common = {"rate_hz": RATE_HZ, "rng": rng}
+    xyz = simulated.swing(true_m, LOW, HIGH, seconds=seconds, **common)
+    xy = simulated.film(real, xyz, sigma_px=sigma_px, hidden=HIDDEN, misread=MISREAD, **common)
     return wand, xyz, Seen(tuple(one.name for one in real), np.arange(len(xyz), dtype=float), xy)
 
 
 def placed(found, real, xyz):
-    """Return points (N, 3) m that true cameras see, as the cameras found place them."""
+    """Return points (N, 3) m, projected by true cameras and triangulated by the estimated ones."""
     exact = np.stack([camera_models.project(camera, xyz) for camera in real])
     return triangulate_all(found.cameras, exact)
 
 
 def errors(found, real, markers):
-    """Return rms and shape error, cm, angle, degrees, focal error, %, and share that is held, %.
+    """Return rms and shape error, cm, angle, degrees, focal error, %, and coverage, %.
 
-    After the rigid motion of the wand's markers (N, 3) m; None: in the world as it is.
+    They are errors after the rigid motion that fits the wand's markers (N, 3) m; with None, in the
+    world frame.
     """
     grid = quality.volume(COURT)
     rigid = Sim3(1.0, np.eye(3), np.zeros(3))
     if markers is not None:
-        there = placed(found, real, markers)
-        turn = similarity.umeyama(there, markers).rotation
-        rigid = Sim3(1.0, turn, markers.mean(axis=0) - turn @ there.mean(axis=0))
+        rigid = similarity.rigid(placed(found, real, markers), markers)
     xyz = placed(found, real, grid)
     network = selection.of_cameras(found.cameras)
     spread = point_covariance.point_covariance(network, found.covariance, xyz)
@@ -114,7 +114,7 @@ def trial(real, sigma_px, known, seconds, seed, clicks=None):
 
 
 def alone(real, seconds, seeds):
-    """Yield the rows of a wand without a court."""
+    """Yield the rows of a wand without clicked points."""
     for names in (tuple(camera.name for camera in real), THREE):
         chosen = [camera for camera in real if camera.name in names]
         for sigma_px in (0.5, 1.0):
@@ -133,7 +133,7 @@ def alone(real, seconds, seeds):
 
 
 def clicked(real, preset, seconds, seeds):
-    """Return the parts of the row of the ways to calibrate: lenses found, and 18 clicks."""
+    """Return the text of the row of the ways to calibrate: lenses estimated, with 18 clicks."""
     names, found = [camera.name for camera in real], []
     for seed in range(seeds):
         marked = clicking.click_points(
@@ -150,7 +150,7 @@ def clicked(real, preset, seconds, seeds):
 
 
 def easywand(folder):
-    """Yield the rows of a real wand: with the lenses stated, without distortion, and found."""
+    """Yield the rows of a real wand: with stated lenses without distortion, and estimated ones."""
     given = {"length_m": 1.0, "points": folder / "wandpts.csv", "program": "dltdv"}
     profile = np.loadtxt(folder / "RGBsetup_profile.txt")
     names = {f"cam{number:g}": f"cam{number:g}" for number in profile[:, 0]}
@@ -165,15 +165,15 @@ def easywand(folder):
     seen = points.read(given, wand, names, sizes)
     for known, lens in ((lenses, "stated"), ({}, "found")):
         found = calibration.calibrate(wand, seen, sizes, lenses=known)
-        told = wand_quality.summary(found, wand, seen, set(known))
-        varies = 100 * told["length_mm"]["standard_deviation"] / (1000 * wand.length_m)
-        px = "/".join(f"{value:.1f}" for value in told["rms_px"].values())
+        summary = wand_quality.summary(found, wand, seen, set(known))
+        varies = 100 * summary["length_mm"]["standard_deviation"] / (1000 * wand.length_m)
+        px = "/".join(f"{value:.1f}" for value in summary["rms_px"].values())
         row = f"`easywand-3cams`: a wand clicked in {len(seen.frames)} frames, lenses {lens}"
         yield row, f"markers {px} px; its length varies by {varies:.2f} %", len(seen.frames)
 
 
 def rows(seconds, seeds, folder):
-    """Yield the rows as docs/make_tables.py reads them."""
+    """Yield the rows of docs/numbers/wand.csv."""
     for row, printed, n in easywand(folder) if folder else ():
         print(row, printed, flush=True)
         yield ["ways", row, "alone", printed, "px", "easywand-3cams", n, 0]

@@ -130,7 +130,7 @@ def test_a_wand_calibrates_all_cameras(gym):
         assert apart[0] == pytest.approx(apart[1], abs=0.02)
     quality = json.loads((results / "calibration/wand/quality.json").read_text())
     assert quality["sigma_px"] == pytest.approx(0.5, rel=0.1)
-    assert quality["warnings"][0].startswith("wand: the origin is the middle of the wand's ways")
+    assert quality["warnings"][0].startswith("wand: the origin is the middle of the wand's path")
     assert (
         np.diag(covariance.read(results / "calibration/wand/covariance.npz").covariance)[:6] > 0
     ).all()

@@ -17,7 +17,7 @@ def main(paths, cameras_toml, covariance_npz, quality_json, *, given, names):
     cv2.setNumThreads(1)  # of several, sums depend on which ends first
     board = Board.of(given)
     seen = found_in(given, names, board)
-    lenses = known_lenses(given, paths.lens_tomls, names)
+    lenses = file_formats.known_lenses(given.get("lenses"), names, paths.lens_tomls)
     sizes = seen.sizes or {name: lens.size for name, lens in lenses.items()}
     sizes = sizes or {
         name: reader.picture_size(path) for name, path in zip(names, paths.pictures, strict=True)
@@ -43,17 +43,6 @@ def found_in(given, names, board):
         return corners.of_pictures({name: given["images"][name] for name in names}, board)
     videos = {name: given["videos"][name] for name in names}
     return corners.of_videos(videos, board, every_s=given.get("every_s", 0.5))
-
-
-def known_lenses(given, lens_tomls, names):
-    """Return the lenses that are given, by camera: of a file, or from chessboards; none else."""
-    if "lenses" in given:
-        read = file_formats.read(given["lenses"])
-        return {lens.name: lens for lens in file_formats.rename(read, names)}
-    if not lens_tomls:
-        return {}
-    each = zip(names, lens_tomls, strict=True)
-    return {name: cameras.read_toml(path)[0] for name, path in each}
 
 
 if __name__ == "__main__":

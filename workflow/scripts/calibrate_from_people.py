@@ -1,5 +1,6 @@
-"""Calibrate fixed cameras from the people that they film: keypoints, heights -> cameras."""
+"""Calibrate fixed cameras from people alone: keypoints, heights or known lengths -> cameras."""
 
+from courtside.calibration import file_formats
 from courtside.calibration.people import from_nothing, unit
 from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.records import covariance as camera_covariance
@@ -16,9 +17,7 @@ from courtside.synchronisation.cameras import of_take as clocks_of
 def main(
     paths, cameras_toml, covariance_npz, quality_json, *, names, takes, known_lengths, **steps
 ):
-    lenses = {
-        lens.name: lens for path in paths.lens_tomls for lens in camera_models.read_toml(path)
-    }
+    lenses = file_formats.known_lenses(None, {}, paths.lens_tomls)
     filmed = [[keypoints.read_2d(path) for path in take["pose2d"]] for take in takes]
     heights_m, known = [take["heights_m"] for take in takes], []
     if known_lengths:
@@ -27,7 +26,7 @@ def main(
         known = unit.of_clicks(known_lengths, points, xy, **weights)
 
     def timed(cameras):
-        """Return of each take its name, keypoints and clocks, by cameras where they are known."""
+        """Return the name, keypoints and clocks of each take; clocks by cameras if known."""
         return [
             (take["take"], each, clocks_of(each, cameras, **take["timing"], **steps["clock_step"]))
             for take, each in zip(takes, filmed, strict=True)
@@ -38,8 +37,9 @@ def main(
     camera_models.write_toml(cameras_toml, found.cameras, source="people alone")
     camera_covariance.write(covariance_npz, found.covariance)
     report = from_nothing.summary(found, [take["take"] for take in takes])
-    for line in (report["line"], *report["warnings"]):
-        log.logger.info("%s", line)
+    log.logger.info("%s", report["line"])
+    for warning in report["warnings"]:
+        log.logger.warning("%s", warning)
     write_json(quality_json, report)
 
 

@@ -1,4 +1,4 @@
-"""Calibrate all fixed cameras by a wand: its markers in the pictures -> cameras, covariance."""
+"""Calibrate all fixed cameras with a wand: markers in the pictures -> cameras, covariance."""
 
 from functools import partial
 
@@ -18,9 +18,9 @@ from courtside.video import reader
 
 
 def main(paths, cameras_toml, covariance_npz, quality_json, *, given, names, placed, weights):
-    cv2.setNumThreads(1)  # of several, sums depend on which ends first
+    cv2.setNumThreads(1)  # with several, the order of sums changes
     wand = points.Wand.of(given)
-    lenses = known_lenses(given, paths.lens_tomls, names)
+    lenses = file_formats.known_lenses(given.get("lenses"), names, paths.lens_tomls)
     sizes = {name: lens.size for name, lens in lenses.items()}
     for name, path in zip(names, paths.pictures, strict=bool(paths.pictures)):
         size = reader.picture_size(path)
@@ -30,8 +30,8 @@ def main(paths, cameras_toml, covariance_npz, quality_json, *, given, names, pla
     seen = points.read(given, wand, names, sizes)
     court, clicks = None, None
     if paths.clicks_csv:
-        known = paths.clicks_csv, paths.court_yaml, list(names), placed
-        court, marked = place_checks.known_points(*known)
+        files = paths.clicks_csv, paths.court_yaml
+        court, marked = place_checks.read(*files, list(names), placed)
         clicks = partial(clicked.court_clicks, court, marked, **weights)
     floor = calibration.Floor.of(given)
     found = calibration.calibrate(wand, seen, sizes, lenses=lenses, floor=floor, clicks=clicks)
@@ -44,14 +44,6 @@ def main(paths, cameras_toml, covariance_npz, quality_json, *, given, names, pla
     cameras.write_toml(cameras_toml, found.cameras, source=f"wand, {len(seen.frames)} frames")
     camera_covariance.write(covariance_npz, covariance)
     write_json(quality_json, report)
-
-
-def known_lenses(given, lens_tomls, names):
-    """Return the lenses that are known, by camera: of a file, and from chessboards."""
-    if "lenses" in given:
-        read = file_formats.read(given["lenses"])
-        return {lens.name: lens for lens in file_formats.rename(read, names)}
-    return {lens.name: lens for path in lens_tomls for lens in cameras.read_toml(path)}
 
 
 if __name__ == "__main__":

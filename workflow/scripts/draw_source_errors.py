@@ -1,4 +1,4 @@
-"""Draw the errors of all sources and what they are made of: three tables -> figure, CSV."""
+"""Draw the errors of all sources, of joint angles, and parts of errors: tables -> figure, CSV."""
 
 import pandas as pd
 

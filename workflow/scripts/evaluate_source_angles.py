@@ -1,4 +1,4 @@
-"""Evaluate joint angles of a take's sources, as they are and by the model, against its truth."""
+"""Compare joint angles of a take's sources with the truth, before and after the skeletal model."""
 
 import pandas as pd
 

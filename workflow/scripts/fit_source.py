@@ -1,4 +1,4 @@
-"""Fit the skeletal model to a source of a take: a device's motion -> joints, motion, angles."""
+"""Fit the skeletal model to a source of a take: device motion -> joints, motion, angles."""
 
 from courtside.body_model import source, take
 from courtside.exports import device as device_export

@@ -25,7 +25,7 @@ def main(
     calibration,
     step,
 ):
-    court, marked = place_checks.known_points(clicks_csv, court_yaml, cameras, placed)
+    court, marked = place_checks.read(clicks_csv, court_yaml, cameras, placed)
     sizes = {name: reader.picture_size(path) for name, path in zip(cameras, pictures, strict=True)}
     found = points_alone.calibrate(court, marked, sizes, **step)
     for warning in found.warnings:

@@ -405,6 +405,16 @@ def named(*names):
     return [cameras.Camera(name, (1920, 1080), K, DIST, pose) for name in names]
 
 
+def test_known_lenses_are_those_of_the_file_otherwise_of_the_study(tmp_path):
+    made = [cameras.plain(name, (1920, 1080), 1.0) for name in ("Cam 1", "left")]
+    for camera in made:
+        cameras.write_toml(tmp_path / f"{camera.name}.toml", [camera], source="test")
+    tomls = [tmp_path / "left.toml"]
+    of_file = file_formats.known_lenses(tmp_path / "Cam 1.toml", {"side": "Cam 1"}, tomls)
+    assert list(of_file) == ["side"] and of_file["side"].K[0, 0] == 1920.0
+    assert list(file_formats.known_lenses(None, {}, tomls)) == ["left"]
+
+
 def test_renaming_picks_and_orders():
     picked = file_formats.rename(named("Cam 1", "Cam 2", "Cam 3"), {"left": "Cam 3", "c": "Cam 1"})
     assert [camera.name for camera in picked] == ["left", "c"]

@@ -356,3 +356,9 @@ def test_two_cameras_of_one_name_are_refused(tmp_path):
 def test_a_missing_file_is_named(tmp_path):
     with pytest.raises(InputError, match=r"none\.toml"):
         cameras.read_toml(tmp_path / "none.toml")
+
+
+def test_a_plain_camera_looks_along_z_through_the_centre_of_its_picture():
+    camera = cameras.plain("left", (1920, 1080), 1.2)
+    assert camera.K[0, 0] == camera.K[1, 1] == pytest.approx(2304.0)
+    np.testing.assert_allclose(cameras.project(camera, [0.0, 0.0, 2.0]), [959.5, 539.5])

@@ -57,3 +57,13 @@ def test_a_line_is_where_the_ray_of_a_pixel_goes():
     along = centre + np.linspace(0.7, 1.3, 5)[:, None] * (XYZ[0] - centre)
     xy = epipolar.straight_px(CAMERAS[1], scene.opencv_projection(CAMERAS[1], along))
     np.testing.assert_allclose(xy @ line[:2] + line[2], 0, atol=1e-6)
+
+
+def test_rays_meet_at_the_angle_between_the_directions_to_the_cameras():
+    a, b = CAMERAS[0], CAMERAS[1]
+    rotation, _ = epipolar.relative_pose(a, b)
+    xy = [epipolar.straight_px(c, scene.opencv_projection(c, XYZ)) / epipolar.focal_px(c)
+          for c in (a, b)]  # fmt: skip
+    one, other = (rotations.unit(XYZ - camera.centre_in_world) for camera in (a, b))
+    expected = np.sin(np.arccos((one * other).sum(axis=1)))
+    np.testing.assert_allclose(epipolar.ray_sines(rotation, *xy), expected, atol=1e-4)

@@ -40,6 +40,15 @@ def test_a_camera_shows_the_same_picture_in_both_frames():
     np.testing.assert_allclose(rotation @ rotation.T, np.eye(3), atol=1e-12)
 
 
+def test_a_rigid_motion_keeps_lengths():
+    xyz = points(20)
+    motion = similarity.rigid(xyz, TRUE.points(xyz))
+    assert motion.scale == 1.0
+    np.testing.assert_allclose(motion.rotation, TRUE.rotation, atol=1e-9)
+    middle = TRUE.points(xyz).mean(axis=0)
+    np.testing.assert_allclose(motion.points(xyz.mean(axis=0)), middle, atol=1e-9)
+
+
 def test_the_rotation_is_scipys_and_the_fit_is_the_least_squares_one():
     rng = np.random.default_rng(0)
     x_in_a, weight = points(10), rng.uniform(0.2, 3, 10)

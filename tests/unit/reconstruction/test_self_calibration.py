@@ -74,7 +74,7 @@ def test_cameras_are_guessed_from_a_take():
     found = self_calibration.guess(NAMES, lenses, [take], [[1.6, 1.8]])
     assert [camera.name for camera in found.cameras] == NAMES
     assert len(found.tracks) == 2
-    with pytest.raises(InputError, match="camera c2: expected a take that it films, found none"):
+    with pytest.raises(InputError, match="camera c2: expected a take with its video, found none"):
         self_calibration.guess(NAMES, lenses, [filmed()], [[1.6, 1.8]])
 
 

@@ -5,6 +5,7 @@ import pytest
 
 from courtside.calibration.court import place_checks
 from courtside.records.cameras.placed_points import PlacedPoints
+from courtside.study.errors import InputError
 
 # Corners and crossings of a hall with two courts.
 PLACES = np.array(
@@ -32,6 +33,23 @@ def placed(moved, cameras=("a", "b", "c"), chosen=lambda at: slice(None)):
     for camera, place in rows:
         clicks[camera][names.index(str(np.round(place, 3).tolist()))] = [1, 2]
     return PlacedPoints(tuple(names), np.array(xyz), clicks)
+
+
+def test_points_with_coordinates_are_read_as_a_court_unless_a_camera_s_are_shifted(tmp_path):
+    def read(moved):
+        rows = ["camera,x_px,y_px,x_m,y_m,z_m"]
+        for camera in "abc":
+            places = PLACES + np.asarray(moved.get(camera, 0.0))
+            rows += [f"{camera},{at},2,{x},{y},{z}" for at, (x, y, z) in enumerate(places)]
+        path = tmp_path / "points.csv"
+        path.write_text("\n".join([*rows, ""]))
+        return place_checks.read(path, None, ["a", "b", "c"], placed=True)
+
+    court, clicks = read({})
+    np.testing.assert_allclose(court.xyz, PLACES)
+    assert clicks["b"][3].tolist() == [3, 2]
+    with pytest.raises(InputError, match=r"points.csv: camera b: expected its 20 points"):
+        read({"b": (0, -0.5, 0)})
 
 
 def test_right_places_are_left_alone():

@@ -10,7 +10,7 @@ from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.held_out import Score
 from courtside.calibration.people.views import Seen
 from courtside.geometry import camera as cameras
-from courtside.geometry.similarity import Sim3, umeyama
+from courtside.geometry import similarity
 from courtside.geometry.triangulation import triangulate_all
 from courtside.study.errors import InputError
 from fixtures.cameras import corner_cameras
@@ -45,21 +45,20 @@ def test_cameras_with_unknown_lenses_are_found_from_two_persons_and_their_height
     )
     xyz = WALK[:, ::4].reshape(-1, 3)
     placed = triangulate_all(found.cameras, np.stack([cameras.project(c, xyz) for c in TRUE]))
-    best = umeyama(placed, xyz)
-    assert best.scale == pytest.approx(1, abs=0.01)
-    rigid = Sim3(1.0, best.rotation, xyz.mean(axis=0) - best.rotation @ placed.mean(axis=0))
+    assert similarity.umeyama(placed, xyz).scale == pytest.approx(1, abs=0.01)
+    rigid = similarity.rigid(placed, xyz)
     off = rigid.points(placed) - xyz
     assert np.median(np.linalg.norm(off, axis=1)) < 0.02
     spread = point_covariance.point_covariance(
         selection.of_cameras(found.cameras), found.covariance.of_columns(), placed
     )
-    spread = best.rotation @ spread @ best.rotation.T
+    spread = rigid.rotation @ spread @ rigid.rotation.T
     square = np.einsum("ni,nij,nj->n", off, np.linalg.inv(spread), off)
     assert 0.2 < square.mean() < 9  # 3 over many draws; all joints here err together
     assert np.abs(placed[:, 2] - xyz[:, 2]).max() < 0.06
-    said = from_nothing.summary(found, ["walk"])
-    assert min(said["accepted_percent"].values()) > 95
-    assert said["line"].startswith("people alone: joints that the fit left out disagree by ")
+    summary = from_nothing.summary(found, ["walk"])
+    assert min(summary["accepted_percent"].values()) > 95
+    assert summary["line"].startswith("people alone: views of held-out joints disagree by ")
 
 
 def test_a_lens_of_a_board_is_not_guessed():
@@ -77,7 +76,7 @@ def test_a_person_whom_one_camera_does_not_see_is_not_given_up():
 
 def test_a_person_who_stands_still_tells_nothing():
     take = tracks_made.take(TRUE, tracks_made.persons(still=True)[:1])
-    with pytest.raises(InputError, match="expected somebody who moves by"):
+    with pytest.raises(InputError, match="expected a person who moves by"):
         guessed(take, [[1.7]])
 
 

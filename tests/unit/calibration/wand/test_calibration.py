@@ -1,4 +1,4 @@
-"""Cameras from a made wand: against the true ones, their stated errors, and bad input."""
+"""Cameras from a simulated wand: comparison with the truth, stated errors, bad input."""
 
 from dataclasses import replace
 from functools import partial
@@ -12,7 +12,6 @@ from courtside.calibration.wand import calibration
 from courtside.calibration.wand.calibration import Floor
 from courtside.geometry import camera as cameras
 from courtside.geometry import similarity
-from courtside.geometry.similarity import Sim3
 from courtside.geometry.triangulation import triangulate_all
 from courtside.study.errors import InputError
 from fixtures.cameras.wands_made import (
@@ -38,12 +37,11 @@ def errors(found, markers):
     """Return errors (N, 3) m at `PLACES`, after the rigid motion that fits the wand's markers."""
     exact = np.stack([cameras.project(camera, markers) for camera in RIG])
     placed = triangulate_all(found.cameras, exact)
-    best = similarity.umeyama(placed, markers)
-    rigid = Sim3(1.0, best.rotation, markers.mean(axis=0) - best.rotation @ placed.mean(axis=0))
+    rigid = similarity.rigid(placed, markers)
     there = triangulate_all(found.cameras, np.stack([cameras.project(c, PLACES) for c in RIG]))
     network = selection.of_cameras(found.cameras)
     spread = point_covariance.point_covariance(network, found.covariance, there)
-    return rigid.points(there) - PLACES, best.rotation @ spread @ best.rotation.T
+    return rigid.points(there) - PLACES, rigid.rotation @ spread @ rigid.rotation.T
 
 
 @pytest.mark.parametrize(
@@ -96,10 +94,14 @@ def test_a_wand_on_the_floor_gives_the_floor():
         x, y, z = true.centre_in_world - [1.0, 0.5, 0.0]
         np.testing.assert_allclose(camera.centre_in_world, [y, -x, z], atol=0.03)
     assert found.stated
-    with pytest.raises(InputError, match=r"wand.floor: expected frames of .* found 999; name"):
+    with pytest.raises(InputError, match=r"wand.floor: expected frames of .* found 999; list"):
         calibrate(seen(xyz), lenses=LENSES, floor=Floor((10.0, 999.0)))
-    with pytest.raises(InputError, match=r"wand.floor: expected two frames or more"):
+    with pytest.raises(InputError, match=r"wand.floor: expected two frames or more .* on one line"):
         calibrate(seen(xyz), lenses=LENSES, floor=Floor((10.0,)))
+    hidden = seen(xyz)
+    hidden.xy[:, 10, 1] = np.nan
+    with pytest.raises(InputError, match=r"wand.floor: expected a first frame .* list another fr"):
+        calibrate(hidden, lenses=LENSES, floor=floor)
 
 
 def test_without_a_floor_the_frame_is_the_cameras_own():
@@ -126,11 +128,11 @@ def test_clicked_points_give_the_world():
     assert np.mean(square < point_covariance.ellipsoid(0.9)) > 0.7
 
 
-def test_markers_whose_y_runs_up_are_told_by_clicked_points():
+def test_clicked_points_show_that_y_of_the_markers_runs_up():
     xyz = swung()
     upside = seen(xyz)
     upside.xy[..., 1] = 1080 - upside.xy[..., 1]
-    with pytest.raises(InputError, match=r"mirror image: y of the wand's .* `wand.program`"):
+    with pytest.raises(InputError, match=r"their mirror image: y of the wand's .*; correct `wand"):
         calibrate(upside, clicks=floor_points())
 
 
@@ -144,9 +146,9 @@ def test_bad_input_is_one_line():
     xyz = swung()
     good = seen(xyz)
     still = np.repeat(xyz[:1], len(xyz), axis=0)
-    refused(r"wand: expected ways of 0.5 of its length or more in a picture", seen(still))
+    refused(r"wand: expected a path of 0.5 times its length or more in a picture", seen(still))
     refused(
-        r"expected 20 frames or more in which one of each sees two",
+        r"expected 20 frames or more in which a camera of each group sees two",
         replace(good, frames=good.frames[:12], xy=good.xy[:, :12]),
     )
     apart = good.xy.copy()
@@ -169,7 +171,11 @@ def test_bad_input_is_one_line():
 def test_a_wand_that_stays_in_a_plane_or_on_a_line_is_refused():
     xyz = swung()
     xyz[..., 2] = 1.0
-    refused(r"wand: expected ways in all directions, found them in a plane", seen(xyz), lenses={})
+    refused(
+        r"wand: expected movement in all directions, found positions in a plane",
+        seen(xyz),
+        lenses={},
+    )
     middle = xyz.mean(axis=1, keepdims=True)
     line = middle * [1, 0, 1] + (swung() - swung().mean(axis=1, keepdims=True)) * 0.1
     refused(r"wand: expected .*", seen(line, sigma_px=0.1))

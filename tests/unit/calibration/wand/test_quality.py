@@ -1,4 +1,4 @@
-"""What is said of cameras from a wand."""
+"""Quality of cameras from a wand: numbers and warnings."""
 
 from dataclasses import replace
 
@@ -10,13 +10,13 @@ from courtside.calibration.wand.calibration import Floor
 from fixtures.cameras.wands_made import LENSES, SIZES, WAND, floor_points, seen, swung
 
 
-def said(found, lenses=LENSES, wand=WAND, **more):
+def summary(found, lenses=LENSES, wand=WAND, **more):
     solved = calibration.calibrate(wand, found, SIZES, lenses=lenses, **more)
     return quality.summary(solved, wand, found, set(lenses))
 
 
 def test_numbers_by_camera():
-    report = said(seen(swung(), misread=0.05))
+    report = summary(seen(swung(), misread=0.05))
     assert report["sigma_px"] == pytest.approx(0.5, rel=0.1)
     assert set(report["n_frames"]) == set(LENSES)
     assert "f_px" not in report
@@ -26,29 +26,29 @@ def test_numbers_by_camera():
     assert report["length_mm"]["n"] > 100
     assert abs(report["length_mm"]["mean"]) < 0.3
     (world,) = report["warnings"]
-    assert world.startswith("wand: the origin is the middle of the wand's ways")
+    assert world.startswith("wand: the origin is the middle of the wand's path")
 
 
-def test_a_camera_that_films_late_is_told():
+def test_a_delayed_camera_has_a_warning():
     xyz = swung(seconds=60)
     later = 0.93 * xyz[:-1] + 0.07 * xyz[1:]  # 0.014 s
     found, late = seen(xyz[:-1], seed=1), seen(later, seed=2)
     found.xy[2] = late.xy[2]
-    warnings = said(found)["warnings"]
-    (told,) = [line for line in warnings if line.startswith("camera c2")]
-    assert "frames or more late, as the markers' ways say" in told
+    warnings = summary(found)["warnings"]
+    (line,) = [line for line in warnings if line.startswith("camera c2")]
+    assert "frames or more late by the movement of the markers" in line
 
 
-def test_a_wand_of_another_length_is_told_by_the_floor_s_points():
+def test_a_wand_of_another_length_has_a_warning_by_clicked_points():
     shorter = replace(WAND, along_m=0.98 * WAND.along_m, sigma_m=1e-3)
-    told = said(seen(swung()), wand=shorter, clicks=floor_points())["warnings"]
-    assert any("clicked points say that it is" in line for line in told)
+    warnings = summary(seen(swung()), wand=shorter, clicks=floor_points())["warnings"]
+    assert any("by the clicked points; measure it" in line for line in warnings)
 
 
-def test_ways_in_the_middle_of_a_picture_are_told_where_the_lens_is_not_known():
+def test_a_path_in_the_middle_of_the_picture_has_a_warning_if_the_lens_is_unknown():
     xyz = swung(low=(-0.7, -0.7, 0.6), high=(0.7, 0.7, 1.7))
     xyz[3] = [[0.3, 0, 0], [0.3, 0.5, 0]]
     xyz[4] = [[0, 0, 0], [0.5, 0, 0]]
     lenses = {name: lens for name, lens in LENSES.items() if name != "c2"}
-    warnings = said(seen(xyz, sigma_px=0.2), lenses, floor=Floor((3.0, 4.0)))["warnings"]
-    assert all(line.startswith("camera c2: the wand's ways fill") for line in warnings)
+    warnings = summary(seen(xyz, sigma_px=0.2), lenses, floor=Floor((3.0, 4.0)))["warnings"]
+    assert all(line.startswith("camera c2: the wand's path extends over") for line in warnings)

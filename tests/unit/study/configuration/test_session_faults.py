@@ -164,15 +164,15 @@ def test_good_sessions_have_no_fault(root, content):
         ),
         (
             RECORDED | {"static_points": "p.csv"},
-            ["static_points: expected a calibration file that they check, or `known_lengths`"],
+            ["static_points: expected `calibration` (a file that they check) or `known_lengths`"],
         ),
         (
             without(PEOPLE, "override") | OVERRIDDEN | LENGTHS,
-            ["known_lengths: expected `static_points` with their ends and the calibration `peop"],
+            ["known_lengths: expected `static_points` with their ends, and `people` in overri"],
         ),
         (
             PEOPLE | without(LENGTHS, "static_points"),
-            ["known_lengths: expected `static_points` with their ends and the calibration `peop"],
+            ["known_lengths: expected `static_points` with their ends, and `people` in overri"],
         ),
         (
             RECORDED | OVERRIDDEN | {"static_points": "q.csv"},
@@ -216,11 +216,11 @@ def test_good_sessions_have_no_fault(root, content):
         ),
         (
             SWUNG | {"wand": WAND | {"program": "dltdv", "cameras": ["b"]}},
-            ["wand.cameras: expected every camera of the session once, found b"],
+            ["wand.cameras: expected each camera of the session once, found b"],
         ),
         (
             SWUNG | {"wand": WAND | {"cameras": ["b", "a"]}},
-            ["wand.cameras: expected `program` beside it"],
+            ["wand.cameras: expected `program`, found none"],
         ),
         (
             SWUNG | {"wand": WAND | {"markers": ["x", "y", "z"]}},

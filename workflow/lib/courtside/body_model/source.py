@@ -1,4 +1,4 @@
-"""The skeleton of a device as what the model is fitted to: even times, errors by joint."""
+"""The record of a device for the fit of the skeletal model: uniform times, errors by joint."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -10,16 +10,16 @@ from courtside.geometry import interpolation
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints3D
 
-EVEN_S = 5e-5  # ASSUME: harmless; of a time from its even one
-LONGEST_STEPS = 2.5  # between frames that are interpolated: at most one is missing
+EVEN_S = 5e-5  # ASSUME: a deviation from uniform times that has no effect
+LONGEST_STEPS = 2.5  # longest gap that is interpolated, in steps: one missing frame
 
 
 def observed(points: Keypoints3D, sigma_m: Mapping[str, float]) -> Keypoints3D:
-    """Return the joints that the model has, at even times, with their errors stated.
+    """Return the joints of the model at uniform times, with stated errors.
 
-    `points` are of one device, their errors unknown. `sigma_m` are standard deviations per axis by
-    limb joint without its side. All of it counts as noise: what a device's joints have in common
-    over frames is not told apart. Errors of other joints stay unknown.
+    `points` are of one device, without errors. `sigma_m` are standard deviations per axis by limb
+    joint without its side, `knee` for both knees. The whole error is taken as noise, because errors
+    that are common to many frames cannot be separated. Errors of other joints stay unknown.
     """
     points = even(points)
     on = [at for at, joint in enumerate(points.joints.tolist()) if segments.segment_of(joint)]
@@ -36,10 +36,10 @@ def observed(points: Keypoints3D, sigma_m: Mapping[str, float]) -> Keypoints3D:
 
 
 def even(points: Keypoints3D) -> Keypoints3D:
-    """Return a record of one device at even times, from its first frame to its last.
+    """Return the record of one device at uniform times, from its first frame to its last.
 
-    The step is the median one. Places between frames are interpolated, across one missing frame at
-    most; everything else is that of the nearest frame.
+    The step is the median step. Positions between frames are interpolated, across one missing frame
+    at most; all other values are those of the nearest frame.
     """
     time_s = points.time_s
     if len(time_s) < 3:

@@ -105,7 +105,10 @@ def people(
     height_m_of: Mapping[str, float | None],
     contacts: Contacts | None = None,
 ) -> dict[int, Fitted]:
-    """Fit everybody of a record (`person`); return those whom the model fits, by their index."""
+    """Fit the model to all persons of a record (`person`); return the fits by the person's index.
+
+    A person who cannot be fitted is left out, with a warning in the log.
+    """
     fits = {}
     for at, name in enumerate(points.person_id.tolist()):
         found = person(points, at, cutoff_hz, height_m_of.get(name), contacts)
@@ -114,8 +117,8 @@ def people(
             continue
         seen = np.isfinite(points.xyz[at]).all(axis=2).any(axis=0)
         lost = sorted(set(skeleton.JOINTS) - set(points.joints[seen].tolist()))
-        said = f"never seen: {', '.join(lost)}" if lost else "seen in fewer than two frames"
-        log.logger.warning("%s: %s: no skeletal model is fitted", name, said)
+        why = f"never seen: {', '.join(lost)}" if lost else "seen in fewer than two frames"
+        log.logger.warning("%s: the skeletal model cannot be fitted: %s", name, why)
     log.logger.info("persons fitted: %d of %d", len(fits), len(points.person_id))
     return fits
 

@@ -3,7 +3,7 @@
 The rooms: boards, court, court_lines, bundle, planning, click_proposals, file_check, foreign,
 people, records, wand.
 
-file_formats: read, rename, with_principal_points: calibrations by other programs
+file_formats: read, rename, known_lenses, with_principal_points: calibrations by other programs
 chessboard: find, calibrate: a lens from pictures of a chessboard
 point_covariance: point_covariance, sensitivity, of_columns, pseudo_inverse, mahalanobis, ellipsoid,
     centre_sigma

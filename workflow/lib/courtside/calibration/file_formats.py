@@ -126,6 +126,18 @@ def rename(found: Iterable[Camera], names: Mapping[str, str]) -> list[Camera]:
     return [replace(by_name[theirs], name=ours) for ours, theirs in names.items()]
 
 
+def known_lenses(
+    path: StrPath | None, names: Mapping[str, str], tomls: Iterable[StrPath]
+) -> dict[str, Camera]:
+    """Return the known lenses by camera: of a calibration at `path`, else of the study's `tomls`.
+
+    `names` are as for `rename`.
+    """
+    if path is not None:
+        return {lens.name: lens for lens in rename(read(path), names)}
+    return {lens.name: lens for toml in tomls for lens in camera_files.read_toml(toml)}
+
+
 def with_principal_points(
     found: Iterable[Camera], principal_point_px: Mapping[str, Sequence[float]]
 ) -> list[Camera]:

@@ -1,13 +1,13 @@
 """Geometry of cameras: projection, rotations, similarity, epipolar lines, triangulation.
 
-camera: `Camera`, `project`, `undistort`, `crop`, `scaled`, `check_size`, `read_toml`, `write_toml`
+camera: `Camera`, `plain`, `project`, `undistort`, `crop`, `scaled`, `check_size`, and TOML files
 picture_size: `relation`, `scaled_size`, `advice`: a video's size against the calibrated one
 camera_fields: checked numbers of calibration files (`numbers`, `pose`, `five_coefficients`)
 rotations: `rotation_from_rodrigues`, `rodrigues_from_rotation`, `interpolate`, `invert`
-similarity: `Sim3`, `umeyama`, `robust_umeyama`, `kabsch`
-interpolation: `linear`, `nearest`, `shares`
+similarity: `Sim3`, `umeyama`, `rigid`, `robust_umeyama`, `kabsch`
+interpolation: `linear`, `between`, `nearest`, `shares`
 boxes: `usual_side`
-epipolar: `straight_px`, `relative_pose`, `fundamental`, `lines`, `distance_px`
+epipolar: `straight_px`, `relative_pose`, `fundamental`, `lines`, `distance_px`, `ray_sines`
 triangulation: `triangulate_robust`, `triangulate_plain`, `triangulate_all`, `triangulate`
 depth_registration: `rays`, `points_in_colour`
 """

@@ -86,6 +86,16 @@ def _whole(size: Sequence[float]) -> tuple[int, ...]:
     return whole
 
 
+def plain(name: str, size: tuple[int, int], focal_share: float) -> Camera:
+    """Return a camera at the origin without distortion; its principal point is the centre.
+
+    `focal_share` is the focal length over the longer side of the picture.
+    """
+    (width, height), focal_px = size, focal_share * max(size)
+    matrix = [[focal_px, 0, (width - 1) / 2], [0, focal_px, (height - 1) / 2], [0, 0, 1]]
+    return Camera(name, size, np.array(matrix), np.zeros(5), np.eye(3, 4))
+
+
 def project(camera: Camera, xyz_in_world: ArrayLike) -> NDArray:
     """Project points (..., 3) m to distorted px (..., 2), not limited to the picture.
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from courtside.geometry.camera import Camera, undistort
-from courtside.geometry.rotations import cross_matrices
+from courtside.geometry.rotations import cross_matrices, unit
 
 TINY = 1e-12  # keeps divisions finite; far below any distance in px
 
@@ -40,6 +40,16 @@ def fundamental(camera_a: Camera, camera_b: Camera) -> NDArray:
     )
     matrix = to_plane_b @ cross_matrices(shift) @ b_from_a @ to_plane_a
     return matrix / np.linalg.norm(matrix)
+
+
+def ray_sines(rotation: NDArray, xy_a: NDArray, xy_b: NDArray) -> NDArray:
+    """Return the sines (N,) of the angles between the rays of two cameras.
+
+    Points (N, 2) are on the z = 1 planes; `rotation` leads from the first camera's axes to the
+    second's.
+    """
+    first, second = (unit(np.pad(xy, ((0, 0), (0, 1)), constant_values=1.0)) for xy in (xy_a, xy_b))
+    return np.linalg.norm(np.cross(first @ rotation.T, second), axis=1)
 
 
 def lines(matrix: NDArray, xy: NDArray) -> NDArray:

@@ -48,8 +48,8 @@ def between(time_s: NDArray, values: NDArray, wanted_s: NDArray, longest_s: floa
     """Interpolate values (T, J, 3) at other times (U,) between neighbouring samples, (U, J, 3).
 
     NaN outside the span, beside a missing value, and in gaps longer than `longest_s`. A cubic
-    through two samples before and two after (Catmull & Rom 1974), taken as evenly spaced; a
-    straight line where the outer ones are missing.
+    through two samples before and two after (Catmull & Rom 1974), assumed to be evenly spaced; a
+    straight line if one of the outer samples is missing.
     """
     wanted_s = np.asarray(wanted_s, float)
     right = np.clip(np.searchsorted(time_s, wanted_s), 1, len(time_s) - 1)

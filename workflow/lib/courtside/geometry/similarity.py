@@ -66,6 +66,13 @@ def umeyama(x_in_a: ArrayLike, x_in_b: ArrayLike, weight: ArrayLike | None = Non
     return Sim3(float(scale), rotation, translation)
 
 
+def rigid(x_in_a: ArrayLike, x_in_b: ArrayLike) -> Sim3:
+    """Fit the rigid motion `b_from_a` to the same points (N, 3); errors are those of `umeyama`."""
+    x_in_a, x_in_b = np.asarray(x_in_a, float), np.asarray(x_in_b, float)
+    rotation = umeyama(x_in_a, x_in_b).rotation
+    return Sim3(1.0, rotation, x_in_b.mean(axis=0) - rotation @ x_in_a.mean(axis=0))
+
+
 def kabsch(products: NDArray) -> tuple[NDArray, NDArray]:
     """Return the rotations R nearest to matrices M (..., 3, 3), and the traces (...) of R'M.
 

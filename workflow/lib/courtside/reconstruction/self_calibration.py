@@ -1,4 +1,4 @@
-"""Takes as the calibration from people alone needs them: tracks of joints at common times."""
+"""Calibration from people alone: tracks of takes at common times, clocks and cameras in turn."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -22,15 +22,15 @@ from courtside.study.errors import InputError
 
 # A take's name, the keypoints of each camera that films it, and their clocks by camera.
 Filmed = tuple[str, Sequence[Keypoints2D], Mapping[str, Clock]]
-ROUNDS = 2  # of clocks and cameras: clocks by rough cameras are a few milliseconds off
-SAME_S = 1e-3  # clocks closer together change cameras by nothing: who walks moves by a millimetre
-MIN_SCORE = 0.5  # ASSUME: of joints that cameras are first guessed by
+ROUNDS = 2  # of clocks and cameras: clocks from rough cameras have errors of some milliseconds
+SAME_S = 1e-3  # smaller differences of clocks do not matter: a walking person moves 1 mm
+MIN_SCORE = 0.5  # ASSUME: of joints for the initial cameras
 
 
 def tracks(
     name: str, views: Sequence[Keypoints2D], clocks: Mapping[str, Clock], cameras: Sequence[str]
 ) -> Take:
-    """Return a take's tracklets at common times; a camera that does not film it has none."""
+    """Return the tracklets of a take at common times; none of a camera that does not film it."""
     time_s = _times(views, clocks)
     xy = {camera: np.zeros((0, len(time_s), len(skeleton.JOINTS), 2)) for camera in cameras}
     for view in views:
@@ -41,7 +41,7 @@ def tracks(
 
 
 def seen(first: from_nothing.Guess, takes: Sequence[Filmed]) -> Seen:
-    """Return what cameras, roughly known, see of the persons whom their tracks show."""
+    """Return the keypoints of the persons of the initial tracks, by the initial cameras."""
     cameras = first.cameras
     resampled = [_by_camera(cameras, views, clocks) for _, views, clocks in takes]
     parts = []
@@ -68,9 +68,9 @@ def calibrate(
 ) -> from_nothing.Found:
     """Return cameras from people alone; arguments are as for `from_nothing.guess` and `adjust`.
 
-    `timed` returns the takes with clocks found by cameras, by name, or without any. Cameras that
-    change clocks are adjusted again with these. Raises `InputError` where people do not tell, or
-    clocks are not sure.
+    `timed` takes cameras by name, or None, and returns the takes with clocks estimated with them.
+    If new cameras change the clocks, the cameras are adjusted again. Raises `InputError` if people
+    do not determine the cameras, or if a clock is uncertain.
     """
     first, last = guess(names, lenses, timed(None), heights_m, known), list[Filmed]()
     for _ in range(ROUNDS):
@@ -88,7 +88,7 @@ def calibrate(
 
 
 def _apart_s(before: Sequence[Filmed], after: Sequence[Filmed]) -> float:
-    """Return by how much clocks of takes differ at most, s."""
+    """Return the largest difference of the clocks of takes, s."""
     return max(
         float(np.abs(old[name].from_reference(ends) - new[name].from_reference(ends)).max())
         for (_, views, old), (_, _, new) in zip(before, after, strict=True)
@@ -103,12 +103,12 @@ def guess(
     heights_m: Sequence[Sequence[float | None]],
     known: Sequence[KnownLength] = (),
 ) -> from_nothing.Guess:
-    """Place cameras roughly; the arguments are as for `from_nothing.guess`."""
+    """Return initial cameras; the arguments are as for `from_nothing.guess`."""
     sizes = _sizes(takes)
     if blind := [name for name in names if name not in sizes]:
         raise InputError(
-            f"camera {blind[0]}: expected a take that it films, found none; people alone place a "
-            "camera: name takes that show them in all cameras"
+            f"camera {blind[0]}: expected a take with its video, found none; the calibration "
+            "`people` needs videos of all cameras: add such takes"
         )
     for name, lens in lenses.items():
         camera_models.check_size(lens, sizes[name], f"keypoints of camera {name}")

@@ -1,4 +1,4 @@
-"""A wand that a person swings through a volume, and where cameras see its markers."""
+"""Simulation of a wand that a person moves through a volume, and of its markers in pictures."""
 
 from collections.abc import Sequence
 
@@ -8,11 +8,11 @@ from numpy.typing import ArrayLike, NDArray
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera, project
 
-# ASSUME: how a person swings a wand: from a place to the next in some seconds, turning it faster.
-WAY_S, TURN_S = 12.0, 3.0  # periods of the slowest part of ways and turns
-PARTS = 4  # of each, every one a period shorter
-HIDDEN_S = 0.7  # a body or hand hides a marker for so long
-FAR_PX = (8.0, 60.0)  # how far a tracker jumps that holds another spot for the marker
+# ASSUME: how a person moves a wand: slowly from place to place, with faster rotations.
+PATH_S, TURN_S = 12.0, 3.0  # longest periods of path and rotation
+PARTS = 4  # number of sines of each, with periods over 1, 2, ...
+HIDDEN_S = 0.7  # duration for which a body or hand hides a marker
+FAR_PX = (8.0, 60.0)  # distance of another spot that a tracker mistakes for the marker
 
 
 def swing(
@@ -24,36 +24,36 @@ def swing(
     rate_hz: float,
     rng: np.random.Generator,
 ) -> NDArray:
-    """Swing a wand whose middle stays in a box.
+    """Move a wand whose middle stays in a box.
 
     Parameters
     ----------
     along_m : (M,) float
-        Places of the markers on the wand.
+        Positions of the markers on the wand.
     low, high : (3,) float
         Corners of the box, m.
     seconds, rate_hz : float
-        How long, and how many frames a second.
+        Duration and frame rate.
     rng : numpy.random.Generator
 
     Returns
     -------
     xyz : (T, M, 3) float
-        Places of the markers, m.
+        Positions of the markers, m.
     """
     time_s = np.arange(round(seconds * rate_hz)) / rate_hz
     low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
-    way = _wander(time_s, WAY_S, rng)
-    way = (way - way.min(axis=0)) / np.ptp(way, axis=0)
-    direction = rotations.unit(_wander(time_s, TURN_S, rng))
+    path = _random_path(time_s, PATH_S, rng)
+    path = (path - path.min(axis=0)) / np.ptp(path, axis=0)
+    direction = rotations.unit(_random_path(time_s, TURN_S, rng))
     places = np.asarray(along_m, dtype=float)
     from_middle = places - places.mean()
-    middle = low + (high - low) * way
+    middle = low + (high - low) * path
     return middle[:, None] + from_middle[:, None] * direction[:, None]
 
 
-def _wander(time_s: NDArray, period_s: float, rng: np.random.Generator) -> NDArray:
-    """Return a smooth random function (T, 3) with parts of this period and shorter ones."""
+def _random_path(time_s: NDArray, period_s: float, rng: np.random.Generator) -> NDArray:
+    """Return a smooth random path (T, 3), a sum of sines of this period and shorter ones."""
     part = np.arange(1, PARTS + 1)
     phase = rng.uniform(0, 2 * np.pi, (PARTS, 3))
     size = rng.standard_normal((PARTS, 3)) / np.sqrt(part)[:, None]
@@ -71,27 +71,27 @@ def film(
     misread: float = 0.0,
     rng: np.random.Generator,
 ) -> NDArray:
-    """Track the markers of a wand in the pictures of cameras.
+    """Simulate tracked markers of a wand in the pictures of cameras.
 
     Parameters
     ----------
     cameras : sequence of Camera
     xyz : (T, M, 3) float
-        Places of the markers, m.
+        Positions of the markers, m.
     sigma_px : float
         Standard deviation per axis of a tracked marker.
     rate_hz : float
-        Frames a second.
+        Frame rate.
     hidden : float
-        Share of the time that a marker is hidden from a camera, for `HIDDEN_S` at a time.
+        Share of the time in which a marker is hidden from a camera, for `HIDDEN_S` at a time.
     misread : float
-        Share of the markers seen that are another spot nearby.
+        Share of the visible markers that are another spot nearby.
     rng : numpy.random.Generator
 
     Returns
     -------
     xy : (C, T, M, 2) float
-        px; NaN where a marker is hidden or outside the picture.
+        px; NaN if a marker is hidden or outside the picture.
     """
     shape = len(cameras), *xyz.shape[:2]
     xy = np.stack([project(camera, xyz) for camera in cameras])

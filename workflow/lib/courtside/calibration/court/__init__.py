@@ -7,8 +7,8 @@ joint_adjustment: condense, condense_free, solve, free, Ties, Solution: tie poin
     court points
 resection: dlt, nonlinear: one camera from known points, by `one_camera`
 known_points: method, calibrate, cameras: all cameras from known points, each by itself
-points_alone: calibrate, said: all cameras from points alone, together
-place_checks: shifts, known_points: cameras whose points are all at wrong places; a session's points
+points_alone: calibrate, summary: all cameras from points alone, together
+place_checks: read, shifts: the points of a session; cameras whose points are all shifted
 click_checks: leave_one_out, find_wrong_clicks, inward_shift, inward_shift_of_points, check
 quality: check_cameras, adjust_and_check, check_maps, leave_one_out_errors, expected_cm,
     expected_volume; errors against the truth

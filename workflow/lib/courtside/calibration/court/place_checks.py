@@ -1,9 +1,7 @@
-"""Points at known places of a session, and places that are wrong for a whole camera.
+"""The clicked points of a session, and a check of their positions camera by camera.
 
-All of a camera's may be moved by one shift.
-
-A camera's own picture cannot tell: moved points only move the camera. Places that other cameras'
-points have, too, tell.
+All points of a camera may be wrong by one shift. The picture of this camera cannot show this,
+because shifted points only shift the camera. Points of other cameras at the same places show it.
 """
 
 from collections.abc import Sequence
@@ -92,12 +90,12 @@ def _spacing(xyz: NDArray) -> float:
     return float(np.median(np.where(apart < NEAR_M, np.inf, apart).min(axis=1)))
 
 
-def known_points(
+def read(
     clicks_csv: StrPath, court_yaml: StrPath, cameras: Sequence[str], placed: bool
 ) -> tuple[Court, ClickedPoints]:
-    """Return the court and the clicks; of points with places of their own, these as a court.
+    """Return the court and the clicks of a session; `placed` points are returned as a court.
 
-    Raises `InputError` if a file is not as it should be, or all places of one camera are moved.
+    Raises `InputError` if a file is invalid, or if all points of a camera are shifted.
     """
     if not placed:
         court = court_files.read(court_yaml)

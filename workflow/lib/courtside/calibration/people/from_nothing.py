@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 from courtside.calibration.file_check import residuals
 from courtside.calibration.people import (
     adjustment,
-    doubts,
     held_out,
     prior,
     relative_poses,
     unit,
     views,
+    warnings,
     world_frame,
 )
 from courtside.calibration.people.adjustment import Limits
@@ -29,29 +29,30 @@ from courtside.calibration.people.views import Seen
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance
 from courtside.geometry import boxes
+from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
 from courtside.geometry.triangulation import triangulate_all
 from courtside.study.errors import InputError
 
 # ASSUME: focal lengths over the picture's longer side, from wide lenses of phones to short
-# telephoto lenses, a fifth apart: the adjustment finds what lies between.
+# telephoto lenses, in steps of a fifth. The adjustment finds values between them.
 FOCAL_SHARES = (0.7, 0.84, 1.0, 1.2, 1.45, 1.75)
-ANY_FOCAL = 1.2  # tracks are paired with this one: which belong together hardly depends on it
-# Standard deviations of cameras after the first guess; so large, they say next to nothing of shape.
+ANY_FOCAL = 1.2  # for the pairing of tracks, which hardly depends on it
+# Standard deviations of the initial cameras, so large that they hardly constrain the shape.
 LOOSE = {"rotation_deg": 5.0, "position_m": 1.0}
 GUESSED = {"focal_percent": 20.0, "principal_point_percent": 1.0, "k1": 0.05}  # ASSUME
 KNOWN = {"focal_percent": 0.5, "principal_point_percent": 0.3, "k1": 0.01}  # of a board's lens
-PASSES = 2  # ASSUME: adjustments, each about the last; the next hardly moves a joint
-MOST_ROWS = 480  # frames of all persons together; more take longer and say the same
-MOST_FRAMES = 200  # of one take that guesses are compared by
-MOST_PLACES = 200  # joints that the world of the covariance rests on
-STILL = 0.15  # ASSUME: ways shorter than this share of a person's extent show nothing
-LEAST_ACCEPTED = 50.0  # ASSUME: percent of a camera's views; a camera with fewer is not found
+PASSES = 2  # ASSUME: number of adjustments; a third one hardly moves a joint
+MOST_ROWS = 480  # frames of all persons together; more frames add little
+MOST_FRAMES = 200  # of one take in the comparison of initial cameras
+MOST_PLACES = 200  # joints that define the world frame of the covariance
+STILL = 0.15  # ASSUME: a person with a shorter path over the own extent does not move
+LEAST_ACCEPTED = 50.0  # ASSUME: percent of a camera's views, for a usable camera
 
 
 @dataclass(frozen=True, eq=False)
 class Guess:
-    """Cameras roughly placed, in metres, and whose tracks they see."""
+    """Initial cameras, in metres, and the tracks of persons."""
 
     cameras: list[Camera]
     tracks: list[Track]
@@ -59,13 +60,13 @@ class Guess:
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """Cameras from people."""
+    """The result of a calibration from people alone."""
 
     cameras: list[Camera]
     covariance: CameraCovariance
-    score: Score  # by blocks of time that the fit did not see
-    scale: unit.Unit  # what tells all lengths, and how well
-    doubts: list[str]  # one line each
+    score: Score  # on held-out blocks of time
+    scale: unit.Unit
+    warnings: list[str]  # one line each
 
 
 def guess(
@@ -76,9 +77,10 @@ def guess(
     heights_m: Sequence[Sequence[float | None]],
     known: Sequence[unit.KnownLength] = (),
 ) -> Guess:
-    """Place cameras by tracks whose persons are not known, but for the heights in each take.
+    """Return initial cameras from the tracks of people.
 
-    `sizes` px by camera; `lenses` are those known. Raises `InputError` where people do not tell.
+    `sizes` are those of the pictures by camera, px; `lenses` are the known ones. `heights_m` are
+    those of the persons in each take. Raises `InputError` if people do not determine the cameras.
     """
     _check_ways(takes)
     pairs = relative_poses.pair(_with_lenses(names, sizes, lenses, ANY_FOCAL), takes)
@@ -103,7 +105,7 @@ def guess(
 
 
 def _check_ways(takes: Sequence[Take]) -> None:
-    """Raise an `InputError` if everybody stands still, as all cameras see it."""
+    """Raise an `InputError` if nobody moves in the picture of any camera."""
     longest = 0.0
     for xy in (xy for take in takes for xy in take.xy):
         middle = np.ma.median(np.ma.masked_invalid(xy), axis=2).filled(np.nan)
@@ -117,29 +119,26 @@ def _check_ways(takes: Sequence[Take]) -> None:
             longest = max(longest, float(np.linalg.norm(high - low) / max(float(extent), 1.0)))
     if longest < STILL:
         raise InputError(
-            f"people: expected somebody who moves by {STILL} of their height or more in a picture, "
-            f"found {longest:.2f}; name takes in which people walk about"
+            f"people: expected a person who moves by {STILL} of their own height or more in a "
+            f"picture, found {longest:.2f} at most; add takes in which people walk about"
         )
 
 
 def _with_lenses(names, sizes, lenses: Mapping[str, Camera], share: float) -> list[Camera]:
-    """Return cameras at the origin with the lenses known, and others of one focal length."""
-    found = []
-    for name in names:
-        width, height = sizes[name]
-        f_px = share * max(width, height)
-        matrix = np.array([[f_px, 0, (width - 1) / 2], [0, f_px, (height - 1) / 2], [0, 0, 1]])
-        plain = Camera(name, (width, height), matrix, np.zeros(5), np.eye(3, 4))
-        found.append(replace(lenses.get(name, plain), name=name))
-    return found
+    """Return cameras at the origin with their known lenses, the others with one focal length."""
+    each = {
+        name: lenses.get(name) or camera_models.plain(name, sizes[name], share) for name in names
+    }
+    return [replace(camera, name=name) for name, camera in each.items()]
 
 
 def _scaled(camera: Camera, factor: float) -> Camera:
+    """Return the camera in a world that is larger by a factor."""
     return replace(camera, cam_from_world=camera.cam_from_world * [1, 1, 1, factor])
 
 
 def track_xy(takes: Sequence[Take], track: Track) -> NDArray:
-    """Return the joints (C, T, J, 2) px of a track, NaN where a camera has none."""
+    """Return the joints (C, T, J, 2) px of a track, NaN where a camera does not see them."""
     each = zip(takes[track[0]].xy, track[1], strict=True)
     return np.stack([relative_poses.of_rows(xy, rows) for xy, rows in each])
 
@@ -157,10 +156,10 @@ def _placed(cameras: Sequence[Camera], takes: Sequence[Take], track: Track) -> N
 
 
 def _explained(cameras, takes: Sequence[Take], tracks: Sequence[Track]) -> float:
-    """Return how much of what cameras see the tracks explain, in degrees of freedom.
+    """Return the redundancy of the tracks' views, weighted by how well they agree.
 
-    A joint in n views has 2 n - 3, and counts less as its views disagree (the loss of Geman and
-    McClure). More persons, more cameras that see them and smaller errors make it larger.
+    A joint in n views has a redundancy of 2 n - 3, with less weight if its views disagree (the
+    loss of Geman and McClure). More persons, more views and smaller errors increase the sum.
     """
     total = 0.0
     for track in tracks:
@@ -176,7 +175,7 @@ def _explained(cameras, takes: Sequence[Take], tracks: Sequence[Track]) -> float
 
 
 def _body(track: Track, xyz: NDArray, time_s: NDArray | None = None) -> unit.Body:
-    """Return the body of a track's joints (T, J, 3) at times (T,); without times, by frame."""
+    """Return the body of a track's joints (T, J, 3) at times (T,); without times, of frames."""
     seen = np.flatnonzero(np.isfinite(xyz).all(axis=-1).any(axis=-1))
     times = np.arange(len(xyz)) if time_s is None else time_s
     first, last = (float(times[at]) for at in seen[[0, -1]]) if len(seen) else (0.0, 0.0)
@@ -194,10 +193,10 @@ def adjust(
     limits: Limits,
     known: Sequence[unit.KnownLength] = (),
 ) -> Found:
-    """Adjust cameras with the people that they see, from a guess in metres.
+    """Adjust cameras, initially in metres, with the people that they see.
 
-    `tracks` are those of `seen`. Raises `InputError` where people are too few,
-    stay in one place, or a camera disagrees with the others about joints that the fit left out.
+    `tracks` are those of `seen`. Raises `InputError` if there are too few people, if they stay in
+    one place, or if a camera disagrees with the others on held-out joints.
     """
     seen = seen.thinned(MOST_ROWS)
     views.check(start, seen, limits.score)
@@ -218,10 +217,10 @@ def adjust(
     check(cameras, score)
     cameras = [world.camera(camera) for camera in cameras]
     joints = world.points(joints)
-    doubtful = [*scale.doubts, *doubts.lines(cameras, seen, joints, score, limits)]
+    found = [*scale.warnings, *warnings.find(cameras, seen, joints, score, limits)]
     covariance = world_frame.of_shape(cameras, fitted.covariance, _places(joints), scale.sigma)
     named = camera_covariance.of_network([camera.name for camera in cameras], covariance)
-    return Found(cameras, named, score, scale, doubtful)
+    return Found(cameras, named, score, scale, found)
 
 
 def summary(found: Found, takes: Sequence[str]) -> dict[str, Any]:
@@ -236,15 +235,15 @@ def summary(found: Found, takes: Sequence[str]) -> dict[str, Any]:
         "held_out_joints_permille": round(share, 3),
         "accepted_percent": {name: round(float(value), 1) for name, value in accepted.items()},
         "scale_sigma_percent": round(100 * found.scale.sigma, 2),
-        "warnings": found.doubts,
-        "line": f"people alone: joints that the fit left out disagree by {share:.1f} thousandths "
-        f"of the height; {accepted[lowest]:.0f} % of views or more are accepted ({lowest}); "
-        f"lengths are known to {100 * found.scale.sigma:.1f} % by {found.scale.by}",
+        "warnings": found.warnings,
+        "line": f"people alone: views of held-out joints disagree by {share:.1f} thousandths of "
+        f"the height; {accepted[lowest]:.0f} % of the views or more are accepted ({lowest}); the "
+        f"standard deviation of all lengths is {100 * found.scale.sigma:.1f} % ({found.scale.by})",
     }
 
 
 def _refined(cameras, lenses, seen: Seen, limits: Limits) -> adjustment.Refined:
-    """Adjust cameras about which little is known but lenses of boards."""
+    """Adjust cameras with wide priors, and narrow ones for the lenses of boards."""
     guessed, known = (
         prior.stated(cameras, **LOOSE, **lens).covariance for lens in (GUESSED, KNOWN)
     )
@@ -255,13 +254,13 @@ def _refined(cameras, lenses, seen: Seen, limits: Limits) -> adjustment.Refined:
 
 
 def _joints(cameras, seen: Seen, limits: Limits) -> NDArray:
-    """Return the joints (T, J, 3) m that views agree on."""
+    """Return the joints (T, J, 3) m whose views agree."""
     found = views.placed(cameras, seen, limits.score, limits.limit, limits.fade)
     return found.xyz.reshape(len(seen.track), -1, 3)
 
 
 def _places(joints: NDArray) -> NDArray:
-    """Return some of the joints (T, J, 3) that are known, (N, 3)."""
+    """Return some of the known joints (T, J, 3) as points (N, 3)."""
     places = joints.reshape(-1, 3)
     places = places[np.isfinite(places).all(axis=1)]
     return places[np.linspace(0, len(places) - 1, MOST_PLACES).astype(int)]
@@ -273,11 +272,11 @@ def _bodies(joints: NDArray, seen: Seen, tracks: Sequence[Track]) -> list[unit.B
 
 
 def check(cameras: Sequence[Camera], score: Score) -> None:
-    """Raise an `InputError` for a camera that disagrees with the others where it was not fitted."""
+    """Raise an `InputError` if a camera disagrees with the others on held-out joints."""
     for camera, share in zip(cameras, score.accepted_percent(), strict=True):
         if not share >= LEAST_ACCEPTED:
             raise InputError(
                 f"camera {camera.name}: expected {LEAST_ACCEPTED:.0f} % or more of its views of "
                 f"joints to agree with those of the others, found {share:.0f} %; check its clock "
-                "and video, or name takes in which it sees more of people"
+                "and video, or add takes in which it sees more of the people"
             )

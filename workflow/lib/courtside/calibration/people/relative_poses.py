@@ -1,8 +1,8 @@
-"""Where cameras stand towards each other, from the tracks of people alone; the scale is free.
+"""Relative poses of cameras from the tracks of people alone, without scale.
 
-Which track of one camera is which of another is not known either: pairs of tracks are tried, and
-the essential matrix that most joints of all tracks agree with is kept (Nistér 2004). Joints of the
-two cameras that tell most become points, and the other cameras are resected from these.
+The correspondence of tracks in different cameras is not known either. Pairs of tracks are tried,
+and the essential matrix with most agreeing joints of all tracks is kept (Nistér 2004). The joints
+of the best two cameras are triangulated, and the other cameras are resected from them.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -18,20 +18,20 @@ from courtside.geometry import boxes, epipolar, rotations, triangulation
 from courtside.geometry.camera import Camera, undistort
 from courtside.study.errors import InputError
 
-MOST_ROWS = 4  # tracks of one camera in one take that are tried as one person: the longest
-LEAST_OVERLAP = 200  # joints that two tracks share, to be tried as one person
-SAMPLE = 1500  # joints that an estimate rests on: neighbouring frames err alike
-AGREE = 0.02  # ASSUME: of a person's extent: how far joints are off their epipolar lines
-LEAST_SHARE = 0.5  # ASSUME: of two tracks' joints that agree if they show one person
-RIVAL = 0.9  # ASSUME: of the joints that the best pairing explains; another with more is as good
-LEAST_SINE = 0.05  # ASSUME: of the angle between rays, 3 degrees: less is no parallax
-SWEEPS = 2  # over all cameras: tracks found in one place joints that tell the tracks of another
+MOST_ROWS = 4  # tracks of one camera in one take that are paired, the longest
+LEAST_OVERLAP = 200  # common joints of two tracks that are paired
+SAMPLE = 1500  # joints of an estimate; errors of neighbouring frames are correlated
+AGREE = 0.02  # ASSUME: distance of a joint from its epipolar line over the person's extent
+LEAST_SHARE = 0.5  # ASSUME: share of agreeing joints of two tracks of one person
+RIVAL = 0.9  # ASSUME: share of the best pairing's joints with which another is as good
+LEAST_SINE = 0.05  # ASSUME: of the angle between rays (3 degrees), for enough parallax
+SWEEPS = 2  # over all cameras: new tracks of one camera add joints for the tracks of others
 IN_FRONT = 0.75  # ASSUME: least share of joints in front of a camera
-CONFIDENCE, ROUNDS = 0.9999, 2000  # of the random samples
-IDEAL = np.eye(3)  # the matrix of a camera whose pixels are rays
+CONFIDENCE, ROUNDS = 0.9999, 2000  # of RANSAC
+IDEAL = np.eye(3)  # the camera matrix of points on the z = 1 plane
 
 Track = tuple[int, tuple[tuple[int, ...], ...]]  # of one person: take, and the rows of each camera
-_Person = tuple[int, set[tuple[int, int]]]  # take, and cameras with the rows that show this person
+_Person = tuple[int, set[tuple[int, int]]]  # take, and pairs of a camera and a row of this person
 Rays = list[list[NDArray]]  # by take and camera: tracks (R, T, J, 2) on the z = 1 plane
 
 
@@ -40,14 +40,14 @@ class Take:
     """The tracklets of one take at common times: R rows, T times, J joints."""
 
     name: str
-    xy: list[NDArray]  # by camera (R, T, J, 2): distorted px, NaN where unseen or unsure
+    xy: list[NDArray]  # by camera (R, T, J, 2): distorted px, NaN if missing or of low confidence
 
     def times(self, camera: int, row: int) -> NDArray:
-        """Return at which times (T,) bool a row shows anything."""
+        """Return the times (T,) bool at which a row has a joint."""
         return np.isfinite(self.xy[camera][row, ..., 0]).any(axis=1)
 
     def longest(self, camera: int, most: int | None = None) -> list[int]:
-        """Return the rows of a camera that show enough joints, those with most first."""
+        """Return the rows of a camera with enough joints, the one with most joints first."""
         seen = np.isfinite(self.xy[camera][..., 0]).sum(axis=(1, 2))
         order = np.argsort(-seen, kind="stable")[:most]
         return [int(row) for row in order if seen[row] >= LEAST_OVERLAP]
@@ -55,27 +55,27 @@ class Take:
 
 @dataclass(frozen=True, eq=False)
 class Paired:
-    """Two cameras, and the tracks that show one person in both."""
+    """Two cameras, and pairs of tracks that show the same person."""
 
     cameras: tuple[int, int]
     rows: list[tuple[int, int, int]]  # take, row of the first camera, row of the second
-    agreeing: int  # joints
-    rival: float  # of so many joints, the share that another pairing of the same tracks explains
+    agreeing: int  # number of joints
+    rival: float  # joints that agree with another pairing of the same tracks, as a share
 
 
 def pair(cameras: Sequence[Camera], takes: Sequence[Take]) -> list[Paired]:
-    """Return of each two cameras which tracks show one person; lenses may be guessed.
+    """Return the pairs of tracks of each two cameras; lenses may be rough.
 
-    Raises `InputError` where no two cameras share enough joints, or tracks can be paired in
-    another way as well.
+    Raises `InputError` if no two cameras share enough joints, or if another pairing of tracks is
+    as good.
     """
     rays = _rays(cameras, takes)
     every = combinations(range(len(cameras)), 2)
     found = [one for two in every if (one := _paired(takes, rays, two)) is not None]
     if not found:
         raise InputError(
-            f"people: expected {LEAST_OVERLAP} joints or more of one person whom two cameras see "
-            "at the same time, found fewer that agree in every two cameras; name longer takes, and "
+            f"people: expected {LEAST_OVERLAP} joints or more of one person that two cameras see "
+            "at the same time, found fewer that agree for every two cameras; add longer takes, and "
             "check the clocks"
         )
     found.sort(key=lambda one: -one.agreeing)
@@ -83,8 +83,8 @@ def pair(cameras: Sequence[Camera], takes: Sequence[Take]) -> list[Paired]:
         names = " and ".join(cameras[camera].name for camera in best.cameras)
         raise InputError(
             f"take {takes[best.rows[0][0]].name}: expected one way to pair the tracks of cameras "
-            f"{names}, found another that explains {100 * best.rival:.0f} % as many joints; name a "
-            "take with one person in it, too"
+            f"{names}, found another with {100 * best.rival:.0f} % as many agreeing joints; add a "
+            "take with only one person"
         )
     return found
 
@@ -92,10 +92,11 @@ def pair(cameras: Sequence[Camera], takes: Sequence[Take]) -> list[Paired]:
 def pose(
     cameras: Sequence[Camera], takes: Sequence[Take], pairs: Iterable[Paired]
 ) -> list[tuple[list[Camera], list[Track]]]:
-    """Return possible poses of all cameras, with persons' tracks, from each two; the best first.
+    """Return the poses of all cameras and the tracks of persons by each pair, the best first.
 
-    Their lenses are used, known or guessed, their poses not. The world has the axes of one camera,
-    the unit of length is the distance of two. Raises `InputError` where people do not tell.
+    The lenses of `cameras` are used, not their poses. The world frame is that of one camera, and
+    the unit of length is the distance of two. Raises `InputError` if people do not determine the
+    poses.
     """
     rays = _rays(cameras, takes)
     related = [one for two in pairs if (one := _related(rays, two)) is not None]
@@ -114,13 +115,14 @@ def pose(
         name = cameras[max(blind, key=blind.count)].name
         raise InputError(
             f"camera {name}: expected {LEAST_OVERLAP // 2} joints or more that two other cameras "
-            "see, too, found fewer that agree; name a take in which somebody walks through the "
+            "also see, found fewer that agree; add a take in which somebody walks through the "
             "views of all cameras, and check its clock and that its video is not mirrored"
         )
     return found
 
 
 def _rays(cameras: Sequence[Camera], takes: Sequence[Take]) -> Rays:
+    """Return the tracks of all takes on the z = 1 planes of the cameras."""
     return [
         [undistort(camera, xy) for camera, xy in zip(cameras, take.xy, strict=True)]
         for take in takes
@@ -128,18 +130,18 @@ def _rays(cameras: Sequence[Camera], takes: Sequence[Take]) -> Rays:
 
 
 def _reach(rays: NDArray) -> NDArray:
-    """Return how far joints of tracks (R, T, J, 2) may be off, (R,): shares of their extents."""
+    """Return the tolerance (R,) of joints of tracks (R, T, J, 2), a share of their extents."""
     return AGREE * boxes.usual_side(rays)
 
 
 def _thinned(at: NDArray) -> tuple[NDArray, ...]:
-    """Return evenly chosen rows of indices (N, 2), as indices of arrays."""
+    """Return evenly spaced rows of indices (N, 2), as a tuple that indexes arrays."""
     chosen = np.linspace(0, len(at) - 1, min(len(at), SAMPLE)).astype(int)
     return tuple(at[chosen].T)
 
 
 def _shared(a: NDArray, b: NDArray) -> tuple[NDArray, NDArray]:
-    """Return joints (N, 2) that two tracks (T, J, 2) share."""
+    """Return the common joints (N, 2) of two tracks (T, J, 2)."""
     at = _thinned(np.argwhere(np.isfinite(a[..., 0]) & np.isfinite(b[..., 0])))
     return a[at], b[at]
 
@@ -155,9 +157,9 @@ def _essential(a: NDArray, b: NDArray, reach: float) -> NDArray | None:
 def _agreeing(
     matrix: NDArray, takes: Sequence[Take], rays: Rays, two: tuple[int, int]
 ) -> tuple[list[tuple[int, int, int]], int]:
-    """Return the pairs of tracks that agree with an essential matrix, and how many joints do.
+    """Return the pairs of tracks that agree with an essential matrix, and the number of joints.
 
-    At no time is one track paired with two.
+    A track is paired with only one other track at a time.
     """
     tried = []
     for t, take in enumerate(takes):
@@ -181,7 +183,7 @@ def _agreeing(
 
 
 def _paired(takes: Sequence[Take], rays: Rays, two: tuple[int, int]) -> Paired | None:
-    """Return which tracks of two cameras belong together, by the pairing that explains most."""
+    """Return the pairing of the tracks of two cameras with most agreeing joints, or None."""
     found = []
     for t, take in enumerate(takes):
         a, b = (rays[t][camera] for camera in two)
@@ -200,7 +202,7 @@ def _paired(takes: Sequence[Take], rays: Rays, two: tuple[int, int]) -> Paired |
 
 
 def _contradict(takes: Sequence[Take], two: tuple[int, int], rows, others) -> bool:
-    """Say whether two pairings give one track different partners at the same time."""
+    """Return whether two pairings give one track different partners at the same time."""
     for (t, *one), (u, *other), side in product(rows, others, (0, 1)):
         if t == u and one[side] == other[side] and one[1 - side] != other[1 - side]:
             partners = takes[t].xy[two[1 - side]][[one[1 - side], other[1 - side]]]
@@ -211,14 +213,15 @@ def _contradict(takes: Sequence[Take], two: tuple[int, int], rows, others) -> bo
 
 @dataclass(frozen=True, eq=False)
 class _Related:
-    """Two cameras whose relative pose is known but for its length."""
+    """Two cameras with their relative pose."""
 
     pair: Paired
-    pose: NDArray  # (3, 4): of the second camera in the first's axes; its shift has length 1
+    pose: NDArray  # (3, 4): from the first camera's axes to the second's; its shift has length 1
     sine: float  # of the angle between rays, median
 
 
 def _related(rays: Rays, pair: Paired) -> _Related | None:
+    """Return the relative pose of two cameras from all their pairs of tracks, or None."""
     a, b = pair.cameras
     both = [_shared(rays[t][a][i], rays[t][b][j]) for t, i, j in pair.rows]
     one, other = (np.concatenate(part) for part in zip(*both, strict=True))
@@ -232,34 +235,26 @@ def _related(rays: Rays, pair: Paired) -> _Related | None:
     if not near.any():
         return None
     _, rotation, shift, _ = cv2.recoverPose(matrix, one[near], other[near], IDEAL)
-    sine = np.median(np.sin(_angles(rotation, one[near], other[near])))
+    sine = np.median(epipolar.ray_sines(rotation, one[near], other[near]))
     return _Related(pair, np.column_stack([rotation, shift]), float(sine))
 
 
-def _angles(rotation: NDArray, one: NDArray, other: NDArray) -> NDArray:
-    """Return the angles (N,) between rays of two cameras, radians."""
-    first, second = (
-        rotations.unit(np.pad(xy, ((0, 0), (0, 1)), constant_values=1.0)) for xy in (one, other)
-    )
-    return np.arccos(np.clip((first @ rotation.T * second).sum(axis=1), -1, 1))
-
-
 def _check(cameras: Sequence[Camera], posed: list[_Related]) -> None:
-    """Raise an `InputError` where two cameras do not tell how they stand."""
+    """Raise an `InputError` if no two cameras have enough parallax."""
     widest = max(posed, key=lambda one: one.sine, default=None)
     if widest is None or widest.sine < LEAST_SINE:
         found = np.degrees(np.arcsin(widest.sine)) if widest else 0.0
         raise InputError(
             f"cameras {', '.join(camera.name for camera in cameras)}: expected two whose rays to a "
             f"joint meet at {np.degrees(np.arcsin(LEAST_SINE)):.0f} degrees or more, found "
-            f"{found:.1f} at most; place cameras further apart"
+            f"{found:.1f} at most; place the cameras farther apart"
         )
 
 
 def of_rows(values: NDArray, rows: Iterable[int]) -> NDArray:
-    """Return what rows of (R, T, ...) show of one person, (T, ...): at each time the first of them.
+    """Return the values (T, ...) of one person from several rows of `values` (R, T, ...).
 
-    NaN where none shows anything.
+    At each time the first row with a value is used; NaN where no row has one.
     """
     found = np.full(values.shape[1:], np.nan)
     for row in rows:
@@ -271,7 +266,7 @@ def of_rows(values: NDArray, rows: Iterable[int]) -> NDArray:
 def _resected(
     takes: Sequence[Take], rays: Rays, best: _Related
 ) -> tuple[list[NDArray], list[Track], list[int]]:
-    """Return poses (3, 4) in the axes of the first of two cameras, persons, and who is lost."""
+    """Return poses (3, 4) in the frame of the first camera of a pair, tracks, and lost cameras."""
     (a, b), n_cameras = best.pair.cameras, len(rays[0])
     poses, lost = {a: np.eye(3, 4), b: best.pose}, list[int]()
     persons = _joined(takes, [(t, {(a, i), (b, j)}) for t, i, j in best.pair.rows])
@@ -297,7 +292,7 @@ def _resected(
 
 
 def _by_camera(take: Take, rows: set[tuple[int, int]], n_cameras: int):
-    """Return the rows of each camera, those with most joints first."""
+    """Return the rows of each camera, the one with most joints first."""
     return tuple(
         tuple(row for row in take.longest(camera) if (camera, row) in rows)
         for camera in range(n_cameras)
@@ -305,7 +300,7 @@ def _by_camera(take: Take, rows: set[tuple[int, int]], n_cameras: int):
 
 
 def _joined(takes: Sequence[Take], persons: Iterable[_Person]) -> list[_Person]:
-    """Join persons who share a track, unless a camera would then show one of them twice at once."""
+    """Join persons with a common track, unless a camera would show one of them twice at a time."""
     found: list[_Person] = []
     for take, rows in persons:
         for other in [one for one in found if one[0] == take and one[1] & rows]:
@@ -317,7 +312,7 @@ def _joined(takes: Sequence[Take], persons: Iterable[_Person]) -> list[_Person]:
 
 
 def _twice(take: Take, rows: set[tuple[int, int]]) -> bool:
-    """Say whether a camera shows something in two rows at one time."""
+    """Return whether a camera has joints in two of the rows at the same time."""
     shown: dict[int, Any] = {}
     for camera, row in rows:
         shown[camera] = shown.get(camera, 0) + take.times(camera, row).astype(int)
@@ -325,7 +320,7 @@ def _twice(take: Take, rows: set[tuple[int, int]]) -> bool:
 
 
 def _points(rays: Rays, poses: Mapping[int, NDArray], person: _Person) -> NDArray:
-    """Return the joints (T, J, 3) of a person whom posed cameras see."""
+    """Return the joints (T, J, 3) of a person, triangulated with the posed cameras."""
     take, rows = person
     each = [of_rows(rays[take][c], sorted(r for own, r in rows if own == c)) for c in poses]
     flat = np.stack(each).reshape(len(poses), -1, 2)
@@ -335,7 +330,7 @@ def _points(rays: Rays, poses: Mapping[int, NDArray], person: _Person) -> NDArra
 
 
 def _posed(xyz: NDArray, rays: NDArray, reach: float) -> tuple[int, NDArray | None]:
-    """Return how many joints (T, J, 3) a track (T, J, 2) agrees with, and its camera's pose."""
+    """Return the number of joints (T, J, 3) that agree with a track (T, J, 2), and the pose."""
     at = np.argwhere(np.isfinite(xyz).all(axis=-1) & np.isfinite(rays[..., 0]))
     if len(at) < LEAST_OVERLAP // 2:
         return 0, None
@@ -358,9 +353,9 @@ def _grown(
     persons: Sequence[_Person],
     camera: int,
 ) -> list[_Person]:
-    """Add to persons the tracks of one camera that agree with where the other cameras see them.
+    """Add the tracks of one camera to the persons whose joints by the other cameras they match.
 
-    At no time is one track that of two persons, nor has one person two.
+    At any time, a track belongs to one person, and a person has one track of the camera.
     """
     others = {other: pose for other, pose in poses.items() if other != camera}
     tried, taken = list[tuple[int, int, int, Any]](), dict[tuple[int, int], Any]()

@@ -1,6 +1,6 @@
-"""The unit of length of cameras that people alone place: stated heights, and known lengths.
+"""The unit of length of cameras from people alone, from stated heights and known lengths.
 
-Heights are those of persons whose bodies are found; whose is whose is found with the unit. A known
+Heights are stated for persons; which track shows which person is estimated with the unit. A known
 length lies between two points at rest that are clicked in two cameras or more.
 """
 
@@ -20,47 +20,47 @@ from courtside.geometry.triangulation import triangulate_all
 from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
 
-# ASSUME: leg and trunk as BlazePose heavy sees them, share of the height: 0.722 +- 0.006 of the
-# four persons of players-dev; BlazePose full sees 0.715. Anatomical ones are longer (0.78, Winter
-# 2009, fig. 4.1).
+# ASSUME: length of leg and trunk by BlazePose heavy over the height: 0.722 +- 0.006 for the four
+# persons of players-dev; 0.715 by BlazePose full. Anatomical lengths are longer (0.78, Winter 2009,
+# fig. 4.1).
 OF_HEIGHT = 0.722
 OF_HEIGHT_SIGMA = 0.01  # ASSUME: between persons, share of the length
-NETWORK_SIGMA = 0.01  # ASSUME: what is alike for all persons: networks differ by as much
-STATED_SIGMA_M = 0.01  # of a height to the centimetre, in shoes or not
+NETWORK_SIGMA = 0.01  # ASSUME: between networks, the same for all persons
+STATED_SIGMA_M = 0.01  # of a height stated to the centimetre, with shoes or without
 MEASURED_SIGMA = 0.01  # ASSUME: of the length of one track, share
-# ASSUME: errors that a network makes all the time bend cameras: with exact clicks, a line of 6.1 m
-# was 0.5 to 0.9 % off in eight calibrations from players-dev.
+# ASSUME: constant errors of a network bend cameras: with exact clicks, the error of a line of 6.1 m
+# was 0.5 to 0.9 % in eight calibrations from players-dev.
 BEND_SIGMA = 0.008  # of a known length, share
-KNOWN_SIGMA_M = 0.003  # ASSUME: of a known length: ends of painted lines, of rackets, of staffs
-LEAST_FRAMES = 20  # ASSUME: that the length of a body needs
+KNOWN_SIGMA_M = 0.003  # ASSUME: of a known length: ends of painted lines, rackets, poles
+LEAST_FRAMES = 20  # ASSUME: for the length of a body
 SURE = 2.0  # standard deviations
-NOBODY = 3.0  # standard deviations: cost of a track of nobody, and of a stated person not seen
+NOBODY = 3.0  # standard deviations: cost of a track of no person, and of a person without a track
 HEIGHTS = "stated heights"
-MOST_WAYS = 4096  # of giving tracks to persons that are tried in one take; the longest tracks count
-MOST_PERSONS = 5  # of a take whose tracks are tried; of more, the tallest is taken for the longest
-ROUNDS = 4  # of whose tracks they are and the unit, in turn
+MOST_WAYS = 4096  # assignments of tracks to persons in one take; only the longest tracks are used
+MOST_PERSONS = 5  # of a take with assignments; with more, tracks are ordered by length
+ROUNDS = 4  # of assignment and unit, in turn
 
 
 @dataclass(frozen=True)
 class Body:
-    """The body that one track shows."""
+    """The body of one track."""
 
     take: int
-    length: float  # of leg and trunk, in any unit; NaN where too little is seen
+    length: float  # of leg and trunk, in any unit; NaN if too few joints are seen
     frames: int
-    first: float  # and last time that it is seen, in the take
-    last: float
+    first: float  # time of the first joint in the take
+    last: float  # time of the last joint
     tracklets: frozenset[tuple[int, int]] = frozenset()  # camera and row of those that it joins
 
 
 @dataclass(frozen=True)
 class Unit:
-    """Metres per unit of length."""
+    """The unit of length."""
 
-    metres: float
+    metres: float  # per unit
     sigma: float  # standard deviation, share
-    by: str  # what tells it
-    doubts: tuple[str, ...] = ()
+    by: str  # the measurement that defines it
+    warnings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,16 +69,16 @@ class KnownLength:
 
     name: str
     length_m: float
-    xy: NDArray  # (C, 2, 2): px of both ends in each camera, NaN where not clicked
+    xy: NDArray  # (C, 2, 2): both ends in each camera, px, NaN where not clicked
     click_sigma_px: float  # of a click, per axis, in a picture of 3840 px width
     on_floor: bool = False  # whether both ends lie on the floor
 
 
 def length(xyz: NDArray) -> float:
-    """Return the length of leg and trunk of a person by joints (T, J, 3), NaN where unknown.
+    """Return the length of leg and trunk of a person from joints (T, J, 3), NaN where unknown.
 
-    The sum of the medians of its parts over frames: no posture shortens it. Joints are those of
-    `skeleton.JOINTS`.
+    It is the sum of the medians of its parts over frames, so posture does not change it. Joints are
+    those of `skeleton.JOINTS`.
     """
     place = {name: xyz[:, at] for at, name in enumerate(skeleton.JOINTS)}
     hips, shoulders = (middle(place, part) for part in ("hip", "shoulder"))
@@ -107,8 +107,8 @@ def of_clicks(
 ) -> list[KnownLength]:
     """Return the known lengths of a session between clicked `points` (P,), `xy` (C, P, 2) px.
 
-    Each has `points`, `length_m` and perhaps `on_floor`. Scatter and bias of a click are in a
-    picture of 3840 px width. Raises `InputError` for a point that is not clicked.
+    Each of `stated` has `points`, `length_m` and perhaps `on_floor`. Scatter and bias of a click
+    are for a picture of 3840 px width. Raises `InputError` for a point that is not clicked.
     """
     found = []
     for one in stated:
@@ -116,7 +116,8 @@ def of_clicks(
         if missing := [end for end in one["points"] if end not in points]:
             raise InputError(
                 f"known length {name}: expected clicks of both points in `static_points`, found "
-                f"none of {missing[0]} among {list(points)}; click it in two cameras or more"
+                f"none of {missing[0]}, only of {', '.join(points)}; click it in two cameras or "
+                "more"
             )
         ends = xy[:, [list(points).index(end) for end in one["points"]]]
         sigma_px = float(np.hypot(click_sigma_px, click_bias_px))
@@ -132,13 +133,14 @@ def find(
     known: Sequence[KnownLength] = (),
     shape: NDArray | None = None,
 ) -> Unit:
-    """Return the unit by stated heights and known lengths, each as far as it is certain.
+    """Return the unit from stated heights and known lengths, weighted by their variances.
 
-    `shape` (K, K) is the covariance of the cameras' columns, their scale apart. Heights may be
-    missing where a length is known. That they contradict each other is a doubt.
+    `shape` (K, K) is the covariance of the cameras' columns without their scale. Heights are not
+    needed if a length is known. Contradictions become warnings.
     """
     each = [by_length(cameras, one, shape) for one in known]
-    if not each or any(all(stated) and stated for stated in heights_m):
+    takes = _takes(bodies, heights_m)
+    if takes or not each:
         each.append(by_heights(bodies, heights_m))
     if len(each) == 1:
         return each[0]
@@ -146,28 +148,29 @@ def find(
     weight = sigma**-2 / (sigma**-2).sum()
     unit = float(np.exp(weight @ np.log(metres)))
     apart = np.log(metres / unit)
-    doubts = [
-        f"{one.by}: all lengths would be {100 * np.expm1(off):+.1f} % by it alone, expected "
-        f"{SURE * 100 * one.sigma:.1f} % at most; check it against {each[int(weight.argmax())].by}"
+    warnings = [
+        f"{one.by}: expected a change of all lengths by {SURE * 100 * one.sigma:.1f} % at most if "
+        f"only these define the scale, found {100 * np.expm1(off):+.1f} %; check them against "
+        f"{each[int(weight.argmax())].by}"
         for one, off in zip(each, apart, strict=True)
         if abs(off) > SURE * one.sigma
     ]
     by = ", ".join(one.by for one in each)
-    return Unit(unit, float((sigma**-2).sum() ** -0.5), by, tuple(doubts))
+    return Unit(unit, float((sigma**-2).sum() ** -0.5), by, tuple(warnings))
 
 
 def by_length(cameras: Sequence[Camera], known: KnownLength, shape: NDArray | None = None) -> Unit:
-    """Return the unit by one known length; arguments are as for `find`.
+    """Return the unit from one known length; arguments are as for `find`.
 
-    Raises `InputError` where fewer than two cameras see one of the ends.
+    Raises `InputError` if fewer than two cameras see one of the ends.
     """
     ends = triangulate_all(cameras, known.xy)
     along = ends[1] - ends[0]
     own = float(np.linalg.norm(along))
     if not own > 0:
         raise InputError(
-            f"known length {known.name}: expected two ends, each clicked in two cameras or more in "
-            "front of them, found none that these cameras place; check its clicks"
+            f"known length {known.name}: expected both ends clicked in two cameras or more, found "
+            "an end that cannot be triangulated; check its clicks"
         )
     n_clicks = known.xy.size
     steps = np.zeros((n_clicks, *known.xy.shape))
@@ -186,45 +189,43 @@ def by_length(cameras: Sequence[Camera], known: KnownLength, shape: NDArray | No
 
 
 def by_heights(bodies: Sequence[Body], heights_m: Sequence[Sequence[float | None]]) -> Unit:
-    """Return the unit by the stated heights of each take's persons.
+    """Return the unit from the stated heights of each take's persons.
 
-    Whose height is whose is found with the unit: the way to give tracks to persons in which all
-    bodies agree best. Tracks seen at one time are different persons, unless they share a tracklet:
-    then a camera exchanged two people. A track may be of nobody, and a person unseen. A take counts
-    if all its heights are stated and it has as many tracks. Where another way agrees about as well
-    and gives another unit, this is a doubt, and so are heights that contradict each other. Raises
-    `InputError` where no take counts.
+    Tracks are assigned to persons so that the lengths of all bodies agree best. Tracks with common
+    times are of different persons, unless they share a tracklet, because a camera exchanged two
+    people. A track may be of no person, and a person may have no track. A take is used if all its
+    heights are stated and it has as many tracks. There are warnings if another assignment agrees
+    about as well and gives another unit, and if heights contradict each other. Raises `InputError`
+    if no take can be used.
     """
-    takes = [
-        ways
-        for take, stated in enumerate(heights_m)
-        if (ways := _ways([one for one in bodies if one.take == take], stated)) is not None
-    ]
+    takes = _takes(bodies, heights_m)
     if not takes:
         raise InputError(
-            "people: expected `height_m` of every subject of a take whose legs and trunk are seen, "
-            f"found heights {[list(one) for one in heights_m]} of "
+            "people: expected `height_m` of every subject of a take whose legs and trunks are "
+            f"seen, found heights {[list(one) for one in heights_m]} for "
             f"{[sum(one.take == take for one in bodies) for take in range(len(heights_m))]} "
-            "persons; state them: nothing else tells the unit of length"
+            "tracks, by take; state the heights, or `known_lengths`: nothing else defines the scale"
         )
-    starts = np.unique(np.concatenate([ways.ratio().ravel() for ways in takes]).round(4))
-    found = [_settled(takes, unit) for unit in starts[np.isfinite(starts)]]
+    starts = np.unique(np.concatenate([take.ratio().ravel() for take in takes]).round(4))
+    found = [_converged(takes, unit) for unit in starts[np.isfinite(starts)]]
     cost, unit, ratios = min(found, key=lambda one: one[0])
     persons = sum(max(list(one).count(height) for one in heights_m) for height in ratios)
     of_height = np.hypot(OF_HEIGHT_SIGMA, STATED_SIGMA_M / min(ratios))
     sigma = float(np.hypot(of_height / np.sqrt(persons), NETWORK_SIGMA))
     rivals = [np.expm1(one[1] - unit) for one in found if one[0] < cost + SURE**2]
-    doubts = [*_rivals(rivals, sigma), *_disagreeing(ratios, SURE * np.sqrt(2) * of_height)]
+    warnings = [*_rivals(rivals, sigma), *_disagreeing(ratios, SURE * np.sqrt(2) * of_height)]
     if persons == 1:
-        doubts.append("one person's height alone tells the unit; a second person makes it surer")
-    return Unit(float(np.exp(unit)), sigma, HEIGHTS, tuple(doubts))
+        warnings.append(
+            "only one person's height defines the scale; add a second person, or a known length"
+        )
+    return Unit(float(np.exp(unit)), sigma, HEIGHTS, tuple(warnings))
 
 
 @dataclass(frozen=True, eq=False)
-class _Ways:
-    """All W ways to give the B tracks of a take to its persons."""
+class _Assignments:
+    """All W assignments of the B tracks of a take to its persons."""
 
-    height_m: NDArray  # (W, B): of the person of each track; NaN for nobody
+    height_m: NDArray  # (W, B): of the person of each track; NaN for no person
     length: NDArray  # (B,)
     weight: NDArray  # (B,): share of the frames
     n_unseen: NDArray  # (W,): stated persons without a track
@@ -234,7 +235,7 @@ class _Ways:
         return np.log(OF_HEIGHT * self.height_m / self.length)
 
     def best(self, unit: float) -> tuple[float, NDArray, NDArray]:
-        """Return of the way that agrees best its cost, in variances, heights and ratios (B,)."""
+        """Return the best assignment: its cost, in variances, heights and ratios (B,)."""
         own = np.hypot(OF_HEIGHT_SIGMA, STATED_SIGMA_M / self.height_m)
         off = (self.ratio() - unit) / np.hypot(own, MEASURED_SIGMA)
         cost = np.nan_to_num(off**2, nan=NOBODY**2) @ self.weight + NOBODY**2 * self.n_unseen
@@ -242,8 +243,19 @@ class _Ways:
         return float(cost[at]), self.height_m[at], self.ratio()[at]
 
 
-def _ways(bodies: Sequence[Body], stated: Sequence[float | None]) -> _Ways | None:
-    """Return the ways to give the tracks of a take to persons; None if it does not tell."""
+def _takes(
+    bodies: Sequence[Body], heights_m: Sequence[Sequence[float | None]]
+) -> list[_Assignments]:
+    """Return the assignments of all takes that can be used."""
+    each = (
+        _assignments([one for one in bodies if one.take == take], stated)
+        for take, stated in enumerate(heights_m)
+    )
+    return [found for found in each if found is not None]
+
+
+def _assignments(bodies: Sequence[Body], stated: Sequence[float | None]) -> _Assignments | None:
+    """Return the assignments of one take; None without all heights, or with fewer tracks."""
     heights = np.array([one or np.nan for one in stated])
     known = sorted((one for one in bodies if np.isfinite(one.length)), key=lambda one: -one.frames)
     if not len(heights) or not np.isfinite(heights).all() or len(known) < len(heights):
@@ -255,7 +267,7 @@ def _ways(bodies: Sequence[Body], stated: Sequence[float | None]) -> _Ways | Non
     weight *= len(heights) / weight[: len(heights)].sum()
     if len(heights) > MOST_PERSONS:
         order = np.argsort(np.argsort(length))
-        return _Ways(np.sort(heights)[order][None], length, weight, np.zeros(1))
+        return _Assignments(np.sort(heights)[order][None], length, weight, np.zeros(1))
     every = np.array(list(product(range(len(heights) + 1), repeat=len(known))))
     fine = (every < len(heights)).any(axis=1)
     for (a, one), (b, other) in combinations(enumerate(known), 2):
@@ -264,37 +276,39 @@ def _ways(bodies: Sequence[Body], stated: Sequence[float | None]) -> _Ways | Non
             fine &= (every[:, a] != every[:, b]) | (every[:, a] == len(heights))
     seen = np.sum([(every[fine] == who).any(axis=1) for who in range(len(heights))], axis=0)
     whose = np.append(heights, np.nan)[every[fine]]
-    return _Ways(whose, length, weight, len(heights) - seen) if len(whose) else None
+    return _Assignments(whose, length, weight, len(heights) - seen) if len(whose) else None
 
 
-def _settled(takes: Sequence[_Ways], unit: float) -> tuple[float, float, dict[float, float]]:
-    """Return the cost, the logarithm of the unit, and of it by height, from a first unit."""
+def _converged(
+    takes: Sequence[_Assignments], unit: float
+) -> tuple[float, float, dict[float, float]]:
+    """Return the cost, the logarithm of the unit, and the same by height, from a first unit."""
     for _ in range(ROUNDS):
-        best = [ways.best(unit) for ways in takes]
+        best = [take.best(unit) for take in takes]
         height_m, ratio = (np.concatenate(part) for part in list(zip(*best, strict=True))[1:])
-        weight = np.concatenate([ways.weight for ways in takes])
+        weight = np.concatenate([take.weight for take in takes])
         ratios = {}
         for one in np.unique(height_m[np.isfinite(height_m)]):
             own = height_m == one
             ratios[float(one)] = float(np.average(ratio[own], weights=weight[own]))
         unit = float(np.mean(list(ratios.values())))
-    return sum(ways.best(unit)[0] for ways in takes), unit, ratios
+    return sum(take.best(unit)[0] for take in takes), unit, ratios
 
 
 def _rivals(rivals: Sequence[float], sigma: float) -> Iterator[str]:
-    """Yield what other ways to give heights to persons, which agree as well, would change."""
+    """Yield a warning if other assignments that agree as well give another unit."""
     if (other := max(rivals, key=abs, default=0.0)) and abs(other) > sigma:
         yield (
-            "whose height is whose is not certain: with another way that agrees about as well all "
-            f"lengths would change by {100 * other:+.1f} %; name a take with one person in it, too"
+            "stated heights: another assignment of heights to persons agrees about as well and "
+            f"would change all lengths by {100 * other:+.1f} %; add a take with only one person"
         )
 
 
 def _disagreeing(ratios: dict[float, float], most: float) -> Iterator[str]:
-    """Yield that stated heights contradict each other."""
+    """Yield a warning if stated heights contradict each other."""
     tall, short = (choose(ratios, key=ratios.__getitem__) for choose in (max, min))
     if (apart := ratios[tall] - ratios[short]) > most:
         yield (
-            f"stated heights disagree by {100 * apart:.1f} %: if {tall:.2f} m is right, somebody "
-            f"stated as {short:.2f} m is {short * np.exp(apart):.2f} m tall; check both"
+            f"stated heights disagree by {100 * apart:.1f} %: if {tall:.2f} m is right, the person "
+            f"of {short:.2f} m is {short * np.exp(apart):.2f} m tall; check both heights"
         )

@@ -1,7 +1,7 @@
-"""The world of cameras that people alone place: its floor under their feet, and its covariance.
+"""The world frame of cameras from people alone: the floor under their feet, and the covariance.
 
-The origin lies on the floor below the middle of people's ways, z is up, and x runs along the floor
-as the line from the first camera to the second.
+The origin is on the floor below the middle of the people's paths, z is up, and x runs along the
+floor in the direction from the first camera to the second.
 """
 
 from collections.abc import Sequence
@@ -17,20 +17,20 @@ from courtside.geometry.camera import Camera
 from courtside.geometry.similarity import Sim3
 from courtside.records.keypoints import skeleton
 
-ANKLE = 0.055  # ASSUME: of the height: an ankle above the floor while its foot stands (players-dev)
-STANDING = 0.1  # the quantile of ankles' heights that is one of feet that stand
-TILT_M = 0.5  # ASSUME: feet spread less than this tell less of the floor's tilt than bodies do
-ROUNDS = 30  # of new weights
-EPSILON_M = 1e-3  # nearer to the floor all weights are alike
-TINY_STEP = 1e-6  # of a similarity, to differentiate by
+ANKLE = 0.055  # ASSUME: height of the ankle of a standing foot over the person's (players-dev)
+STANDING = 0.1  # the quantile of the ankles' heights that belongs to standing feet
+TILT_M = 0.5  # ASSUME: extent of feet, or points, that define the tilt as well as bodies do
+ROUNDS = 30  # of reweighting
+EPSILON_M = 1e-3  # the weight is constant below this distance from the floor
+TINY_STEP = 1e-6  # of a similarity, for numerical derivatives
 
 
 def floor(xyz: NDArray, cameras: Sequence[Camera], on_floor: NDArray | None = None) -> Sim3:
     """Return `world_from_cameras` for joints (T, J, 3) m of all persons, NaN where unknown.
 
-    The lowest places of ankles lie in one plane. Where people stay in one place, it is
-    perpendicular to the mean line from ankles to shoulders. Points `on_floor` (P, 3) tell the
-    floor's height better, and its tilt where three or more do not lie on one line.
+    The floor is the plane of the lowest ankles. If people stay in one place, it is perpendicular to
+    the mean line from ankles to shoulders. Points `on_floor` (P, 3) replace its height, and its
+    tilt if three or more are not on one line.
     """
     place = {name: xyz[:, at] for at, name in enumerate(skeleton.JOINTS)}
     upward = rotations.unit(unit.middle(place, "shoulder") - unit.middle(place, "ankle"))
@@ -61,9 +61,10 @@ def axes(up: NDArray, along: NDArray) -> NDArray:
 
 
 def _lowest_plane(xyz: NDArray) -> tuple[NDArray, float]:
-    """Return slopes (2,) and offset of z over x and y: the plane of a low quantile of points.
+    """Return slopes (2,) and offset of z over x and y, for the plane of a low quantile of points.
 
-    Quantile regression (Koenker & Bassett 1978) by weighted least squares; slopes are held to 0.
+    Quantile regression (Koenker & Bassett 1978) by weighted least squares, with a prior of 0 for
+    the slopes.
     """
     design = np.column_stack([xyz[:, :2], np.ones(len(xyz))])
     found = np.array([0.0, 0.0, np.quantile(xyz[:, 2], STANDING)])
@@ -81,12 +82,12 @@ def of_shape(
     xyz: NDArray,
     scale_sigma: float | None,
 ) -> NDArray:
-    """Return the covariance (K, K) of cameras in the world that people's joints define.
+    """Return the covariance (K, K) of cameras in the world frame that joints define.
 
-    `covariance` is that of a network's columns, with little known of place, direction and scale of
-    the whole. Errors of these three are taken out: the world moves with joints `xyz` (N, 3) m (an
-    S-transformation, Baarda 1973). `scale_sigma`, a share, is then added about their middle; None
-    of cameras whose scale the covariance knows, which stays as it is.
+    `covariance` is that of a network's columns, with large errors of position, orientation and
+    scale of the whole. These errors are removed, because joints `xyz` (N, 3) m define the world
+    frame (an S-transformation, Baarda 1973). The error of the scale is then added: `scale_sigma`,
+    a share, about the middle of the joints. With None, the scale and its error stay as they are.
     """
     network, middle = selection.of_cameras(cameras), xyz.mean(axis=0)
     moved = [
@@ -107,5 +108,5 @@ def of_shape(
 
 
 def _about(middle: NDArray, scale: float, rotation: NDArray) -> Sim3:
-    """Return a similarity that leaves a point where it is."""
+    """Return a similarity about a point, which does not move."""
     return Sim3(scale, rotation, middle - scale * rotation @ middle)

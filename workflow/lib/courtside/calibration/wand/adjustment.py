@@ -1,9 +1,9 @@
-"""All cameras and all places of a wand adjusted together, with covariance.
+"""Bundle adjustment of all cameras and all positions of a wand, with covariance.
 
-A body is one place of the wand, or a single point: a marker whose partners are hidden, or a clicked
+A body is the wand in one frame, or a single point: a marker whose partners are hidden, or a clicked
 point. Bodies are eliminated from the normal equations, so that the cost is linear in frames. One
-more unknown is how much longer the wand is than stated, held by how well its length is known.
-Residuals have Cauchy weights, wide at first.
+more unknown is the ratio of the true length of the wand to the stated one; the uncertainty of the
+stated length is its prior. Residuals have Cauchy weights; their scale is wide at first.
 """
 
 from dataclasses import dataclass, replace
@@ -16,36 +16,37 @@ from courtside.calibration.bundle import problem
 from courtside.calibration.bundle.problem import IMAGE, Network
 from courtside.geometry import rotations
 
-BODY = 5  # unknowns: place of its origin (3), turn of its direction (2)
-WIDENED = (8.0, 4.0, 2.0, 1.0)  # of the Cauchy scale: first cameras are rough, and lose no view
-CAUCHY = 2.5  # ASSUME: of an observation's sigma: where a residual has lost half its weight
-ROUNDS = 6  # of a new sigma, after the last widening
-STEPS, SETTLED = 12, 1e-4  # of Gauss-Newton within a round, and of the cost
-# Variance of a place with these weights, normal errors in two dimensions, over what the sum of
-# weights says: E[w] E[w^2 s] / (2 E[w^2]^2), w the weight, s the square of an error in sigmas.
-EFFICIENT = 0.84
-WRONG = 4.0  # sigmas: a marker farther off is another spot
-LEAST_SIGMA_PX = 0.01  # no marker is found better
-BLOCKS = 40  # ASSUME: of time, that err each by itself
-RIGID = 6  # place and direction of a world that nothing else defines
+BODY = 5  # unknowns: position of its origin (3), rotation of its direction (2)
+WIDENED = (8.0, 4.0, 2.0, 1.0)  # factors of the Cauchy scale: initial cameras are rough
+CAUCHY = 2.5  # ASSUME: sigmas at which a residual has half its weight
+ROUNDS = 6  # of estimating sigma again, after the last widening
+STEPS, CONVERGED = 12, 1e-4  # most steps of a round; relative decrease of the cost at its end
+# Variance of a position with these weights and normal errors in two dimensions, divided by the one
+# that the sum of weights gives: E[w] E[w^2 s] / (2 E[w^2]^2), w the weight, s the squared error in
+# sigmas.
+EFFICIENCY = 0.84
+WRONG_SIGMAS = 4.0  # a marker with a larger residual is another spot
+LEAST_SIGMA_PX = 0.01  # no program finds markers better
+BLOCKS = 40  # ASSUME: parts of the time whose errors are independent
+RIGID = 6  # position and orientation of a world that only the wand defines
 
 
 @dataclass(frozen=True, eq=False)
 class Bodies:
-    """Places of a wand, and points known with some uncertainty."""
+    """The wand in N frames, and points at known positions."""
 
     origin: NDArray  # (N, 3) m
-    direction: NDArray  # (N, 3): unit vectors along the wand; of a point any
-    known: NDArray  # (N, 3) m: of a point its stated place
-    sigma_m: NDArray  # (N,): inf of the wand
-    body: NDArray  # (P,): of each point of the network
-    along_m: NDArray  # (P,): its stated place on its body, from the origin
-    block: NDArray  # (N,): of time
+    direction: NDArray  # (N, 3): unit vectors along the wand; arbitrary for a point
+    known: NDArray  # (N, 3) m: the stated position of a point
+    sigma_m: NDArray  # (N,): its standard deviation; inf for the wand
+    body: NDArray  # (P,): the body of each point of the network
+    along_m: NDArray  # (P,): its stated distance from the origin of its body
+    block: NDArray  # (N,): the part of the time
 
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Cameras, bodies, and the logarithm of the true length of the wand over the stated one."""
+    """Cameras, bodies, and the logarithm of the ratio of the true length to the stated one."""
 
     network: Network  # its points follow from the bodies
     bodies: Bodies
@@ -53,7 +54,7 @@ class State:
     length_sigma: float = 0.0
 
     def placed(self) -> "State":
-        """Return the state with the network's points where its bodies are."""
+        """Return the state with the points of the network at the positions given by the bodies."""
         each = self.bodies
         away = (np.exp(self.length) * each.along_m)[:, None] * each.direction[each.body]
         return replace(self, network=replace(self.network, xyz=each.origin[each.body] + away))
@@ -61,12 +62,12 @@ class State:
 
 @dataclass(frozen=True, eq=False)
 class Adjusted:
-    """Cameras adjusted with a wand."""
+    """The result of the adjustment."""
 
     state: State
     covariance: NDArray  # (K, K): of the network's columns
-    sigma_px: float  # of a marker along each axis
-    factor: float  # by which the scatter of blocks of time widens their variance
+    sigma_px: float  # of a marker, per axis
+    factor: float  # of the covariance, from the scatter of the parts of the time
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,63 +77,65 @@ class _Normal:
     information: NDArray  # (A, A)
     gradient: NDArray  # (A,)
     inverse: NDArray  # (N, 5, 5): of the bodies' information
-    own: NDArray  # (N, 5): their gradient
+    own: NDArray  # (N, 5): gradient of the bodies
     coupling: NDArray  # (N, 5, A)
-    scores: NDArray  # (N, A): part of each body in the gradient
+    scores: NDArray  # (N, A): contribution of each body to the gradient
 
 
 def adjust(state: State, active: NDArray, of_wand: NDArray) -> Adjusted:
-    """Adjust the cameras' `active` columns (K,) and all bodies.
+    """Adjust the `active` columns (K,) of the cameras, and all bodies.
 
-    `of_wand` (M,) are the views whose sigma is estimated from their residuals; others keep theirs.
+    `of_wand` (M,) selects the views whose sigma is estimated from residuals; others keep theirs.
     """
     columns = np.append(active, state.length_sigma > 0)
-    left = _left(state.bodies, int(columns.sum()), int(of_wand.sum()))
-    sigma_px = _sigma(state, of_wand, left)
+    redundancy = _redundancy(state.bodies, int(columns.sum()), int(of_wand.sum()))
+    sigma_px = _sigma(state, of_wand, redundancy)
     for widened in (*WIDENED, *[1.0] * ROUNDS):
-        state = _settled(_weighed(state, of_wand, sigma_px, CAUCHY * widened), columns)
-        last, sigma_px = sigma_px, _sigma(state, of_wand, left)
+        state = _minimised(_weighted(state, of_wand, sigma_px, CAUCHY * widened), columns)
+        last, sigma_px = sigma_px, _sigma(state, of_wand, redundancy)
         if widened == 1.0 and abs(sigma_px - last) <= 1e-3 * sigma_px:
             break
-    state = _weighed(state, of_wand, sigma_px, CAUCHY)
-    factor = _excess(state, columns)
-    wide = float(np.sqrt(EFFICIENT * factor))
-    normal = _normal(_weighed(state, of_wand, wide * sigma_px, CAUCHY / wide), columns, 0.0)
+    state = _weighted(state, of_wand, sigma_px, CAUCHY)
+    factor = _factor_of_blocks(state, columns)
+    wide = float(np.sqrt(EFFICIENCY * factor))
+    normal = _normal(_weighted(state, of_wand, wide * sigma_px, CAUCHY / wide), columns, 0.0)
     covariance = np.zeros((len(columns), len(columns)))
     covariance[np.ix_(columns, columns)] = _inverse(state, normal)
     return Adjusted(state, covariance[:-1, :-1], sigma_px, factor)
 
 
-def _left(bodies: Bodies, of_cameras: int, views: int) -> float:
-    """Return the share of the wand's measurements that its places and the cameras do not take."""
+def _redundancy(bodies: Bodies, of_cameras: int, views: int) -> float:
+    """Return the share of the wand's measurements above the number of unknowns."""
     swung = bodies.sigma_m == np.inf
     turned = np.unique(bodies.body[bodies.along_m != 0])
     unknown = 3 * int(swung.sum()) + 2 * len(turned) + of_cameras
     return max(1.0, 2 * views - unknown) / (2 * views)
 
 
-def _sigma(state: State, of_wand: NDArray, left: float) -> float:
-    """Return the sigma of a marker along an axis, px: that of residuals but those of wrong markers.
+def _sigma(state: State, of_wand: NDArray, redundancy: float) -> float:
+    """Return the sigma of a marker per axis, px, from residuals without those of wrong markers.
 
-    Residuals of markers that two cameras see are far smaller across the epipolar lines than along
-    them: the median of lengths tells which markers are wrong, the mean square of others the sigma.
+    Residuals of markers that two cameras see are nearly zero along one axis. Therefore the median
+    of the residuals' lengths only decides which markers are wrong; sigma is the root mean square of
+    the others.
     """
     off = problem.residuals(state.network)[of_wand]
     length = np.linalg.norm(off, axis=1)
-    typical = float(np.nanmedian(length)) / point_covariance.MEDIAN_2D / np.sqrt(left)
-    inside = length < WRONG * max(LEAST_SIGMA_PX, typical)
-    found = float(np.sqrt(np.mean(off[inside] ** 2) / left)) if inside.any() else typical
+    typical = float(np.nanmedian(length)) / point_covariance.MEDIAN_2D / np.sqrt(redundancy)
+    inside = length < WRONG_SIGMAS * max(LEAST_SIGMA_PX, typical)
+    found = float(np.sqrt(np.mean(off[inside] ** 2) / redundancy)) if inside.any() else typical
     return max(LEAST_SIGMA_PX, found)
 
 
-def _weighed(state: State, of_wand: NDArray, sigma_px: float, scale: float) -> State:
+def _weighted(state: State, of_wand: NDArray, sigma_px: float, scale: float) -> State:
+    """Return the state with this sigma of markers, and this Cauchy scale of all views."""
     sigma = np.where(of_wand, sigma_px, state.network.sigma_px)
     network = replace(state.network, sigma_px=sigma, loss_scale=np.full(len(sigma), scale))
     return replace(state, network=network)
 
 
-def _settled(state: State, columns: NDArray) -> State:
-    """Return the state of least cost near one, by Levenberg and Marquardt."""
+def _minimised(state: State, columns: NDArray) -> State:
+    """Return the state at the minimum of the cost, by the method of Levenberg and Marquardt."""
     damping, cost = 1e-4, _cost(state)
     for _ in range(STEPS):
         normal = _normal(state, columns, damping)
@@ -146,40 +149,40 @@ def _settled(state: State, columns: NDArray) -> State:
         if not trial <= cost:
             break
         fell, state, cost, damping = cost - trial, moved, trial, max(damping / 10, 1e-9)
-        if fell <= SETTLED * cost:
+        if fell <= CONVERGED * cost:
             break
     return state
 
 
 def _scaled(state: State) -> tuple[NDArray, NDArray]:
-    """Return the square (M,) of residuals in sigmas, NaN behind a camera, and robust weights."""
+    """Return squared residuals (M,) in sigmas, NaN behind a camera, and robust weights (M,)."""
     off = problem.residuals(state.network) / state.network.sigma_px[:, None]
     square = (off**2).sum(axis=1)
     return square, np.nan_to_num(1 / (1 + square / state.network.loss_scale**2))
 
 
 def _cost(state: State) -> float:
-    """Return twice the robust cost; inf where a point is behind a camera that sees it."""
+    """Return twice the robust cost; inf if a point is behind a camera that sees it."""
     network, bodies = state.network, state.bodies
     square, _ = _scaled(state)
     if not np.isfinite(square).all():
         return np.inf
     loss = network.loss_scale**2
     total = float((loss * np.log1p(square / loss)).sum())
-    lens, _ = _of_prior(network.lens - network.lens_mean, network.lens_sigma)
-    place, _ = _of_prior(bodies.origin - bodies.known, bodies.sigma_m[:, None])
-    length, _ = _of_prior(np.array(state.length), np.array(state.length_sigma))
+    lens, _ = _in_sigmas(network.lens - network.lens_mean, network.lens_sigma)
+    place, _ = _in_sigmas(bodies.origin - bodies.known, bodies.sigma_m[:, None])
+    length, _ = _in_sigmas(np.array(state.length), np.array(state.length_sigma))
     return total + float((lens**2).sum() + (place**2).sum() + length**2)
 
 
-def _of_prior(off: NDArray, sigma: NDArray) -> tuple[NDArray, NDArray]:
-    """Return differences in sigmas, and 1 / sigma; 0 of what is kept (0) or unknown (inf)."""
+def _in_sigmas(off: NDArray, sigma: NDArray) -> tuple[NDArray, NDArray]:
+    """Return differences from a prior in sigmas, and 1 / sigma; both 0 where sigma is 0 or inf."""
     inverse = np.divide(1.0, sigma, out=np.zeros_like(sigma), where=sigma > 0)
     return off * inverse, inverse
 
 
 def _normal(state: State, columns: NDArray, damping: float) -> _Normal:
-    """Return the normal equations of the active `columns` (K + 1,): cameras', then the length."""
+    """Return the normal equations of the active `columns` (K + 1,): of cameras, then the length."""
     network, bodies = state.network, state.bodies
     off, by_camera, by_point = problem.linearised(network)
     _, weight = _scaled(state)
@@ -187,7 +190,7 @@ def _normal(state: State, columns: NDArray, damping: float) -> _Normal:
     off, by_point = off * root, by_point * root[:, :, None]
     reach = np.exp(state.length) * bodies.along_m[network.point_idx]
     body = bodies.body[network.point_idx]
-    by_turn = reach[:, None, None] * by_point @ _across(bodies.direction)[body]
+    by_turn = reach[:, None, None] * by_point @ _perpendicular(bodies.direction)[body]
     by_body = np.concatenate([by_point, by_turn], axis=2)
     along = reach[:, None] * bodies.direction[body]
     by_length = np.einsum("mri,mi->mr", by_point, along)[:, :, None]
@@ -199,7 +202,7 @@ def _normal(state: State, columns: NDArray, damping: float) -> _Normal:
     information = _summed(at, np.einsum("mri,mrj->mij", side, side), at, size, size)
     prior, pull = _prior(state)
     information[np.diag_indices(size)] += prior
-    own, inverse = _body_side(bodies, body, by_body, off, damping)
+    own, inverse = _of_bodies(bodies, body, by_body, off, damping)
     rows = BODY * body[:, None] + np.arange(BODY)
     coupling = _summed(at, np.einsum("mri,mrj->mij", by_body, side), rows, BODY * count, size)
     coupling = coupling.reshape(count, BODY, size)[:, :, columns]
@@ -214,40 +217,40 @@ def _normal(state: State, columns: NDArray, damping: float) -> _Normal:
 
 
 def _summed(at: NDArray, values: NDArray, rows: NDArray, n_rows: int, size: int) -> NDArray:
-    """Return sums (n_rows, size) of values (M, [R,] A) by rows (M, [R]) and columns (M, A)."""
+    """Return the sums (n_rows, size) of values (M, [R,] A) by rows (M, [R]) and columns (M, A)."""
     flat = rows[..., None] * size + (at[:, None] if rows.ndim > 1 else at)
     return np.bincount(flat.ravel(), values.ravel(), minlength=n_rows * size).reshape(n_rows, size)
 
 
-def _across(direction: NDArray) -> NDArray:
-    """Return two unit vectors (N, 3, 2) across each direction (N, 3)."""
+def _perpendicular(direction: NDArray) -> NDArray:
+    """Return two unit vectors (N, 3, 2) perpendicular to each direction (N, 3)."""
     axis = np.eye(3)[np.abs(direction).argmin(axis=1)]
     first = rotations.unit(np.cross(direction, axis))
     return np.stack([first, np.cross(direction, first)], axis=2)
 
 
 def _prior(state: State) -> tuple[NDArray, NDArray]:
-    """Return information (K + 1,) and gradient of what is known of lenses and of the length."""
+    """Return information (K + 1,) and gradient (K + 1,) of the priors of lenses and length."""
     network = state.network
     first = IMAGE * len(network.cam_from_world)
-    lens, inverse = _of_prior(network.lens - network.lens_mean, network.lens_sigma)
-    length, of_length = _of_prior(np.array(state.length), np.array(state.length_sigma))
+    lens, inverse = _in_sigmas(network.lens - network.lens_mean, network.lens_sigma)
+    length, of_length = _in_sigmas(np.array(state.length), np.array(state.length_sigma))
     weight = np.concatenate([np.zeros(first), inverse.ravel(), [float(of_length)]])
     off = np.concatenate([np.zeros(first), lens.ravel(), [float(length)]])
     return weight**2, weight * off
 
 
-def _body_side(
+def _of_bodies(
     bodies: Bodies, body: NDArray, by_body: NDArray, off: NDArray, damping: float
 ) -> tuple[NDArray, NDArray]:
-    """Return the gradient (N, 5) of bodies and the inverse (N, 5, 5) of their information."""
+    """Return the gradient (N, 5) of the bodies and the inverse (N, 5, 5) of their information."""
     count = len(bodies.origin)
     blocks = np.einsum("mri,mrj->mij", by_body, by_body).reshape(len(off), -1)
     at = np.broadcast_to(np.arange(BODY * BODY), blocks.shape)
     square = _summed(at, blocks, body, count, BODY * BODY).reshape(count, BODY, BODY)
     at = np.broadcast_to(np.arange(BODY), (len(off), BODY))
     own = _summed(at, np.einsum("mri,mr->mi", by_body, off), body, count, BODY)
-    place, inverse = _of_prior(bodies.origin - bodies.known, bodies.sigma_m[:, None])
+    place, inverse = _in_sigmas(bodies.origin - bodies.known, bodies.sigma_m[:, None])
     diagonal = np.einsum("bii->bi", square)
     diagonal[:, :3] += inverse**2
     own[:, :3] += inverse * place
@@ -265,7 +268,7 @@ def _moved(state: State, columns: NDArray, normal: _Normal, damping: float) -> S
     pull = normal.own + np.einsum("bia,a->bi", normal.coupling, part)
     own = -np.einsum("bij,bj->bi", normal.inverse, pull)
     bodies = state.bodies
-    turn = np.einsum("bij,bj->bi", _across(bodies.direction), own[:, 3:])
+    turn = np.einsum("bij,bj->bi", _perpendicular(bodies.direction), own[:, 3:])
     bodies = replace(
         bodies,
         origin=bodies.origin + own[:, :3],
@@ -283,12 +286,12 @@ def _inverse(state: State, normal: _Normal) -> NDArray:
     return point_covariance.pseudo_inverse(normal.information, n_free=free)
 
 
-def _excess(state: State, columns: NDArray) -> float:
-    """Return how much more blocks of time scatter than single frames do, 1 or more.
+def _factor_of_blocks(state: State, columns: NDArray) -> float:
+    """Return the scatter of blocks of time relative to that of single frames, 1 or more.
 
-    Markers err together where cameras do not film at one time or a tracker holds another spot. The
-    scores of blocks scatter then more than those of single frames; their mean excess over all
-    unknowns widens the covariance (a sandwich estimate with one number).
+    Errors of neighbouring frames are correlated if cameras are not synchronised, or if a tracker
+    follows another spot. The scores of blocks then scatter more than those of single frames. The
+    mean ratio over all unknowns multiplies the covariance (a sandwich estimate with one number).
     """
     normal = _normal(state, columns, 0.0)
     inverse = _inverse(state, normal)

@@ -1,4 +1,4 @@
-"""Cameras from a wand: placed, adjusted, stated in a world, and told how well it fits."""
+"""Calibration of cameras with a wand: initial cameras, adjustment, world frame, checks."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -15,43 +15,43 @@ from courtside.calibration.people.adjustment import Clicks
 from courtside.calibration.wand import adjustment, start, timing, world
 from courtside.calibration.wand.adjustment import Adjusted, Bodies, State
 from courtside.calibration.wand.points import Seen, Wand
-from courtside.geometry import similarity
+from courtside.geometry import rotations, similarity
 from courtside.geometry.camera import Camera, project, undistort
 from courtside.geometry.similarity import Sim3
 from courtside.study.errors import InputError
 
-MOST_FRAMES = 1000  # that are adjusted; more take longer, and neighbouring ones say the same
-MOST_PLACES = 200  # markers that the world of the covariance rests on
-FAR_SHARE = 0.0025  # ASSUME: of a picture's longer side: markers so far off are wrong
-LEAST_NEAR = 0.7  # ASSUME: share of the markers that are nearer
-LEAST_WAY = 0.5  # ASSUME: a wand's way over its length in a picture: less is waved in one place
-# ASSUME: least extents of its ways across their length, as shares.
+MOST_FRAMES = 1000  # in the adjustment; neighbouring frames add little
+MOST_PLACES = 200  # markers that define the world frame of the covariance
+FAR_SHARE = 0.0025  # ASSUME: of a picture's longer side: markers with larger residuals are wrong
+LEAST_NEAR = 0.7  # ASSUME: share of markers with smaller residuals
+LEAST_PATH = 0.5  # ASSUME: path of a wand over its length, both in a picture
+# ASSUME: least extents of the path along its second and third axes, relative to the first.
 LEAST_EXTENTS = {"on a line": 0.1, "in a plane": 0.03}
 
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """Cameras from a wand."""
+    """The result of a calibration with a wand."""
 
     cameras: list[Camera]
-    covariance: NDArray  # of the network's columns, as of `records.covariance.of_network`
-    world: str  # what it is, in words
+    covariance: NDArray  # of the network's columns, as for `records.covariance.of_network`
+    world: str  # description of the world frame
     stated: bool  # whether floor or points define it
-    xyz: NDArray  # (F, M, 3) m: markers where views agree
-    error_px: NDArray  # (C, F, M, 2): predicted less seen; NaN where not both
+    xyz: NDArray  # (F, M, 3) m: markers whose views agree, others NaN
+    error_px: NDArray  # (C, F, M, 2): projected minus measured; NaN where either is missing
     adjusted: Adjusted
 
 
 @dataclass(frozen=True, eq=False)
 class Floor:
-    """Frames in which the wand lies on the floor, and how high its markers' centres are then."""
+    """Frames in which the wand lies on the floor, and the height of the markers' centres then."""
 
     frames: tuple[float, ...]
     above_m: float = 0.0
 
     @classmethod
     def of(cls, given: Mapping[str, Any]) -> "Floor | None":
-        """Build it from the keys of a session; None where nothing lies on the floor."""
+        """Build it from `wand` of a session; None without the key `floor`."""
         if "floor" not in given:
             return None
         frames = tuple(float(frame) for frame in given["floor"])
@@ -67,14 +67,14 @@ def calibrate(
     floor: Floor | None = None,
     clicks: Callable[[Sequence[Camera]], Clicks] | None = None,
 ) -> Found:
-    """Calibrate cameras by a wand that they see.
+    """Calibrate cameras with a wand.
 
-    `sizes` px of each camera's pictures. `lenses`, where they are known, are kept; others are
-    adjusted. `clicks` returns those of points at known places, weighted for cameras; they are
-    adjusted with the wand, and their world is that of the cameras. Raises `InputError` where the
-    wand does not tell how cameras stand.
+    `sizes` are those of the pictures by camera, px. Known `lenses` are kept, others are estimated.
+    `clicks` takes cameras and returns clicked points at known positions; they are adjusted together
+    with the wand and define the world frame. Without clicks, the frames of `floor` define it.
+    Raises `InputError` if the wand does not determine the cameras.
     """
-    _check_ways(seen)
+    _check_path(seen)
     cameras = start.guess(wand, seen, sizes, lenses)
     for _ in range(2):  # the second time with all frames that the first cameras agree on
         state = _state(wand, seen, cameras, lenses)
@@ -104,7 +104,7 @@ def calibrate(
 def _world(
     seen: Seen, xyz: NDArray, cameras: Sequence[Camera], floor: Floor | None
 ) -> tuple[Sim3, NDArray, str]:
-    """Return `world_from_cameras`, the places (N, 3) that define it, and what it is."""
+    """Return `world_from_cameras`, the positions (N, 3) that define it, and its description."""
     if floor is None:
         places = xyz.reshape(-1, 3)
         places = places[np.isfinite(places).all(axis=1)]
@@ -113,7 +113,7 @@ def _world(
     missing = [frame for frame in floor.frames if frame not in seen.frames]
     if missing:
         raise InputError(
-            f"wand.floor: expected frames of the wand's file, found {missing[0]:g}; name those in "
+            f"wand.floor: expected frames of the wand's file, found {missing[0]:g}; list frames in "
             "which the wand lies on the floor"
         )
     lying = xyz[[int(np.flatnonzero(seen.frames == frame)[0]) for frame in floor.frames]]
@@ -122,8 +122,8 @@ def _world(
     return moved, places[np.isfinite(places).all(axis=1)], "the floor's"
 
 
-def _check_ways(seen: Seen) -> None:
-    """Raise an `InputError` if the wand stays in one place in every picture."""
+def _check_path(seen: Seen) -> None:
+    """Raise an `InputError` if the wand hardly moves in every picture."""
     longest = 0.0
     for xy in seen.xy:
         both = xy[np.isfinite(xy[..., 0]).all(axis=1)]
@@ -132,27 +132,27 @@ def _check_ways(seen: Seen) -> None:
         own = np.median(np.linalg.norm(both[:, -1] - both[:, 0], axis=1))
         low, high = np.quantile(both.mean(axis=1), [0.05, 0.95], axis=0)
         longest = max(longest, float(np.linalg.norm(high - low) / max(float(own), 1.0)))
-    if longest < LEAST_WAY:
+    if longest < LEAST_PATH:
         raise InputError(
-            f"wand: expected ways of {LEAST_WAY:g} of its length or more in a picture, found "
-            f"{longest:.2f}; {start.HOW}"
+            f"wand: expected a path of {LEAST_PATH:g} times its length or more in a picture, found "
+            f"{longest:.2f} times; {start.HOW}"
         )
 
 
 def _check_extent(xyz: NDArray) -> None:
-    """Raise an `InputError` if all places are on a line or in a plane."""
+    """Raise an `InputError` if all positions of markers (F, M, 3) are on a line or in a plane."""
     places = xyz.reshape(-1, 3)
     extents = similarity.flatness(places[np.isfinite(places).all(axis=1)])[1:]
     for extent, (what, least) in zip(extents, LEAST_EXTENTS.items(), strict=True):
         if extent < least:
             raise InputError(
-                f"wand: expected ways in all directions, found them {what}, "
-                f"{100 * extent:.1f} % as wide as long; {start.HOW}"
+                f"wand: expected movement in all directions, found positions {what}: their extent "
+                f"across it is {100 * extent:.1f} % of their length; {start.HOW}"
             )
 
 
 def _check_sync(seen: Seen, cameras: Sequence[Camera], xyz: NDArray) -> None:
-    """Raise an `InputError` if views of the same frames do not show one place of the wand."""
+    """Raise an `InputError` if the views of a frame do not show the same position of the wand."""
     near = []
     for camera, xy in zip(cameras, seen.xy, strict=True):
         off = np.linalg.norm(project(camera, xyz) - xy, axis=-1)
@@ -160,18 +160,17 @@ def _check_sync(seen: Seen, cameras: Sequence[Camera], xyz: NDArray) -> None:
         near.append(float((off[shown] < FAR_SHARE * max(camera.size)).mean()))
     worst = int(np.argmin(near))
     if near[worst] < LEAST_NEAR:
-        frames = timing.late(cameras, seen, xyz)[0][worst]
+        frames = timing.delays(cameras, seen, xyz)[0][worst]
         raise InputError(
-            f"camera {cameras[worst].name}: expected markers within "
-            f"{FAR_SHARE * max(cameras[worst].size):.1f} px of where the other cameras see them, "
-            f"found {100 * near[worst]:.0f} % of them, as if it filmed {abs(frames):.1f} frames or "
-            f"more {'late' if frames > 0 else 'early'}; check that the videos are synchronised, "
-            "and which marker is which"
+            f"camera {cameras[worst].name}: expected most markers within "
+            f"{FAR_SHARE * max(cameras[worst].size):.1f} px of their positions by all cameras, "
+            f"found {100 * near[worst]:.0f} % of them (apparent delay {frames:+.1f} frames); check "
+            "that the videos are synchronised, and that no markers are exchanged"
         )
 
 
 def _straight(cameras, lenses: Mapping[str, Camera], xy: NDArray) -> NDArray:
-    """Return px (C, ...) that cameras of known lenses would see without distortion."""
+    """Return px (C, ...), without distortion for cameras with known lenses."""
     return np.stack([
         undistort(lens, px) * np.diag(lens.K)[:2] + lens.K[:2, 2]
         if (lens := lenses.get(camera.name))
@@ -183,57 +182,59 @@ def _straight(cameras, lenses: Mapping[str, Camera], xy: NDArray) -> NDArray:
 def _state(
     wand: Wand, seen: Seen, cameras: Sequence[Camera], lenses: Mapping[str, Camera]
 ) -> State:
-    """Return cameras, and a body for each frame whose markers they agree on."""
+    """Return cameras, and a body for each frame with a marker on which views agree."""
     xyz = start.triangulated(cameras, seen.xy)
     frames = np.flatnonzero(np.isfinite(xyz[..., 0]).any(axis=1))
     if len(frames) < start.FEWEST_FRAMES:
         raise InputError(
-            f"wand: expected {start.FEWEST_FRAMES} frames or more in which cameras agree about a "
-            f"marker, found {len(frames)}; check that the videos are synchronised, and {start.HOW}"
+            f"wand: expected {start.FEWEST_FRAMES} frames or more in which cameras agree on the "
+            f"position of a marker, found {len(frames)}; check that the videos are synchronised, "
+            f"and {start.HOW}"
         )
     frames = frames[np.linspace(0, len(frames) - 1, min(len(frames), MOST_FRAMES)).astype(int)]
-    frame, marker = np.nonzero(np.isfinite(xyz[frames][..., 0]))
-    count = np.bincount(frame, minlength=len(frames))
-    middle = np.bincount(frame, wand.along_m[marker]) / count
-    ends = [np.array([rows[at] for rows in map(np.flatnonzero, _known(xyz[frames]))])
-            for at in (0, -1)]  # fmt: skip
-    each = np.arange(len(frames))
-    along = xyz[frames[each], ends[1]] - xyz[frames[each], ends[0]]
-    along = np.where((count > 1)[:, None], along, [1.0, 0.0, 0.0])
-    origin = np.stack([np.bincount(frame, x) for x in xyz[frames[frame], marker].T], axis=1)
-    bodies = Bodies(
-        origin / count[:, None],
-        along / np.linalg.norm(along, axis=1, keepdims=True),
-        np.zeros((len(frames), 3)),
-        np.full(len(frames), np.inf),
-        frame,
-        wand.along_m[marker] - middle[frame],
-        (adjustment.BLOCKS * each) // len(frames),
-    )
-    xy = _straight(cameras, lenses, seen.xy[:, frames[frame], marker])
+    xyz = xyz[frames]
+    known = np.isfinite(xyz[..., 0])
+    xy = _straight(cameras, lenses, seen.xy[:, frames][:, known])
     image, point = np.nonzero(np.isfinite(xy[..., 0]))
     network = selection.of_cameras(_without(cameras, lenses))
-    network = problem.with_points(
-        network, xyz[frames[frame], marker], image, point, xy[image, point]
-    )
+    network = problem.with_points(network, xyz[known], image, point, xy[image, point])
     sigma = wand.sigma_m / wand.length_m
-    state = State(_with_prior(network, cameras), bodies, 0.0, sigma).placed()
+    state = State(_with_prior(network, cameras), _bodies(wand, xyz), 0.0, sigma).placed()
     return _in_front(state)
 
 
-def _known(xyz: NDArray) -> NDArray:
-    return np.isfinite(xyz[..., 0])
+def _bodies(wand: Wand, xyz: NDArray) -> Bodies:
+    """Return a body for each frame of markers (F, M, 3), NaN where unknown; one or more is known.
+
+    The origin is the mean of the known markers.
+    """
+    known = np.isfinite(xyz[..., 0])
+    each, count = np.arange(len(xyz)), known.sum(axis=1)
+    first, last = known.argmax(axis=1), known.shape[1] - 1 - known[:, ::-1].argmax(axis=1)
+    along = xyz[each, last] - xyz[each, first]
+    along[count == 1] = [1.0, 0.0, 0.0]
+    origin_m = known @ wand.along_m / count
+    frame, marker = np.nonzero(known)
+    return Bodies(
+        origin=np.nansum(xyz, axis=1) / count[:, None],
+        direction=rotations.unit(along),
+        known=np.zeros((len(xyz), 3)),
+        sigma_m=np.full(len(xyz), np.inf),
+        body=frame,
+        along_m=wand.along_m[marker] - origin_m[frame],
+        block=(adjustment.BLOCKS * each) // len(xyz),
+    )
 
 
 def _without(cameras, lenses) -> list[Camera]:
-    """Return cameras; those of known lenses without distortion."""
+    """Return the cameras; those with known lenses without distortion."""
     return [
         replace(camera, dist=np.zeros(5)) if camera.name in lenses else camera for camera in cameras
     ]
 
 
 def _with_prior(network, cameras: Sequence[Camera]):
-    """Return a network with what lenses usually are, as where points alone calibrate."""
+    """Return a network with the priors of lenses of `points_alone`."""
     mean, sigma = network.lens.copy(), np.full(network.lens.shape, np.inf)
     mean[:, LENS.index("aspect")] = 1.0
     mean[:, 2:4] = [[(length - 1) / 2 for length in camera.size] for camera in cameras]
@@ -245,14 +246,14 @@ def _with_prior(network, cameras: Sequence[Camera]):
 
 
 def _in_front(state: State) -> State:
-    """Return a state without the views in which a point is behind the camera."""
+    """Return a state without views whose point is behind the camera."""
     keep = np.isfinite(problem.residuals(state.network)).all(axis=1)
     part = {name: getattr(state.network, name)[keep] for name in problem.PER_VIEW}
     return replace(state, network=replace(state.network, **part))
 
 
 def _with_clicks(state: State, cameras, lenses, clicks: Clicks) -> State:
-    """Return a state with clicked points as further bodies."""
+    """Return a state with clicked points as additional bodies."""
     bodies, network = state.bodies, state.network
     xy = _straight(cameras, lenses, clicks.xy)
     image, point = np.nonzero(np.isfinite(xy[..., 0]))
@@ -285,6 +286,7 @@ def _with_clicks(state: State, cameras, lenses, clicks: Clicks) -> State:
 
 
 def _adjust(state: State, cameras: Sequence[Camera], lenses: Mapping[str, Camera]) -> Adjusted:
+    """Adjust poses, lenses that are not known, and bodies."""
     active = np.zeros(state.network.n_columns, dtype=bool)
     first = IMAGE * len(cameras)
     for c, camera in enumerate(cameras):
@@ -295,6 +297,7 @@ def _adjust(state: State, cameras: Sequence[Camera], lenses: Mapping[str, Camera
 
 
 def _cameras(found: Adjusted, cameras, lenses) -> list[Camera]:
+    """Return the adjusted cameras, with their known lenses."""
     names, sizes = [c.name for c in cameras], [c.size for c in cameras]
     solved = selection.cameras(found.state.network, names, sizes)
     return [

@@ -1,7 +1,7 @@
-"""Where cameras see the markers of a wand, frame after frame.
+"""Positions of a wand's markers in the pictures, by frame, read from CSV files.
 
-Rows of one frame show the wand at one place: frames of synchronised videos, or pictures of a wand
-at rest. Files are ours, or those that DLTdv, Argus and easyWand write.
+Rows of one frame show the wand in one position: frames of synchronised videos, or pictures of a
+wand at rest. Files are in the format of the study, or of DLTdv, Argus and easyWand.
 """
 
 import csv
@@ -19,55 +19,45 @@ from courtside.study.errors import InputError, StrPath, reading
 
 OURS = ("camera", "marker", "x_px", "y_px")
 TIMES = ("frame", "time_s")  # one of them
-# As DLTdv writes a column, and as Argus does: point, camera, axis.
+# Columns of DLTdv and of Argus: point, camera, axis.
 THEIRS = re.compile(r"(?P<point>.+)_cam_?(?P<camera>[0-9]+)_(?P<axis>[xXyY])")
-# Their first pixel's centre along x and, where y runs down, along y; where it runs up, None: y of
-# the lowest row is 1 in DLTdv, and half a pixel more or less does not matter.
+# Coordinates of the first pixel's centre; y is None where it runs up: y of the lowest row is then 1
+# in DLTdv, and an error of half a pixel does not matter.
 PROGRAMS = {"dltdv8": (1.0, 1.0), "dltdv": (1.0, None), "argus": (0.0, None)}
-LONGEST_GAP = 2.5  # ASSUME: frame periods between which a marker moves on a straight line
+LONGEST_GAP = 2.5  # ASSUME: frame periods across which markers are interpolated
 SIGMA_M = 5e-4  # ASSUME: of a length measured with a tape
+MARGIN, MOST_OUTSIDE = 0.02, 0.05  # ASSUME: of a picture's size; share of markers beyond it
 
 
 @dataclass(frozen=True, eq=False)
 class Wand:
-    """Markers on one line."""
+    """The markers on a wand."""
 
-    markers: tuple[str, ...]  # names in a file, in the order along the wand; empty: not stated
-    along_m: NDArray  # (M,): their places on it, the first at 0
-    sigma_m: float  # of its length
+    markers: tuple[str, ...]  # names in the file, in the order along the wand; empty: not stated
+    along_m: NDArray  # (M,): distances from the first marker, increasing from 0
+    sigma_m: float  # of the length
 
     @property
     def length_m(self) -> float:
-        """From the first marker to the last."""
+        """The distance of the first marker from the last."""
         return float(self.along_m[-1])
 
     @classmethod
     def of(cls, given: Mapping[str, Any]) -> "Wand":
-        """Build a wand from the keys of a session."""
-        length_m = float(given["length_m"])
+        """Build a wand from `wand` of a session, which `session_faults` has checked."""
         middle_m = [float(given["middle_m"])] if "middle_m" in given else []
-        if middle_m and not middle_m[0] < length_m:
-            raise InputError(
-                f"wand.middle_m: expected less than length_m ({length_m:g}), found {middle_m[0]:g};"
-                " it is measured from the first marker to the middle one"
-            )
-        along_m = np.array([0.0, *middle_m, length_m])
+        along_m = np.array([0.0, *middle_m, float(given["length_m"])])
         markers = tuple(str(name) for name in given.get("markers", ()))
-        if markers and len(markers) != len(along_m):
-            raise InputError(
-                f"wand.markers: expected {len(along_m)} names in the order along the wand, found "
-                f"{len(markers)}; three markers need `middle_m`, too"
-            )
         return cls(markers, along_m, float(given.get("length_sigma_m", SIGMA_M)))
 
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """Markers of one wand, seen by some cameras."""
+    """The positions of a wand's markers in the pictures of cameras."""
 
     cameras: tuple[str, ...]
-    frames: NDArray  # (F,): numbers, or times in s; increasing
-    xy: NDArray  # (C, F, M, 2) px, NaN where not seen
+    frames: NDArray  # (F,): frame numbers, or times in s; increasing
+    xy: NDArray  # (C, F, M, 2) px, NaN where missing
 
 
 def read(
@@ -76,12 +66,12 @@ def read(
     names: Mapping[str, str],
     sizes: Mapping[str, tuple[int, int]],
 ) -> Seen:
-    """Read where cameras see the markers of a wand, from the file that a session names.
+    """Read the positions of a wand's markers from the file of a session.
 
-    `names` maps the cameras of the session to those in a table of ours. Another program numbers
-    them, in the order of `given["cameras"]`. The heights of the pictures, whose `sizes` are px,
-    turn round y that runs up. Raises `InputError` if the file is no such table, or a camera has no
-    marker.
+    `names` maps the session's cameras to their names in the study's format. Other programs number
+    them, in the order of `given["cameras"]`, and some let y run up from the lower edge: `sizes` are
+    those of the pictures, px. Raises `InputError` if the file has another format, or a camera has
+    no marker.
     """
     path = given["points"]
     if "program" in given:
@@ -94,27 +84,42 @@ def read(
     _check_cameras(path, names, {
         name for name, xy in zip(found.cameras, found.xy, strict=True) if np.isfinite(xy).any()
     })  # fmt: skip
+    _check_inside(path, found, sizes)
     return found
+
+
+def _check_inside(path: StrPath, found: Seen, sizes: Mapping[str, tuple[int, int]]) -> None:
+    """Raise an `InputError` if many markers of a camera are outside its picture."""
+    for name, xy in zip(found.cameras, found.xy, strict=True):
+        size = np.array(sizes[name])
+        known = np.isfinite(xy[..., 0])
+        outside = ((xy < -MARGIN * size) | (xy > (1 + MARGIN) * size)).any(axis=-1)
+        if outside.sum() > MOST_OUTSIDE * known.sum():
+            raise InputError(
+                f"{path}: camera {name}: expected markers inside its picture of {size[0]} x "
+                f"{size[1]} px, found {outside.sum()} of {known.sum()} outside; check the size of "
+                "the digitised video, and the order of the cameras"
+            )
 
 
 def _check_cameras(path: StrPath, names: Mapping[str, str], seen: Collection[str]) -> None:
     for name, theirs in names.items():
         if name not in seen:
             raise InputError(
-                f"{path}: expected markers of the wand in camera {name} ({theirs}), found none; "
-                "correct the name, or give the camera its `name_in_calibration`"
+                f"{path}: expected markers of the wand for camera {name} ({theirs}), found none; "
+                "correct the name in the file, or set `name_in_calibration` of the camera"
             )
 
 
 def _ours(path: StrPath, wand: Wand, names: Mapping[str, str]) -> Seen:
     rows = table(path, OURS, TIMES)
     if not rows:
-        raise InputError(f"{path}: expected rows of a wand's markers, found none; write it again")
+        raise InputError(f"{path}: expected rows of a wand's markers, found none; export it again")
     times = [key for key in TIMES if key in rows[0][1]]
     if len(times) != 1:
         raise InputError(
-            f"{path}: expected the column frame or time_s, found {' and '.join(times) or 'none'}; "
-            "say with one of them which rows are of one moment"
+            f"{path}: expected one column frame or time_s, found {' and '.join(times) or 'none'}; "
+            "keep the one that gives the time of each row"
         )
     markers = wand.markers or tuple(dict.fromkeys(row["marker"] for _, row in rows))
     _check_markers(path, wand, markers)
@@ -129,8 +134,8 @@ def _ours(path: StrPath, wand: Wand, names: Mapping[str, str]) -> Seen:
         xy = places.setdefault(time, np.full((len(markers), 2), np.nan))
         if np.isfinite(xy[at]).any():
             raise InputError(
-                f"{where}: expected one place of marker {row['marker']} in camera {row['camera']} "
-                f"at {times[0]} {row[times[0]]}, found another; delete one"
+                f"{where}: expected one row for marker {row['marker']} in camera {row['camera']} "
+                f"at {times[0]} {row[times[0]]}, found a second one; delete one"
             )
         xy[at] = [number(where, key, row[key]) for key in OURS[2:]]
     _check_cameras(path, names, [name for name, places in each.items() if places])
@@ -140,8 +145,8 @@ def _ours(path: StrPath, wand: Wand, names: Mapping[str, str]) -> Seen:
 def _check_markers(path: StrPath, wand: Wand, found: Sequence[str]) -> None:
     if len(found) != len(wand.along_m):
         raise InputError(
-            f"{path}: expected {len(wand.along_m)} markers, found {', '.join(found)[:80]}; name "
-            "those of the wand in their order along it in `wand.markers`"
+            f"{path}: expected {len(wand.along_m)} markers, found {', '.join(found)[:80]}; list "
+            "the wand's markers in their order along it in `wand.markers`"
         )
 
 
@@ -154,7 +159,7 @@ def _at_frames(each: Mapping[str, Mapping[float, NDArray]]) -> Seen:
 
 
 def _at_times(each: Mapping[str, Mapping[float, NDArray]]) -> Seen:
-    """Return markers at the times of the camera that sees most, on straight lines in between."""
+    """Return markers at the times of the camera with most times, linearly interpolated."""
     most = max(each.values(), key=len)
     times = np.array(sorted(most))
     xy = []
@@ -166,7 +171,7 @@ def _at_times(each: Mapping[str, Mapping[float, NDArray]]) -> Seen:
 
 
 def _between(own: NDArray, values: NDArray, times: NDArray) -> NDArray:
-    """Return values (T, K) at `times`; NaN outside, and where the neighbours are far apart."""
+    """Return values (T, K) at `times`, linearly interpolated; NaN outside, and in long gaps."""
     if len(own) < 2:
         return np.full((len(times), values.shape[1]), np.nan)
     gap = LONGEST_GAP * float(np.median(np.diff(own)))
@@ -174,13 +179,13 @@ def _between(own: NDArray, values: NDArray, times: NDArray) -> NDArray:
     start, stop = own[after - 1], own[after]
     share = ((times - start) / (stop - start))[:, None]
     found = (1 - share) * values[after - 1] + share * values[after]
-    found = np.where(share == 0, values[after - 1], np.where(share == 1, values[after], found))
     inside = (times >= own[0]) & (times <= own[-1]) & (stop - start <= gap)
-    return np.where(inside[:, None], found, np.nan)
+    found = np.where(inside[:, None], found, np.nan)
+    return np.where(share == 0, values[after - 1], np.where(share == 1, values[after], found))
 
 
 def _theirs(path: StrPath, wand: Wand, sizes: Sequence[tuple[int, int]], program: str) -> NDArray:
-    """Return px (C, F, M, 2) of an `xypts.csv`: rows of frames, columns of points and cameras."""
+    """Return px (C, F, M, 2) of an `xypts.csv`: a row per frame, columns by point and camera."""
     kinds = (OSError, UnicodeDecodeError, csv.Error)
     advice = "export it again as CSV (dense, not sparse)"
     with (
@@ -197,9 +202,9 @@ def _theirs(path: StrPath, wand: Wand, sizes: Sequence[tuple[int, int]], program
     order = _points(path, wand, columns)
     if sorted({camera for _, camera, _ in columns}) != list(range(1, len(sizes) + 1)):
         raise InputError(
-            f"{path}: expected columns of {len(sizes)} cameras, numbered from 1, found those of "
-            f"{len({camera for _, camera, _ in columns})}; name them in their order in "
-            "`wand.cameras`"
+            f"{path}: expected columns of {len(sizes)} cameras, numbered from 1, found columns of "
+            f"{len({camera for _, camera, _ in columns})}; the session must have the same cameras, "
+            "in the order of `wand.cameras`"
         )
     values = _values(path, lines[0 if plain else 1 :], len(columns), 1 if plain else 2)
     xy = np.full((len(sizes), len(values), len(order), 2), np.nan)
@@ -215,7 +220,7 @@ def _theirs(path: StrPath, wand: Wand, sizes: Sequence[tuple[int, int]], program
 
 
 def _named(path: StrPath, header: Sequence[str]) -> list[tuple[str, int, str]]:
-    """Return point, camera and axis of each column of a header."""
+    """Return the point, camera and axis of each column of a header."""
     found = [THEIRS.fullmatch(cell) for cell in header]
     columns = [(m["point"], int(m["camera"]), m["axis"].lower()) for m in found if m]
     if not columns or len(columns) < len(header) or len(set(columns)) < len(columns):
@@ -227,13 +232,14 @@ def _named(path: StrPath, header: Sequence[str]) -> list[tuple[str, int, str]]:
 
 
 def _numbered(wand: Wand, n_cameras: int) -> list[tuple[str, int, str]]:
-    """Return those of a file without a header, as easyWand takes it: points, cameras, axes."""
+    """Return the same for a file without a header (easyWand): by point, camera and axis."""
     points = range(1, len(wand.along_m) + 1)
     each = ((p, c) for p in points for c in range(1, n_cameras + 1))
     return [(f"pt{point}", camera, axis) for point, camera in each for axis in "xy"]
 
 
 def _points(path: StrPath, wand: Wand, columns: Iterable[tuple[str, int, str]]) -> list[str]:
+    """Return the names of the wand's markers in the order along the wand."""
     points = list(dict.fromkeys(point for point, _, _ in columns))
     order = list(wand.markers) or points
     _check_markers(path, wand, order)
@@ -246,7 +252,7 @@ def _points(path: StrPath, wand: Wand, columns: Iterable[tuple[str, int, str]]) 
 
 
 def _values(path: StrPath, rows: Sequence[Sequence[str]], width: int, first: int) -> NDArray:
-    """Return the numbers of rows (F, K), NaN of empty cells."""
+    """Return the numbers of the rows (F, K), NaN for empty cells."""
     found = np.full((len(rows), width), np.nan)
     for at, row in enumerate(rows):
         where = f"{path}: row {at + first}"

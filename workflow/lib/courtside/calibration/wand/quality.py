@@ -1,4 +1,4 @@
-"""How well a wand fits, for a JSON file, and what to warn of."""
+"""Quality of a calibration with a wand: numbers by camera for a JSON file, and warnings."""
 
 from typing import Any
 
@@ -7,27 +7,28 @@ import numpy as np
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle.problem import IMAGE, LENS, POSE
 from courtside.calibration.wand import timing
-from courtside.calibration.wand.adjustment import WRONG
+from courtside.calibration.wand.adjustment import WRONG_SIGMAS
 from courtside.calibration.wand.calibration import Found
 from courtside.calibration.wand.points import Seen, Wand
 
-OUT_OF_STEP = 2.0  # ASSUME: excess scatter of blocks of time that is told
-LATE, LATE_SIGMAS = 0.03, 5.0  # ASSUME: frames, and their sigmas: a camera so late is told
-LEAST_WAY = 0.3  # ASSUME: of a picture's diagonal: a lens that is not known needs as much
-LONGER_SIGMAS = 4.0  # ASSUME: a wand that clicked points say is so much longer is told
+# ASSUME: limits of the warnings.
+MOST_FACTOR = 2.0  # scatter of blocks of time, relative to single frames
+LATE, LATE_SIGMAS = 0.03, 5.0  # delay of a camera, frames, and in its standard deviations
+LEAST_PATH = 0.3  # extent of the path in a picture of an unknown lens, of the diagonal
+LONGER_SIGMAS = 4.0  # error of the stated length by clicked points, in its standard deviations
 
 
 def summary(found: Found, wand: Wand, seen: Seen, known: set[str]) -> dict[str, Any]:
-    """Return how well the markers fit; `known` are the cameras whose lens was given.
+    """Return the fit of the markers, and warnings; `known` are the cameras with given lenses.
 
-    By camera: frames, `rms_px` per axis of the markers that are not wrong, their share
-    (`wrong_percent`), standard deviations of the place (mm) and of a lens that was found, and by
-    how many frames it films late (`late_frames`). `length_mm`: how much longer the wand is than
-    stated where two cameras or more place its ends, mean and standard deviation.
+    By camera: number of frames, `rms_px` per axis without wrong markers, the share of these
+    (`wrong_percent`), standard deviations of the position (mm) and of an estimated lens, and the
+    delay in frames (`late_frames`). `length_mm` is the error of the wand's length where two cameras
+    or more see both ends: median (`mean`), standard deviation, number.
     """
     off = found.error_px
-    fine = np.abs(off).max(axis=-1) < WRONG * found.adjusted.sigma_px
-    late, late_sigma = timing.late(found.cameras, seen, found.xyz)
+    fine = np.abs(off).max(axis=-1) < WRONG_SIGMAS * found.adjusted.sigma_px
+    late, late_sigma = timing.delays(found.cameras, seen, found.xyz)
     report: dict[str, Any] = {"warnings": [], "world": found.world}
     report |= {"sigma_px": found.adjusted.sigma_px, "covariance_factor": found.adjusted.factor}
     report["length_mm"] = _length_mm(found, wand)
@@ -62,37 +63,39 @@ def _length_mm(found: Found, wand: Wand) -> dict[str, float | int]:
 
 
 def _warnings(found: Found, wand: Wand, seen: Seen, known: set[str], late, sigma) -> list[str]:
-    told = []
+    lines = []
     if not found.stated:
-        told.append(
-            "wand: the origin is the middle of the wand's ways, z up as the pictures are, x from "
-            f"camera {found.cameras[0].name} to {found.cameras[1].name}; name frames in which the "
-            "wand lies on the floor as `floor`, or click court points"
+        lines.append(
+            "wand: the origin is the middle of the wand's path, z is up as in the pictures, and x "
+            f"runs from camera {found.cameras[0].name} to {found.cameras[1].name}; set `floor` to "
+            "frames in which the wand lies on the floor, or click court points"
         )
     for camera, frames, spread in zip(found.cameras, late, sigma, strict=True):
         if abs(frames) > LATE and abs(frames) > LATE_SIGMAS * spread:
-            told.append(
-                f"camera {camera.name}: films {abs(frames):.1f} frames or more "
-                f"{'late' if frames > 0 else 'early'}, as the markers' ways say; synchronise the "
-                "videos, or state times of the frames"
+            lines.append(
+                f"camera {camera.name}: films {abs(frames):.2f} frames or more "
+                f"{'late' if frames > 0 else 'early'} by the movement of the markers; synchronise "
+                "the videos, or give the times of the frames (`time_s`)"
             )
     for camera, xy in zip(found.cameras, seen.xy, strict=True):
         low, high = np.nanquantile(xy.reshape(-1, 2), [0.02, 0.98], axis=0)
-        way = float(np.linalg.norm(high - low) / np.linalg.norm(camera.size))
-        if camera.name not in known and way < LEAST_WAY:
-            told.append(
-                f"camera {camera.name}: the wand's ways fill {100 * way:.0f} % of its picture, "
-                "which hardly tells its lens; give `lenses`, or move the wand through all of it"
+        extent = float(np.linalg.norm(high - low) / np.linalg.norm(camera.size))
+        if camera.name not in known and extent < LEAST_PATH:
+            lines.append(
+                f"camera {camera.name}: the wand's path extends over {100 * extent:.0f} % of the "
+                "picture's diagonal, too little for its lens; give `lenses`, or fill the picture"
             )
-    if found.adjusted.factor > OUT_OF_STEP:
-        told.append(
-            f"wand: parts of the time scatter {found.adjusted.factor:.1f} times as much as their "
-            "markers: cameras do not film at one time, or a tracker holds another spot"
+    if found.adjusted.factor > MOST_FACTOR:
+        lines.append(
+            f"wand: residuals of neighbouring frames are correlated (factor "
+            f"{found.adjusted.factor:.1f} of the variance); check that the videos are "
+            "synchronised, and that the tracker follows the markers"
         )
     longer = found.adjusted.state.length
     if abs(longer) > LONGER_SIGMAS * wand.sigma_m / wand.length_m:
-        told.append(
-            f"wand: clicked points say that it is {1000 * wand.length_m * np.exp(longer):.1f} mm "
-            f"long, not {1000 * wand.length_m:.1f}; measure it between the markers' centres"
+        lines.append(
+            f"wand: expected a length of {1000 * wand.length_m:.1f} mm, found "
+            f"{1000 * wand.length_m * np.exp(longer):.1f} mm by the clicked points; measure it "
+            "between the markers' centres"
         )
-    return told
+    return lines

@@ -1,8 +1,8 @@
-"""Cameras of a wand before they are adjusted: two first, then one after another.
+"""Initial cameras for the adjustment: two first, then one after another.
 
-Focal lengths that are not known are tried. Of two cameras those are taken with which the wand's
-length varies least (Nistér 2004 for the pose), of each further one those with which most markers
-agree (Terzakis & Lourakis 2020).
+Of unknown focal lengths, several are tried. For two cameras the best one gives the least variation
+of the wand's length (pose by Nistér 2004), for each further camera the most agreeing markers
+(Terzakis & Lourakis 2020).
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,54 +14,55 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration.wand.points import Seen, Wand
-from courtside.geometry import rotations
+from courtside.geometry import camera as camera_models
+from courtside.geometry import epipolar, rotations
 from courtside.geometry.camera import Camera, undistort
 from courtside.geometry.triangulation import triangulate_robust
 from courtside.study.errors import InputError
 
 # ASSUME: focal lengths over the picture's longer side, from action cameras to short telephoto
-# lenses. The adjustment finds what lies between.
+# lenses. The adjustment finds values between them.
 FOCAL_SHARES = (0.5, 0.6, 0.7, 0.84, 1.0, 1.2, 1.45, 1.75, 2.1, 2.5)
-COARSE = 2  # of two cameras every other one is tried, of further cameras all
-FEWEST_FRAMES = 20  # ASSUME: that two cameras share, with two markers or more in both
-SAMPLE = 400  # markers that a pair of cameras is estimated from
-REACH = 0.004  # ASSUME: of the picture's longer side: what unknown lenses bend and markers err
-LEAST_SHARE = 0.5  # ASSUME: of two cameras' markers that agree
-LEAST_AGREEING = 0.3  # ASSUME: of a further camera's, whose lens may not be known
-STARTS, ENOUGH = 6, 0.8  # two cameras that are tried; share of markers with which no more are
-LEAST_SINE = 0.05  # of the angle between rays, 3 degrees: less is no parallax
-PAIRS = 3  # of two cameras that are tried, those that share most
-CONFIDENCE, ROUNDS = 0.9999, 2000  # of the random samples
-IDEAL = np.eye(3)  # the matrix of a camera whose pixels are rays
+COARSE = 2  # of the first two cameras every second focal length is tried, of others all
+FEWEST_FRAMES = 20  # ASSUME: frames in which both of two cameras see two markers or more
+SAMPLE = 400  # markers from which a pose is estimated
+TOLERANCE = 0.004  # ASSUME: residual of a marker with an unknown lens, of the longer side
+LEAST_SHARE = 0.5  # ASSUME: of markers that agree with the first two cameras
+LEAST_AGREEING = 0.3  # ASSUME: the same of a further camera, whose lens may be unknown
+STARTS, ENOUGH = 6, 0.8  # first pairs that are tried; share of markers that ends the search
+LEAST_SINE = 0.05  # ASSUME: of the angle between rays (3 degrees), for enough parallax
+PAIRS = 3  # pairs of cameras that are tried, those with most common frames
+CONFIDENCE, ROUNDS = 0.9999, 2000  # of RANSAC
+IDEAL = np.eye(3)  # the camera matrix of points on the z = 1 plane
 HOW = "move it through the views of all cameras, near and far, high and low, in all directions"
 
 
 @dataclass(frozen=True, eq=False)
 class _Pair:
-    """Two cameras in the axes of the first, in metres."""
+    """Two cameras in the frame of the first, in metres."""
 
     cameras: tuple[Camera, Camera]
     agreeing: int  # markers
     sine: float  # of the angle between rays, median
-    spread: float  # of the wand's length, a share
+    spread: float  # median deviation of the wand's length, as a share
 
 
 @dataclass(frozen=True, eq=False)
 class _Placed:
-    """Cameras by name, and how well the worst of them agrees with those before it."""
+    """Cameras by name, and the lowest agreement of a camera with those placed before it."""
 
     cameras: dict[str, Camera]
-    agreeing: float  # share of its markers; less than 0 where one is missing
-    fault: str = ""  # why
+    agreeing: float  # share of its markers; negative if a camera could not be placed
+    fault: str = ""  # why it could not
 
 
 def guess(
     wand: Wand, seen: Seen, sizes: Mapping[str, tuple[int, int]], lenses: Mapping[str, Camera]
 ) -> list[Camera]:
-    """Place cameras roughly, in the axes of one of them and in metres.
+    """Return initial cameras in the frame of one of them, in metres.
 
-    `sizes` px by camera; `lenses` are those known. Raises `InputError` where the wand does not
-    tell how cameras stand.
+    `sizes` are those of the pictures by camera, px; `lenses` are the known ones. Raises
+    `InputError` if the wand does not determine the poses.
     """
     shared = _shared(seen)
     _check(seen, shared)
@@ -81,7 +82,7 @@ def guess(
 def _completed(
     first: tuple[Camera, Camera], seen: Seen, cameras: Sequence[Sequence[Camera]]
 ) -> _Placed:
-    """Return two cameras with all others, each placed by the markers that those before it place."""
+    """Add all other cameras to two, each by the markers triangulated with those before it."""
     posed, least = {camera.name: camera for camera in first}, 1.0
     while len(posed) < len(cameras):
         xyz = _placed(list(posed.values()), seen)
@@ -96,22 +97,22 @@ def _completed(
             fault = (
                 f"camera {camera.name}: expected {FEWEST_FRAMES} markers or more, and "
                 f"{100 * LEAST_AGREEING:.0f} %, to agree with the other cameras, found {count} of "
-                f"{shown}; check its clock, which marker is which, and that its video is not "
-                "mirrored"
+                f"{shown}; check its clock, that no markers are exchanged, and that its video is "
+                "not mirrored"
             )
-            return _Placed(posed, share - 1, fault)  # a start that places all is better
+            return _Placed(posed, share - 1, fault)  # worse than any start with all cameras
         posed[camera.name], least = camera, min(least, share)
     return _Placed(posed, least)
 
 
 def _shared(seen: Seen) -> NDArray:
-    """Return how many frames (C, C) show two markers or more to both cameras."""
+    """Return the numbers of frames (C, C) in which both cameras see two markers or more."""
     each = (np.isfinite(seen.xy[..., 0]).sum(axis=2) >= 2).astype(int)
     return each @ each.T
 
 
 def _check(seen: Seen, shared: NDArray) -> None:
-    """Raise an `InputError` where a group of cameras shares too few frames with the others."""
+    """Raise an `InputError` if a group of cameras has too few frames in common with the others."""
     names = seen.cameras
     inside = {0}
     while (
@@ -125,42 +126,32 @@ def _check(seen: Seen, shared: NDArray) -> None:
         raise InputError(
             f"wand: cameras {', '.join(names[c] for c in sorted(inside))} and "
             f"{', '.join(names[c] for c in outside)}: expected {FEWEST_FRAMES} frames or more in "
-            f"which one of each sees two markers, found {most}; {HOW}"
+            f"which a camera of each group sees two markers, found {most}; {HOW}"
         )
 
 
 def _candidates(name: str, size: tuple[int, int], lenses: Mapping[str, Camera]) -> list[Camera]:
-    """Return a camera at the origin with its known lens, or with each focal length."""
+    """Return a camera at the origin with its known lens, or one for each focal length to try."""
     if name in lenses:
         return [replace(lenses[name], name=name, cam_from_world=np.eye(3, 4))]
-    width, height = size
-    found = []
-    for share in FOCAL_SHARES:
-        f_px = share * max(size)
-        matrix = np.array([[f_px, 0, (width - 1) / 2], [0, f_px, (height - 1) / 2], [0, 0, 1]])
-        found.append(Camera(name, (width, height), matrix, np.zeros(5), np.eye(3, 4)))
-    return found
+    return [camera_models.plain(name, size, share) for share in FOCAL_SHARES]
 
 
-def _coarse(candidates: Sequence[Camera]) -> Sequence[Camera]:
-    return candidates[::COARSE]
-
-
-def _reach(camera: Camera) -> float:
-    """Return how far markers may be off, on the z = 1 plane."""
-    return REACH * max(camera.size) / float(camera.K[1, 1])
+def _tolerance(camera: Camera) -> float:
+    """Return the tolerance of markers on the z = 1 plane."""
+    return TOLERANCE * max(camera.size) / float(camera.K[1, 1])
 
 
 def _first(
     wand: Wand, seen: Seen, cameras: Sequence[Sequence[Camera]], shared: NDArray
 ) -> list[tuple[Camera, Camera]]:
-    """Return two cameras to start from, best first: whose wand has one length in every frame."""
+    """Return pairs of cameras to start from, the one with the most constant length first."""
     every = sorted(combinations(range(len(cameras)), 2), key=lambda two: -shared[two])
     found: list[_Pair] = []
     for two in every[:PAIRS]:
         of_pair = [
             one
-            for lenses in product(*(_coarse(cameras[c]) for c in two))
+            for lenses in product(*(cameras[c][::COARSE] for c in two))
             if (one := _related(wand, seen.xy[list(two)], lenses)) is not None
         ]
         most = max((one.agreeing for one in of_pair), default=0)
@@ -169,7 +160,9 @@ def _first(
     if not wide:
         widest = max((one.sine for one in found), default=None)
         what = (
-            "none that agree" if widest is None else f"{np.degrees(np.arcsin(widest)):.1f} at most"
+            "no pair whose markers agree"
+            if widest is None
+            else f"{np.degrees(np.arcsin(widest)):.1f} at most"
         )
         raise InputError(
             f"wand: expected two cameras whose rays to a marker meet at "
@@ -180,16 +173,16 @@ def _first(
 
 
 def _related(wand: Wand, xy: NDArray, lenses: Sequence[Camera]) -> _Pair | None:
-    """Return two cameras by the essential matrix of their markers (2, F, M, 2)."""
+    """Return two cameras from the essential matrix of their markers (2, F, M, 2), or None."""
     rays = np.stack([undistort(camera, one) for camera, one in zip(lenses, xy, strict=True)])
     at = np.argwhere(np.isfinite(rays).all(axis=(0, 3)))
     at = at[np.linspace(0, len(at) - 1, min(len(at), SAMPLE)).astype(int)]
     one, other = (each[tuple(at.T)] for each in rays)
     if len(at) < FEWEST_FRAMES:
         return None
-    reach = float(np.mean([_reach(camera) for camera in lenses]))
+    limit = float(np.mean([_tolerance(camera) for camera in lenses]))
     matrix, inside = cv2.findEssentialMat(
-        one, other, IDEAL, method=cv2.RANSAC, prob=CONFIDENCE, threshold=reach, maxIters=ROUNDS
+        one, other, IDEAL, method=cv2.RANSAC, prob=CONFIDENCE, threshold=limit, maxIters=ROUNDS
     )
     if matrix is None or inside.sum() < LEAST_SHARE * len(at):
         return None
@@ -208,42 +201,35 @@ def _related(wand: Wand, xy: NDArray, lenses: Sequence[Camera]) -> _Pair | None:
     return _Pair(
         (lenses[0], replace(lenses[1], cam_from_world=pose)),
         int(inside.sum()),
-        _sine(rotation, one[inside], other[inside]),
+        float(np.median(epipolar.ray_sines(rotation, one[inside], other[inside]))),
         float(np.median(np.abs(lengths - typical))) / typical,
     )
 
 
-def _sine(rotation: NDArray, one: NDArray, other: NDArray) -> float:
-    """Return the median sine of the angles between rays of two cameras."""
-    first, second = (
-        rotations.unit(np.pad(xy, ((0, 0), (0, 1)), constant_values=1.0)) for xy in (one, other)
-    )
-    return float(np.median(np.linalg.norm(np.cross(first @ rotation.T, second), axis=1)))
-
-
 def triangulated(cameras: Sequence[Camera], xy: NDArray) -> NDArray:
-    """Return markers (F, M, 3) from views (C, F, M, 2) that agree; NaN of others."""
+    """Return markers (F, M, 3) from views (C, F, M, 2) that agree; NaN for others."""
     flat = xy.reshape(len(xy), -1, 2)
-    limit = REACH * max(max(camera.size) for camera in cameras)
+    limit = TOLERANCE * max(max(camera.size) for camera in cameras)
     score = np.isfinite(flat[..., 0]).astype(float)
-    with np.errstate(divide="ignore", invalid="ignore"):  # markers that one camera sees alone
+    with np.errstate(divide="ignore", invalid="ignore"):  # markers that only one camera sees
         found = triangulate_robust(cameras, flat, score, sigma_px=1.0, max_error_px=limit)
     return found.xyz.reshape(*xy.shape[1:3], 3)
 
 
 def _lengths(xyz: NDArray) -> NDArray:
-    """Return the distances between the first marker and the last, those that are known."""
+    """Return the distances of the first marker from the last, where both are known."""
     apart = np.linalg.norm(xyz[:, -1] - xyz[:, 0], axis=1)
     return apart[np.isfinite(apart)]
 
 
 def _placed(cameras: Sequence[Camera], seen: Seen) -> NDArray:
+    """Return the markers (F, M, 3) triangulated with some of the cameras."""
     at = [seen.cameras.index(camera.name) for camera in cameras]
     return triangulated(cameras, seen.xy[at])
 
 
 def _resected(candidates: Sequence[Camera], xy: NDArray, xyz: NDArray) -> tuple[int, int, Camera]:
-    """Return how many markers (F, M, 3) a camera agrees with, of how many, and the camera there."""
+    """Return the number of markers (F, M, 3) that agree, the number tried, and the posed camera."""
     at = np.argwhere(np.isfinite(xyz).all(axis=-1) & np.isfinite(xy[..., 0]))
     at = at[np.linspace(0, len(at) - 1, min(len(at), SAMPLE)).astype(int)]
     best = 0, len(at), candidates[0]
@@ -253,7 +239,7 @@ def _resected(candidates: Sequence[Camera], xy: NDArray, xyz: NDArray) -> tuple[
     for camera in candidates:
         fine, vector, shift, near = cv2.solvePnPRansac(
             place, undistort(camera, px), IDEAL, None, iterationsCount=ROUNDS,
-            confidence=CONFIDENCE, reprojectionError=_reach(camera), flags=cv2.SOLVEPNP_SQPNP,
+            confidence=CONFIDENCE, reprojectionError=_tolerance(camera), flags=cv2.SOLVEPNP_SQPNP,
         )  # fmt: skip
         if not fine or near is None or len(near) <= best[0]:
             continue

@@ -1,4 +1,4 @@
-"""Whether cameras film a wand at the same time, by its markers' ways in their pictures."""
+"""Delays of cameras relative to the others, from the movement of the markers in their pictures."""
 
 from collections.abc import Sequence
 
@@ -8,27 +8,29 @@ from numpy.typing import NDArray
 from courtside.calibration.wand.points import Seen
 from courtside.geometry.camera import Camera, project
 
-FAST = 0.5  # share of the markers that tell: the faster ones
-FEWEST = 20  # of them
-MEDIAN_SIGMA = 1.4826 * 1.2533  # of a median, over the median deviation and the root of the number
+FAST = 0.5  # share of the markers that is used, the fastest
+FEWEST = 20  # markers with a speed
+MEDIAN_SIGMA = 1.4826 * 1.2533  # sigma of a median, over median deviation / root of the number
 
 
-def late(cameras: Sequence[Camera], seen: Seen, xyz: NDArray) -> tuple[NDArray, NDArray]:
-    """Return by how many frames each camera (C,) films late, and the standard deviations.
+def delays(cameras: Sequence[Camera], seen: Seen, xyz: NDArray) -> tuple[NDArray, NDArray]:
+    """Return the delay of each camera (C,) in frames, and its standard deviation.
 
-    By how far markers are along their ways from the places (F, M, 3) m that all cameras together
-    give them. It is less than the truth, because these places follow the late camera, too.
+    It is the distance of markers along their path from their positions (F, M, 3) m by all cameras,
+    over their speed. It is smaller than the true delay, because the delayed camera takes part in
+    these positions.
     """
     found, sigma = np.zeros(len(cameras)), np.full(len(cameras), np.inf)
     step = float(np.median(np.diff(seen.frames)))
     apart = (seen.frames[2:] - seen.frames[:-2]) / step
     for c, camera in enumerate(cameras):
         px = project(camera, xyz)
-        way = np.full_like(px, np.nan)
-        way[1:-1] = (px[2:] - px[:-2]) / apart[:, None, None]
-        way[1:-1][apart > 2.5] = np.nan  # frames are missing in between
-        ahead = ((seen.xy[c] - px) * way).sum(axis=-1) / (way**2).sum(axis=-1)
-        speed = np.linalg.norm(way, axis=-1)
+        velocity = np.full_like(px, np.nan)  # px per frame
+        velocity[1:-1] = (px[2:] - px[:-2]) / apart[:, None, None]
+        velocity[1:-1][apart > 2.5] = np.nan  # frames are missing in between
+        speed = np.linalg.norm(velocity, axis=-1)
+        speed[speed == 0] = np.nan
+        ahead = ((seen.xy[c] - px) * velocity).sum(axis=-1) / speed**2
         known = np.isfinite(ahead)
         if known.sum() < FEWEST:
             continue

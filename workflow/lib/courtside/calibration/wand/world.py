@@ -1,4 +1,4 @@
-"""The frame that cameras of a wand are stated in: the floor's, the cameras' own, or a court's."""
+"""The world frame of cameras from a wand: of the floor, of clicked points, or of the cameras."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -14,34 +14,39 @@ from courtside.geometry.similarity import Sim3
 from courtside.geometry.triangulation import triangulate_all
 from courtside.study.errors import InputError
 
-WIDE = 0.03  # ASSUME: least extent of places on the floor across their line, a share of it
-OFF_M = 0.05  # ASSUME: markers of a wand on a floor that is so far from flat are elsewhere
-FEWEST_CLICKS = 4  # of a camera that is to tell where the court is
-MIRRORED = 4.0  # ASSUME: clicks that fit a mirrored world so much better
-FAR_SHARE = 0.02  # ASSUME: of a picture's longer side: clicks so far off are of other points
+WIDE = 0.03  # ASSUME: least width of markers on the floor relative to their length
+OFF_M = 0.05  # ASSUME: a marker farther from the plane of the others is not on the floor
+FEWEST_CLICKS = 4  # in one camera, to determine the world frame
+MIRRORED = 4.0  # ASSUME: ratio of the errors of clicks in the world and in its mirror image
+FAR_SHARE = 0.02  # ASSUME: of a picture's longer side: larger errors of clicks are faults
 
 
 def of_floor(xyz: NDArray, above_m: float, cameras: Sequence[Camera]) -> Sim3:
-    """Return `world_from_cameras` of markers (F, M, 3) m of a wand that lies on the floor.
+    """Return `world_from_cameras` from markers (F, M, 3) m of a wand that lies on the floor.
 
-    `above_m` is how high the markers' centres are then. The origin lies below the first marker of
-    the first place, x runs along the wand there, z is up. Raises `InputError` if the places do not
-    tell a plane.
+    `above_m` is the height of the markers' centres. The origin is below the first marker in the
+    first frame, x runs along the wand there, and z is up. Raises `InputError` if the markers do
+    not define a plane.
     """
     places = xyz.reshape(-1, 3)
     places = places[np.isfinite(places).all(axis=1)]
-    if not np.isfinite(xyz[0]).all() or len(places) < 3 or similarity.flatness(places)[1] < WIDE:
+    if not np.isfinite(xyz[0]).all():
+        raise InputError(
+            "wand.floor: expected a first frame in which two cameras see all markers, found some "
+            "of them missing; list another frame first"
+        )
+    if len(places) < 3 or similarity.flatness(places)[1] < WIDE:
         raise InputError(
             "wand.floor: expected two frames or more in which two cameras see the wand on the "
-            "floor, not all on one line, found fewer; name others"
+            "floor in different directions, found all markers on one line; list more frames"
         )
     middle = places.mean(axis=0)
     up = np.linalg.svd(places - middle)[2][2]
     off_m = float(np.abs((places - middle) @ up).max())
     if off_m > OFF_M:
         raise InputError(
-            f"wand.floor: expected markers in one plane, found one {off_m:.2f} m off; name frames "
-            "in which the wand lies on the floor"
+            f"wand.floor: expected markers in one plane, found one {off_m:.2f} m from it; list "
+            "only frames in which the wand lies on the floor"
         )
     centres = np.array([camera.centre_in_world for camera in cameras])
     up = up if np.median((centres - middle) @ up) > 0 else -up
@@ -51,10 +56,10 @@ def of_floor(xyz: NDArray, above_m: float, cameras: Sequence[Camera]) -> Sim3:
 
 
 def of_cameras(xyz: NDArray, cameras: Sequence[Camera]) -> Sim3:
-    """Return `world_from_cameras` where nothing tells the floor, from all markers (F, M, 3) m.
+    """Return `world_from_cameras` without floor and points, from all markers (F, M, 3) m.
 
-    The origin is the middle of the wand's ways, z points against the mean of the pictures' y axes,
-    and x runs as the line from the first camera to the second, across z.
+    The origin is the middle of the wand's path, z is opposite to the mean y axis of the pictures,
+    and x runs from the first camera to the second, perpendicular to z.
     """
     up = rotations.unit(-np.mean([camera.cam_from_world[1, :3] for camera in cameras], axis=0))
     along = cameras[1].centre_in_world - cameras[0].centre_in_world
@@ -63,42 +68,43 @@ def of_cameras(xyz: NDArray, cameras: Sequence[Camera]) -> Sim3:
 
 
 def of_clicks(cameras: Sequence[Camera], points: NDArray, clicks: Mapping[str, NDArray]) -> Sim3:
-    """Return `world_from_cameras` from clicks (P, 2) px by camera of points (P, 3) m.
+    """Return `world_from_cameras` from points (P, 3) m and their clicks (P, 2) px by camera.
 
-    Raises `InputError` if too few are clicked, or they fit the cameras' mirror image only.
+    Raises `InputError` if too few points are clicked, or only the mirror image of the cameras fits.
     """
     found = _best(cameras, points, clicks)
     if found is None:
         raise InputError(
             f"wand: expected {FEWEST_CLICKS} clicked points or more in one camera, found fewer; "
-            "click more, or remove `court_points` and name `wand.floor`"
+            "click more, or remove `court_points` and set `wand.floor`"
         )
     off, world = found
     other = _best([_flipped(camera) for camera in cameras], points, clicks)
     if other is not None and off > MIRRORED * max(1.0, other[0]):
         raise InputError(
-            "wand: expected clicked points of the cameras that the wand gives, found those of "
-            "their mirror image: y of the wand's markers runs the other way; correct "
+            "wand: expected clicked points that fit the cameras from the wand, found points that "
+            "fit their mirror image: y of the wand's markers runs in the other direction; correct "
             "`wand.program`"
         )
     limit = FAR_SHARE * max(max(camera.size) for camera in cameras)
     if off > limit:
         raise InputError(
-            f"wand: expected clicked points within {limit:.0f} px of the cameras that the wand "
-            f"gives, found {off:.0f} px; check the order of the cameras, `length_m`, and the clicks"
+            f"wand: expected clicked points within {limit:.0f} px of their projections by the "
+            f"cameras from the wand, found {off:.0f} px; check the order of the cameras, "
+            "`length_m`, and the clicks"
         )
     return world
 
 
 def _best(cameras, points: NDArray, clicks) -> tuple[float, Sim3] | None:
-    """Return the world that fits clicks best, with its typical error, px."""
+    """Return the median error of clicks, px, and the world frame with the least error, or None."""
     tried = [(_error(world, cameras, points, clicks), world)
              for world in _worlds(cameras, points, clicks)]  # fmt: skip
     return min(tried, key=lambda one: one[0], default=None)
 
 
 def _worlds(cameras, points: NDArray, clicks) -> Iterator[Sim3]:
-    """Yield worlds by what each camera alone says, and by points that several see."""
+    """Yield world frames from the clicks of each camera alone, and from triangulated points."""
     xy = np.stack([clicks[camera.name] for camera in cameras])
     for camera, px in zip(cameras, xy, strict=True):
         at = np.isfinite(px).all(axis=1)
@@ -116,13 +122,11 @@ def _worlds(cameras, points: NDArray, clicks) -> Iterator[Sim3]:
     placed = triangulate_all(cameras, xy)
     seen = np.isfinite(placed).all(axis=1)
     if seen.sum() >= 3 and not similarity.is_collinear(points[seen]):
-        best = similarity.umeyama(placed[seen], points[seen])
-        middle = points[seen].mean(axis=0) - best.rotation @ placed[seen].mean(axis=0)
-        yield Sim3(1.0, best.rotation, middle)
+        yield similarity.rigid(placed[seen], points[seen])
 
 
 def _error(world: Sim3, cameras, points: NDArray, clicks) -> float:
-    """Return the median distance of clicks to projected points, px; inf of too few in front."""
+    """Return the median error of clicks, px; inf if most points are behind the cameras."""
     off = [
         np.linalg.norm(project(world.camera(camera), points) - clicks[camera.name], axis=1)
         for camera in cameras
@@ -132,7 +136,7 @@ def _error(world: Sim3, cameras, points: NDArray, clicks) -> float:
 
 
 def _flipped(camera: Camera) -> Camera:
-    """Return a camera of the mirrored world whose pictures are upside down."""
+    """Return the mirror image of a camera, whose picture is upside down."""
     turn = np.diag([1.0, -1.0, 1.0])
     matrix = camera.K.copy()
     matrix[1, 2] = camera.size[1] - 1 - matrix[1, 2]

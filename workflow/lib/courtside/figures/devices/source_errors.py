@@ -1,4 +1,4 @@
-"""Errors of each source against the truth by joint, of joint angles, and parts of the errors."""
+"""Errors of each source by joint, errors of joint angles, and the parts of the errors."""
 
 from collections.abc import Iterable
 
@@ -9,12 +9,12 @@ from matplotlib.figure import Figure, FigureBase
 
 from courtside.figures.style import bars, source_styles, style
 
-SHOWN = {  # alignments of `courtside.evaluation.sources`, from the hardest to the kindest
+SHOWN = {  # alignments of `courtside.evaluation.sources`, from none to the most complete
     "body_frame": "unaligned\n(body frame of the T-pose)",
     "root_relative": "root-relative\n(middle of the hips laid on top)",
     "procrustes_frame": "Procrustes\n(similarity for each frame)",
 }
-FORMS = {"fixed": "frame of the T-pose", "following": "frame that goes with the trunk"}
+FORMS = {"fixed": "frame of the T-pose", "following": "frame that follows the trunk"}
 PARTS = {
     "origin": "#999999",
     "scale": style.CYCLE[4],
@@ -29,16 +29,16 @@ VALUES = {
     "time": "time {:+.0f} ms",
 }
 ANGLES = ("knee_flexion", "hip_flexion", "elbow_flexion", "shoulder_elevation", "trunk_lean")
-STAGES = {"source": "none", "model": None}  # how a mark is filled
+STAGES = {"source": "none", "model": None}  # fill of the mark; None: the source's colour
 MS = 1000
 ORDER = ("wrist", "elbow", "shoulder", "hip", "knee", "ankle")
 
 
 def table(errors: pd.DataFrame, angles: pd.DataFrame, parts: pd.DataFrame) -> pd.DataFrame:
-    """Return the numbers drawn in one table: errors per joint, then of joint angles, then parts.
+    """Return the drawn numbers in one table: errors by joint, of joint angles, and parts.
 
-    Errors and parts are of `courtside.evaluation.sources`, with `source`; parts also with `frame`;
-    angles of `courtside.evaluation.kinematics`, with `source` and `stage`.
+    `errors` and `parts` are tables of `courtside.evaluation.sources` with a column `source`, parts
+    also with `frame`; `angles` of `courtside.evaluation.kinematics` with `source` and `stage`.
     """
     errors = errors[errors["alignment"].isin(SHOWN)].assign(table="errors")
     angles = angles[angles["angle"].isin(ANGLES)].assign(table="angles")
@@ -67,7 +67,7 @@ def draw(
 
 
 def _joints(names: Iterable[str]) -> list[str]:
-    """Return the joints in the order drawn: from the hands down, sides together, all at the end."""
+    """Return the joints in drawing order: from the hands down, both sides together, all last."""
 
     def rank(name: str) -> tuple[int, str, str]:
         part = name.split("_", 1)[-1]

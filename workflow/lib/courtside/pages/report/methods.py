@@ -38,7 +38,8 @@ CALIBRATED = {  # by the kind of a calibration
     "places of the wand adjusted together",
     "dlt": "calibrated from clicked court points alone, by the linear method (DLT)",
     "file": "taken from a calibration made elsewhere",
-    "people-alone": "calibrated from the people in takes alone, the unit by their stated heights",
+    "people-alone": "calibrated from the people in takes alone, the scale from their stated "
+    "heights or known lengths",
     "people": "calibrated in another way and refined by the people in takes, where people and "
     "points that the adjustment did not see say that this is better",
 }

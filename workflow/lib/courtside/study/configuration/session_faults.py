@@ -83,8 +83,7 @@ def _people_faults(file: Path, content: Content) -> Iterator[str]:
     if not known and not any((one or {}).get("height_m") for one in subjects.values()):
         yield (
             f"{file}: subjects: expected `height_m` of whom takes show, for the calibration "
-            "`people`, found none; state it, or `known_lengths`: nothing else tells the unit of "
-            "length"
+            "`people`, found none; state it, or `known_lengths`: nothing else defines the scale"
         )
 
 
@@ -94,13 +93,14 @@ def _override_faults(file: Path, content: Content) -> Iterator[str]:
     measured = "known_lengths" in content
     if "static_points" in content and not (calibration or measured):
         yield (
-            f"{file}: static_points: expected a calibration file that they check, or "
-            "`known_lengths` between them, found none; remove them or add `calibration`"
+            f"{file}: static_points: expected `calibration` (a file that they check) or "
+            "`known_lengths` (lengths between them), found neither; add one, or remove them"
         )
     if measured and not ("static_points" in content and _asks_people(content)):
         yield (
-            f"{file}: known_lengths: expected `static_points` with their ends and the calibration "
-            "`people` in override.calibrations, found not both; nothing else reads them"
+            f"{file}: known_lengths: expected `static_points` with their ends, and `people` in "
+            "override.calibrations, found only one or neither; add both: only this calibration "
+            "uses known lengths"
         )
     points = calibration.get("principal_point_px", {})
     yield from take_faults.unknown(f"{where}.principal_point_px", points, content["cameras"])
@@ -125,7 +125,7 @@ def _take_paths(where: str, take: Content) -> Iterator[tuple[str, str]]:
 
 
 def _target_paths(content: Content) -> Iterator[tuple[str, str]]:
-    """Yield those of a board and of a wand."""
+    """Yield (key, path) of a board and a wand."""
     for target, keys in (("board", ("corners", "lenses")), ("wand", ("points", "lenses"))):
         given = content.get(target, {})
         yield from ((f"{target}.{key}", given[key]) for key in keys if key in given)
@@ -241,24 +241,24 @@ def _wand_faults(file: Path, content: Content) -> Iterator[str]:
     order = given.get("cameras", list(content["cameras"]))
     if sorted(order) != sorted(content["cameras"]):
         yield (
-            f"{where}.cameras: expected every camera of the session once, found "
+            f"{where}.cameras: expected each camera of the session once, found "
             f"{', '.join(map(str, order))}; list them in the order of the program"
         )
     if "cameras" in given and "program" not in given:
         yield (
-            f"{where}.cameras: expected `program` beside it, found none; the study's own CSV names "
-            "its cameras: remove it"
+            f"{where}.cameras: expected `program`, found none; a CSV of the study contains the "
+            "names of its cameras: remove `cameras`, or add `program`"
         )
     n_markers, middle = len(given.get("markers", [])), "middle_m" in given
     if n_markers and n_markers != 2 + middle:
         yield (
             f"{where}.markers: expected {2 + middle} names, found {n_markers}; three markers need "
-            "`middle_m`, from the first to the middle one"
+            "`middle_m`, the distance of the first marker from the middle one"
         )
     if middle and not given["middle_m"] < given["length_m"]:
         yield (
             f"{where}.middle_m: expected less than length_m ({given['length_m']:g}), found "
-            f"{given['middle_m']:g}; measure it from the first marker"
+            f"{given['middle_m']:g}; measure it from the first marker to the middle one"
         )
     if "lenses" not in given:
         yield from _unsized(file, content)

@@ -228,7 +228,7 @@ def board_pictures(job: Job) -> list[str]:
 
 
 def wand_files(job: Job) -> list[str]:
-    """Return the files of a wand: where cameras see it, and lenses."""
+    """Return the files of a wand: its markers in the pictures, and lenses."""
     given = job.session.wand or {}
     lenses = recordings.inside(given["lenses"]) if "lenses" in given else []
     lens_file = [given["lenses"]] if Path(given.get("lenses", "")).is_file() else []
@@ -236,12 +236,12 @@ def wand_files(job: Job) -> list[str]:
 
 
 def wand_lenses(job: Job) -> list[str]:
-    """Return the lenses from chessboards of cameras, where a wand does not state others."""
+    """Return the lenses from chessboards of cameras, if the wand gives no `lenses`."""
     return [] if "lenses" in (job.session.wand or {}) else known_lenses(job)
 
 
 def wand_pictures(job: Job) -> list[str]:
-    """Return of each camera what tells its pictures' size, where lenses do not."""
+    """Return a picture or video of each camera for its size, if the wand gives no `lenses`."""
     return [] if "lenses" in (job.session.wand or {}) else of_full_size(job)
 
 

@@ -73,7 +73,7 @@ def exported(job: Job) -> str:
 
 
 def exported_source(job: Job) -> str:
-    """Return the joints of a source that files for other programs are made from, where agreed."""
+    """Return the joints of a source for export; raise an error without the person's consent."""
     source = sources(job, corrected=False)[job["source"]]
     exported(Job(job.study, {**job.wildcards, "device": source.device}))  # demands the consent
     return source.file
@@ -158,7 +158,7 @@ def _vision(job: Job) -> str:
 
 
 def fitting(job: Job) -> dict[str, Any]:
-    """Return how the skeletal model is fitted to a source: to whom, with what errors and filter."""
+    """Return the options of the fit to a source: person and height, filter, stated errors."""
     source = job["source"]
     who = job.take.devices[sources(job)[source].device].subject
     return {
@@ -170,22 +170,22 @@ def fitting(job: Job) -> dict[str, Any]:
 
 
 def source_sigmas(job: Job) -> dict[str, dict[str, float]]:
-    """Return the stated errors of limb joints, m, of each source but the fixed cameras.
+    """Return the stated errors of limb joints, m, by source, without the fixed cameras.
 
-    They are those of what a source is made by (`depth`, `rgb`, `corrected`), else of its device.
+    They are those of the method (`depth`, `rgb`, `corrected`), otherwise of the kind of the device.
     """
     stated, devices, found = job.step("fit_source")["sigma_m"], job.take.devices, {}
     for name, source in sources(job).items():
         if name != CAMERAS:
-            made = name.removeprefix(source.device).removeprefix("-")
-            found[name] = stated[made or devices[source.device].kind]
+            method = name.removeprefix(source.device).removeprefix("-")
+            found[name] = stated[method or devices[source.device].kind]
     return found
 
 
 def fitted(job: Job) -> dict[str, str]:
-    """Return the joints of the skeletal model of each source of a take.
+    """Return the files with the joints of the skeletal model, by source of a take.
 
-    The fixed cameras have them of networks whose joint offsets are known.
+    The fixed cameras are among them if the joint offsets of their network are known.
     """
     found = {name: job.fill(paths.FITTED_SOURCE, source=name) for name in source_sigmas(job)}
     if CAMERAS in sources(job) and paths.MODELLED in job.study.written_stages(job["model"]):
@@ -194,7 +194,7 @@ def fitted(job: Job) -> dict[str, str]:
 
 
 def compared_angles(job: Job) -> dict[str, Any]:
-    """Return what is known of the sources whose joint angles are compared with the truth."""
+    """Return the person, the devices and the stated errors of the sources of `fitted`."""
     names = fitted(job)
     return {
         "person": person(job),
@@ -204,7 +204,7 @@ def compared_angles(job: Job) -> dict[str, Any]:
 
 
 def compared_sources(job: Job) -> list[str]:
-    """Return the files of these sources, in the same order as `fitted`."""
+    """Return the files of the sources of `fitted`, in the same order."""
     return [sources(job)[name].file for name in fitted(job)]
 
 

@@ -33,7 +33,7 @@ class DeviceTake:
 
     @property
     def fitted(self) -> dict[str, str]:
-        """Its sources that the skeletal model is fitted to, with the person whom each follows."""
+        """The sources to which the skeletal model is fitted, with the person of each."""
         kinds = {device.kind for device in self.take.devices.values()}
         seen = "rgbd" in kinds or (self.take.cameras and self.session.take_calibrations())
         found: dict[str, str] = {}
@@ -69,7 +69,7 @@ def every_body_frame(study: Study) -> list[str]:
 
 
 def every_source_angle(study: Study) -> list[str]:
-    """Return the joint angles of every source of takes with devices, by the skeletal model."""
+    """Return the joint angles by the skeletal model of all sources of takes with devices."""
     return [
         one.file(paths.SOURCE_ANGLES, source=source)
         for one in device_takes(study)
@@ -98,7 +98,7 @@ def every_device_export(study: Study) -> list[str]:
 
 
 def _modelled(one: DeviceTake, sources: Mapping[str, str]) -> list[str]:
-    """Return the files of the skeletal model of sources, for the person whom each follows."""
+    """Return the exported files of the skeletal model of sources, each with its person."""
     patterns = {paths.MODELLED_EXPORT: (*JOINTS, "mot", "osim"), paths.MOTION_EXPORT: POSED}
     return [
         one.file(pattern, calibration=DEVICES, fusion=name, person=who, suffix=suffix)

@@ -1,4 +1,4 @@
-"""What is doubtful about cameras that people alone place, one line each."""
+"""Warnings about cameras from people alone, one line each."""
 
 from collections.abc import Iterator, Sequence
 from itertools import permutations
@@ -13,17 +13,17 @@ from courtside.calibration.people.views import Seen
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
 
-LEAST_S = 15.0  # ASSUME: of people in two cameras or more, all persons together
-LEAST_ANGLE_DEG = 10.0  # ASSUME: of the rays of two cameras; at less, depth is 6 times less certain
-LEAST_TIED = 0.25  # ASSUME: of the joints that tie the camera in the middle of the order
+LEAST_S = 15.0  # ASSUME: time of all persons in two cameras or more, together
+LEAST_ANGLE_DEG = 10.0  # ASSUME: between rays; below it, depth is 6 times less certain
+LEAST_TIED = 0.25  # ASSUME: joints shared with other cameras, over the median camera's
 LEAST_ACCEPTED = 75.0  # ASSUME: percent of a camera's views
-TILT_DEG, HEIGHT_M = 1.0, 0.03  # ASSUME: by which the floors of two halves of the time may differ
+TILT_DEG, HEIGHT_M = 1.0, 0.03  # ASSUME: difference of the floors of two halves of the time
 
 
-def lines(
+def find(
     cameras: Sequence[Camera], seen: Seen, joints: NDArray, score: Score, limits: Limits
 ) -> list[str]:
-    """Return what to know before cameras are used; nothing of good ones.
+    """Return the warnings; none for good cameras.
 
     `joints` (T, J, 3) m are those of `seen`, NaN where unknown.
     """
@@ -37,6 +37,7 @@ def lines(
 
 
 def _short(seen: Seen, limits: Limits) -> Iterator[str]:
+    """Yield a warning if people are seen for a short time only."""
     usable = (np.nan_to_num(seen.score) >= limits.score).any(axis=2).sum(axis=0) >= 2
     seconds = 0.0
     for track in np.unique(seen.track):
@@ -45,12 +46,13 @@ def _short(seen: Seen, limits: Limits) -> Iterator[str]:
             seconds += float(np.median(np.diff(seen.time_s[own])) * usable[own].sum())
     if seconds < LEAST_S:
         yield (
-            f"people are in two cameras or more for {seconds:.0f} s, all persons together; "
-            f"{LEAST_S:.0f} s or more are better: name longer takes"
+            f"people: expected {LEAST_S:.0f} s or more in the views of two cameras, all persons "
+            f"together, found {seconds:.0f} s; add longer takes"
         )
 
 
 def _narrow(cameras: Sequence[Camera], joints: NDArray) -> Iterator[str]:
+    """Yield a warning for each camera whose rays meet those of others at small angles only."""
     places = joints.reshape(-1, 3)
     places = places[np.isfinite(places).all(axis=1)]
     rays = [rotations.unit(places - camera.centre_in_world) for camera in cameras]
@@ -61,38 +63,41 @@ def _narrow(cameras: Sequence[Camera], joints: NDArray) -> Iterator[str]:
     for camera, angle in zip(cameras, widest, strict=True):
         if angle < LEAST_ANGLE_DEG:
             yield (
-                f"camera {camera.name}: its rays meet those of no other camera at more than "
-                f"{angle:.0f} degrees: its place is uncertain along its view; move it aside"
+                f"camera {camera.name}: expected rays that meet those of another camera at "
+                f"{LEAST_ANGLE_DEG:.0f} degrees or more, found {angle:.0f} at most; its position "
+                "is uncertain along its view: place it farther from the others"
             )
 
 
 def _loose(cameras: Sequence[Camera], seen: Seen, limits: Limits) -> Iterator[str]:
+    """Yield a warning for each camera that shares few joints with the others."""
     accepted = views.placed(cameras, seen, limits.score, limits.limit, limits.fade).accepted
     tied = (accepted & (accepted.sum(axis=0) >= 2)).sum(axis=1)
     usual = float(np.median(tied))
     for camera, count in zip(cameras, tied, strict=True):
         if count < LEAST_TIED * usual:
             yield (
-                f"camera {camera.name}: {count} joints tie it to the others, {usual:.0f} the "
-                "camera in the middle of the order; name takes in which it sees more of people"
+                f"camera {camera.name}: it shares only {count} joints with the others, the median "
+                f"camera {usual:.0f}; add takes in which it sees more of the people"
             )
 
 
 def _contradicting(cameras: Sequence[Camera], score: Score) -> Iterator[str]:
+    """Yield a warning for each camera with few accepted views of held-out joints."""
     for camera, share in zip(cameras, score.accepted_percent(), strict=True):
         if share < LEAST_ACCEPTED:
             yield (
-                f"camera {camera.name}: {share:.0f} % of its views of joints that the fit left out "
-                f"agree with the others, {LEAST_ACCEPTED:.0f} % or more are usual; check its clock"
+                f"camera {camera.name}: expected {LEAST_ACCEPTED:.0f} % or more of its views of "
+                f"held-out joints to agree with the others, found {share:.0f} %; check its clock"
             )
 
 
 def _floor(cameras: Sequence[Camera], seen: Seen, joints: NDArray) -> Iterator[str]:
-    """Yield that feet at other times say of the floor something else."""
+    """Yield a warning if the floors from two halves of the time differ."""
     half = seen.blocks(2) % 2 == 1
     whole = np.isfinite(joints).all(axis=(1, 2))
     if min((whole & half).sum(), (whole & ~half).sum()) < unit.LEAST_FRAMES:
-        yield "floor: it rests on few frames that show whole bodies; name longer takes"
+        yield "floor: it is defined by few frames with whole bodies; add longer takes"
         return
     one, other = (world_frame.floor(joints[rows], cameras) for rows in (half, ~half))
     tilt_deg = float(np.degrees(np.arccos(np.clip(one.rotation[2] @ other.rotation[2], -1, 1))))
@@ -100,7 +105,7 @@ def _floor(cameras: Sequence[Camera], seen: Seen, joints: NDArray) -> Iterator[s
     apart_m = abs(float((one.points(middle) - other.points(middle))[2]))
     if tilt_deg > TILT_DEG or apart_m > HEIGHT_M:
         yield (
-            f"floor: by the feet in the first half of each track's time it is tilted by "
-            f"{tilt_deg:.1f} degrees and {100 * apart_m:.0f} cm off that by the second half; name "
-            "takes in which people walk about more"
+            "floor: the first half of each track and the second half give floors that differ by "
+            f"{tilt_deg:.1f} degrees and {100 * apart_m:.0f} cm; add takes in which people walk "
+            "about more"
         )
