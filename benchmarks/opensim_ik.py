@@ -87,7 +87,11 @@ def one(results, session, way, folder, python):
     }
     both = {"model": points["model"], "opensim": replace(corrected, xyz=located(folder, corrected))}
     return [
-        {"take": f"{session}/{way[0]}", "stage": stage, **body_model.errors(both[stage], truth)}
+        {
+            "take": f"{session}/{way[0]}",
+            "stage": stage,
+            **body_model.errors(both[stage], truth, folder),
+        }
         | more[stage]
         for stage in STAGES
     ]
