@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 import tomllib
+from importlib import metadata
 from pathlib import Path
 
 import jsonschema
@@ -218,6 +219,24 @@ def test_the_lock_covers_the_direct_dependencies():
     for requirement in map(Requirement, wanted):
         found = versions[canonicalize_name(requirement.name)]
         assert all(requirement.specifier.contains(version) for version in found), requirement
+
+
+def test_the_lock_pins_extras():
+    """A package asked for with an extra is pinned with it.
+
+    pip before 23.3 takes the newest version of `name[extra]` where the lock pins only `name`, and
+    then stops: a lock that installs today fails after the next release of that package.
+    """
+    wanted = {
+        f"{canonicalize_name(needed.name)}[{extra}]"
+        for distribution in metadata.distributions()
+        if canonicalize_name(distribution.name) in locked()[0]
+        for needed in map(Requirement, distribution.requires or [])
+        if needed.marker is None or needed.marker.evaluate({"extra": ""})
+        for extra in needed.extras
+    }
+    assert wanted
+    assert sorted(one for one in wanted if f"\n{one}==" not in locked()[1]) == []
 
 
 def imported(path):
