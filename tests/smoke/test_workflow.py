@@ -94,8 +94,10 @@ def test_a_parameter_reruns_its_step_and_what_follows(kept):
 
 def test_a_filter_parameter_spares_the_triangulation(kept):
     after = {"filter_motion": FILTERED, "export_take": 2, "evaluate_fusions": 2}
+    of_sources = {"fit_source": 4, "evaluate_source_angles": 1, "draw_source_errors": 1}
+    exported = {"export_motion": 5}  # a take's and its four sources'
     with edited(kept / "config/config.yaml", FILTER, FILTER.replace("0.2", "0.1")):
-        assert planned(root=kept) == {**after, **DOWNSTREAM_OF_FILTER}
+        assert planned(root=kept) == {**DOWNSTREAM_OF_FILTER, **after, **of_sources, **exported}
 
 
 def test_another_number_of_images_maps_only_that_number(kept):
