@@ -17,6 +17,9 @@ SLOW_M_S = 0.5  # ASSUME: below it a point of the foot may stand
 STANDING_SHARE = 0.25  # ASSUME: quantile of a slow point's heights: a heel often stands raised
 LEAST_FRAMES = 9  # ASSUME: of a run of known frames in which contact is looked for
 UNKNOWN_M = 0.03  # ASSUME: standard deviation per axis where the keypoints state none
+# Standard deviation per axis of the network's error of an ankle, up to which it is that of a foot
+# that the network sees well, nearly constant, and does not count. Chosen on `players-dev`.
+USUAL_M = 0.03
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,23 +65,44 @@ def tracks(
     known = np.isfinite(points.xyz[person][:, chosen]).all(axis=(1, 2))
     runs = [run for run in filtering.runs(known) if run[1] - run[0] >= LEAST_FRAMES]
     own_hz = max(cutoff_hz[joint] for joint in chosen)
-    found = [_track(points, person, chosen, slice(*run), own_hz) for run in runs]
+    variance = _variance(points, person, chosen, side)
+    found = [_track(points, person, chosen, slice(*run), own_hz, variance) for run in runs]
     floor = _floor(found)
     for one in found:
         one.height[:] = one.place[..., 2] - floor
     return found, floor
 
 
+def _variance(points: Keypoints3D, person: int, chosen: list[int], side: str) -> NDArray:
+    """Return the variance (T, 2, 3) m2 of heel and toe in each frame, per axis.
+
+    Beside the keypoints' noise: what the ankle's own error exceeds `USUAL_M` by. The network's
+    errors are stated for limb joints alone, and a network that takes one foot for the other moves
+    the whole foot.
+    """
+    noise = np.diagonal(points.covariance_2d[person][:, chosen], axis1=2, axis2=3)
+    found = np.nan_to_num(noise, nan=UNKNOWN_M**2)
+    names = points.joints.tolist()
+    if f"{side}_ankle" not in names:
+        return found
+    ankle = points.covariance_network[person][:, names.index(f"{side}_ankle")]
+    error = np.nan_to_num(np.trace(ankle, axis1=1, axis2=2) / 3)
+    return found + np.maximum(error - USUAL_M**2, 0.0)[:, None, None]
+
+
 def _track(
-    points: Keypoints3D, person: int, chosen: list[int], frames: slice, cutoff_hz: float
+    points: Keypoints3D,
+    person: int,
+    chosen: list[int],
+    frames: slice,
+    cutoff_hz: float,
+    variance: NDArray,
 ) -> Track:
     """Return a track by cubic splines through the frames; its heights are not known yet."""
     own_s, step = points.time_s[frames], max(1, int(np.ceil(GRID_HZ / points.rate_hz - 1e-6)))
     time_s = np.interp(np.arange(step * (len(own_s) - 1) + 1) / step, range(len(own_s)), own_s)
     spline = scipy.interpolate.CubicSpline(own_s, points.xyz[person, frames][:, chosen])
-    stated = points.covariance_2d[person, frames][:, chosen]
-    variance = np.nan_to_num(np.diagonal(stated, axis1=2, axis2=3), nan=UNKNOWN_M**2)
-    variance = interpolation.linear(own_s, variance, time_s)
+    variance = interpolation.linear(own_s, variance[frames], time_s)
     place = spline(time_s)
     return Track(
         frames, time_s, step, place, spline(time_s, 1), variance, place[..., 2].copy(), cutoff_hz
