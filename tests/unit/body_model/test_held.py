@@ -105,3 +105,27 @@ def test_without_heels_or_contacts_nothing_is_held():
     assert held.of_contacts(("left_ankle", "right_ankle"), stands, floor, 30.0) is None
     tie = held.of_contacts(moving_model.JOINTS, stands, floor, 30.0)
     assert tie is not None and not tie.between.any() and not tie.floor.any()
+
+
+def test_a_foot_that_runs_is_not_held_though_contacts_say_so_and_one_that_trembles_is():
+    true, floor = standing(40)
+    run = np.zeros((40, 3))
+    run[20:, 0] = 4.0 * np.arange(20) / moving_model.RATE_HZ  # m: stands, then runs at 4 m/s
+    path = replace(true, root=true.root + run)
+    stands = np.full((40, 2, 2), 0.95)
+    tie = held.of_contacts(moving_model.JOINTS, stands, floor, moving_model.RATE_HZ)
+    shaken = replace(path, root=path.root + np.random.default_rng(0).normal(0, 0.003, (40, 3)))
+    less = held.doubted(MODEL, BODY, tie, shaken)
+    assert (less.between[:20] > 0.9 * tie.between[:20]).all()
+    assert (less.between[20:] < 0.01 * tie.between[20:]).all()
+    assert (less.floor[21:] < 0.01 * tie.floor[21:]).all()
+    assert (less.between <= tie.between).all() and (less.floor <= tie.floor).all()
+    data = of_noise(moving_model.points(path, noise_m=0.005))
+    moves = []
+    for one in (None, tie):
+        found = fit.fit(MODEL, BODY, data, path, HZ, moving_model.RATE_HZ, held=one)
+        xyz, _ = fit.derivatives(MODEL, BODY, found)
+        moves.append(xyz[2:16, FEET].std(axis=0).mean())
+    error = (xyz - moving_model.points(path).xyz[0])[:, FEET]
+    assert np.linalg.norm(error[24:-4], axis=2).mean() < 0.01
+    assert moves[1] < 0.7 * moves[0]

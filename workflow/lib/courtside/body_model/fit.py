@@ -99,7 +99,7 @@ def fit(
 
     It minimises the squared Mahalanobis distances of the points, Huber beyond `FAR`, the squared
     coordinates over their prior, what exceeds their ranges, the second differences (`stiffness`),
-    and what standing feet move.
+    and what standing feet move, unless they move too fast to stand.
     """
     pose, weights = start, None
     for _ in range(steps):
@@ -108,7 +108,8 @@ def fit(
             weights = stiffness(normal, cutoff_hz, rate_hz, model.sigma)
         below = np.zeros_like(normal[1:])
         if held is not None:
-            more, pull, below = feet.linearised(model, shape, held, pose)
+            tied = feet.doubted(model, shape, held, pose)
+            more, pull, below = feet.linearised(model, shape, tied, pose)
             normal, right = normal + more, right + pull
         step = _solve(model, pose, normal, right, weights, below)
         pose = poses.moved(model, pose, np.clip(step, -LONGEST, LONGEST))
