@@ -18,8 +18,9 @@ from courtside.study.execution import log
 
 UNKNOWN_M = 0.03  # ASSUME: standard deviation per axis that a joint without a network's has
 # And that points of the hand have: fingers bend, and the model's hand does not. Chosen on
-# `players-dev`: elbows gain, and the hand's direction does not lose.
-HAND_M = 0.1
+# `players-dev`: joints gain, and the hand's direction does not lose. With 0.1 for each, its three
+# points, which err alike, pull the wrist too strongly.
+HAND_M = 0.17
 # Fits, with their steps, between which the lengths of segments are fitted, and the points of feet,
 # hands and head placed.
 ROUNDS = (3, 3, 6)
