@@ -30,6 +30,16 @@ def test_joints_get_constant_bones_near_where_they_were():
     assert np.linalg.eigvalsh(found.covariance[0]).min() > 0
 
 
+def test_a_network_s_lasting_shift_is_stated_and_a_record_without_network_has_none():
+    points = moving_model.points(moving_model.moving(), noise_m=0.01)
+    fits = fitted(points)
+    bare = replace(points, covariance_network=np.zeros_like(points.covariance_network))
+    found = [take.joints(one, fits).covariance_network[0] for one in (points, bare)]
+    more = np.sqrt(np.trace(found[0] - found[1], axis1=2, axis2=3) / 3)
+    for name, each in zip(points.joints.tolist(), more.T, strict=True):
+        np.testing.assert_allclose(each, take.SHIFT_M.get(name.partition("_")[2], 0.0), atol=1e-9)
+
+
 def test_missing_joints_stay_missing_and_frames_without_a_person_are_not_made():
     points = moving_model.points(moving_model.moving(), noise_m=0.005)
     wrist = points.joints.tolist().index("left_wrist")

@@ -21,6 +21,12 @@ UNKNOWN_M = 0.03  # ASSUME: standard deviation per axis that a joint without a n
 # `players-dev`: joints gain, and the hand's direction does not lose. With 0.1 for each, its three
 # points, which err alike, pull the wrist too strongly.
 HAND_M = 0.17
+# Standard deviation per axis, m, of a limb joint's mean error over a take, with joint offsets
+# subtracted: on five takes of `players-dev`. The network errs alike in all frames of a pose, and
+# neighbours err with the joint, so the fit does not reduce it as its own covariance says.
+SHIFT_M = {
+    "shoulder": 0.008, "elbow": 0.009, "wrist": 0.006, "hip": 0.006, "knee": 0.005, "ankle": 0.004,
+}  # fmt: skip
 # Fits, with their steps, between which the lengths of segments are fitted, and the points of feet,
 # hands and head placed.
 ROUNDS = (3, 3, 6)
@@ -134,6 +140,7 @@ def joints(points: Keypoints3D, fits: Mapping[int, Fitted]) -> Keypoints3D:
     """Return the record with the joints of the fits, where the record has these joints.
 
     The fit's error is split as the record's: the keypoints' noise, and the rest as the network's.
+    To the rest of limb joints whose network's errors are known, `SHIFT_M` is added.
     """
     model, kept = segments.model(), np.zeros(points.xyz.shape[:3], dtype=bool)
     xyz, noise, rest = (
@@ -148,10 +155,18 @@ def joints(points: Keypoints3D, fits: Mapping[int, Fitted]) -> Keypoints3D:
         kept[at][rows] = known
         xyz[at][rows] = np.where(known[..., None], placed, np.nan)
         noise[at][rows] = np.where(known[..., None, None], own, np.nan)
-        rest[at][rows] = np.where(known[..., None, None], total - own, np.nan)
+        shift = _shifts(points, at)[one.shape.index][:, None, None] * np.eye(3)
+        rest[at][rows] = np.where(known[..., None, None], total - own + shift, np.nan)
     lost = np.isfinite(points.xyz[..., 0]) & ~kept
     reason = np.where(lost, missing_reason.UNCERTAIN, points.reason).astype(points.reason.dtype)
     return replace(points, xyz=xyz, covariance_2d=noise, covariance_network=rest, reason=reason)
+
+
+def _shifts(points: Keypoints3D, person: int) -> NDArray:
+    """Return the variance (J,) m2 per axis that `SHIFT_M` adds; 0 without errors of a network."""
+    parts = [joint.partition("_")[2] for joint in points.joints.tolist()]
+    erring = np.nan_to_num(points.covariance_network[person]).any(axis=(0, 2, 3))
+    return np.where(erring, np.square([SHIFT_M.get(part, 0.0) for part in parts]), 0.0)
 
 
 def motion(points: Keypoints3D, fits: Mapping[int, Fitted]) -> SkeletalMotion:

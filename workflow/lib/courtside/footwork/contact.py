@@ -6,9 +6,9 @@ work, because joints are noisy and feet also shuffle. Instead, each state has a 
 and height of both points, widened by their stated variance. The posterior of the states over time
 comes from the forward-backward algorithm (Rabiner 1989, sec. III).
 
-Networks place the toe of a foot that stands on its toe too high. A model that allows for this finds
-the end of a stance better, but takes a low step or hop for standing on the toe; a strict model does
-not. Flights that only the strict one sees are its own.
+Networks often place the toe of a foot that stands on its toe too high. A model that allows for this
+finds the end of a stance better, but takes some low steps or hops for standing on the toe; a strict
+model does not. Flights that only the strict one sees are its own.
 """
 
 import numpy as np
@@ -20,9 +20,10 @@ from courtside.footwork.tracks import Track
 # per axis and mean heights, beside what the stated errors add: m/s and m.
 STILL_M_S, STILL_M = 0.15, 0.008  # of a point that stands
 ODD, ODD_TIMES = 0.01, 3.0  # share and widening of a standing point's gross errors
-# Mean height of a toe on which the foot stands, heel up, and its standard deviation: chosen on two
-# drills and a rally of players-dev. The strict model has those of a flat foot.
-TIPTOE, STRICT = (0.02, 0.012), (0.0, STILL_M)
+# Mean height of a toe on which the foot stands, heel up, and its standard deviation: chosen on six
+# takes of players-dev, where it is seen up to 4 cm high, and on simulated feet, whose toe dips. The
+# strict model has those of a flat foot.
+TIPTOE, STRICT = (0.01, 0.02), (0.0, STILL_M)
 SWING_M_S = (0.6, 1.5, 4.0)  # of a swinging point: shuffling, stepping and running alike
 SWING_M, SWING_SD_M = 0.05, 0.05  # its height
 RAISED_M_S, RAISED_M, RAISED_SD_M = 0.9, 0.04, 0.04  # of the other end of a tilted foot
