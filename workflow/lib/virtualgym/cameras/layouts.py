@@ -27,6 +27,26 @@ HEIGHTS_M = {
     "front": 2.2,
     "left": 2.9,
     "right": 2.7,
+    "stand_left": 6.5,
+    "stand_right": 8.0,
+    "stand_far_right": 5.5,
+    "stand_far_left": 7.2,
+    "near_left": 1.4,
+    "near_back": 2.6,
+    "near_right": 1.1,
+    "near_front": 3.2,
+}
+STANDS_M = {  # layout stands: (x, y) from the court's centre
+    "stand_left": (-11.0, -13.0),
+    "stand_right": (12.0, -12.0),
+    "stand_far_right": (12.0, 10.0),
+    "stand_far_left": (-10.0, 11.5),
+}
+NEAR_M = {  # layout near: (x, y) from the middle of the near half
+    "near_left": (-7.0, -2.0),
+    "near_back": (3.0, -8.0),
+    "near_right": (7.5, 1.5),
+    "near_front": (-3.5, 7.5),
 }
 LAYOUTS = {  # in the order in which a walk passes them
     "a": ("side", "back"),
@@ -34,6 +54,8 @@ LAYOUTS = {  # in the order in which a walk passes them
     "b-mirror": ("oblique", "back", "mirror"),
     "b-mirror-front": ("oblique", "back", "mirror", "front"),
     "corners": ("left", "right"),
+    "stands": tuple(STANDS_M),
+    "near": tuple(NEAR_M),
 }
 
 
@@ -56,6 +78,8 @@ def fixed_cameras(
         "b" one stands straight behind the court (`back`), one beside it on a line parallel to x
         (`oblique`); then the mirror image of that one (`mirror`); then one that faces the players.
         In "corners" two stand high to the left and the right behind the court, 124 degrees apart.
+        In "stands" four look down from the stands of a hall, 5.5 to 8 m high. In "near" four stand
+        7 to 9 m around the middle of the near half, at which they are aimed.
     court : Court
     size_px : (int, int)
         Width and height of the pictures.
@@ -85,13 +109,14 @@ def fixed_cameras(
             f"expected baseline_deg in 0..180 for layout a, found {baseline_deg}, {layout}"
         )
     centre, places = court_centre(court), _places(layout, court, baseline_deg)
+    aim = centre + np.array([*_aim(layout, court), AIM_M])
     made = []
     for name in LAYOUTS[layout]:
         matrix, dist = lens(size_px, preset, rng)
         matrix[[0, 1], [0, 1]] *= zoom
         place = centre + np.array([*places[name], HEIGHTS_M[name]])
         roll_deg = rng.uniform(-ROLL_DEG, ROLL_DEG)
-        pose = look_at(place, centre + np.array([0, 0, AIM_M]), roll_deg)
+        pose = look_at(place, aim, roll_deg)
         made.append(Camera(name, size_px, matrix, dist, pose))
     return made
 
@@ -162,6 +187,10 @@ def _places(
         away_m, angle = max(SQUARE_ON_M, needed_m), np.radians(CORNER_DEG)
         across, behind = away_m * np.sin(angle), -away_m * np.cos(angle)
         return {"left": (-across, behind), "right": (across, behind)}
+    if layout == "stands":
+        return STANDS_M
+    if layout == "near":
+        return {name: tuple(np.add(_aim(layout, court), xy)) for name, xy in NEAR_M.items()}
     away_m = BEHIND_M + max(0.0, needed_m - SQUARE_ON_M)
     return {
         "oblique": (-BESIDE_M, -away_m),
@@ -169,3 +198,8 @@ def _places(
         "mirror": (BESIDE_M, -away_m),
         "front": (0.0, away_m),
     }
+
+
+def _aim(layout: str, court: Court) -> tuple[float, float]:
+    """Return (x, y) m of the point at which the cameras are aimed, from the court's centre."""
+    return (0.0, -max(court.size_m) / 4) if layout == "near" else (0.0, 0.0)
