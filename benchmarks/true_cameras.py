@@ -39,19 +39,22 @@ class Take:
         (raw,) = folder.glob(f"pose3d/*/{fusion}/{model}.npz")
         calibration = raw.parts[-3]
         self.raw = keypoints.read_3d(raw)
-        self.cameras = results / session / "calibration" / calibration / "cameras.toml"
         owners = (session, "players-b")  # sessions without own cameras have those of players-b
-        self.session_truth = next(p for o in owners if (p := virtual / o / "truth.npz").is_file())
-        self.people = [folder / "people" / calibration / f"{model}.npz"]
-        self.sync = [folder / "sync" / calibration / f"cameras.{model}.json"]
-        self.truth = [virtual / session / "takes" / take / "truth.npz"]
         views = [folder / "pose2d" / model / f"{camera}.npz" for camera in self.raw.cameras]
         sexes = yaml_files.read(ROOT / "config" / "sessions" / f"{session}.yaml")["subjects"]
         self.sex_of = {str(who): sexes[str(who)]["sex"] for who in self.raw.person_id}
-        self.take = {"pose2d": views, "sex_of": self.sex_of}
+        self.take = {
+            "cameras": results / session / "calibration" / calibration / "cameras.toml",
+            "session_truth": next(p for o in owners if (p := virtual / o / "truth.npz").is_file()),
+            "pose2d": views,
+            "people": folder / "people" / calibration / f"{model}.npz",
+            "sync": folder / "sync" / calibration / f"cameras.{model}.json",
+            "truth": virtual / session / "takes" / take / "truth.npz",
+            "sex_of": self.sex_of,
+        }
 
 
-def stages(raw, table, sex_of, step):
+def stages(raw, table, sex_of, step, cameras):
     """Return raw, filtered, and corrected and filtered skeletons."""
     how = step["filter_motion"]
     points = skeleton_filter.prepare(raw, how["max_gap_s"])
@@ -59,7 +62,7 @@ def stages(raw, table, sex_of, step):
     per_joint = SHAPE.by_group({group: one.cutoff_hz for group, one in choices.items()})
     filtered = skeleton_filter.smooth(points, per_joint, how["order"])
     corrected = joint_correction.correct_then_filter(
-        points, filtered, table, sex_of, per_joint, how["order"]
+        points, filtered, table, sex_of, per_joint, how["order"], cameras
     )
     return {"raw": raw, "filtered": filtered, "corrected": corrected}
 
@@ -101,12 +104,12 @@ def main():
     step = yaml_files.read(ROOT / "config" / "config.yaml")
     for name in given.takes:
         files = Take(given.results, name, given.model, given.fusion)
-        ((seen, sex_of, truth),) = error_fit.footage_with_truth(files, [files.take])
+        ((seen, sex_of, truth),) = error_fit.footage_with_truth([files.take])
         raw = error_fit.triangulated(seen, SHAPE, list(sex_of), step["triangulate"])
+        cameras = [one.camera for one in seen]
         for words, points in (("cameras of the study", files.raw), ("true cameras", raw)):
-            print(
-                f"{name}, {words}: {line(stages(points, table, sex_of, step)['corrected'], truth)}"
-            )
+            corrected = stages(points, table, sex_of, step, cameras)["corrected"]
+            print(f"{name}, {words}: {line(corrected, truth)}")
 
 
 if __name__ == "__main__":

@@ -119,7 +119,7 @@ def player_rows(results):
     name = f"{session}/footwork"
     files, walk = true_cameras.Take(results, name, NETWORK, "all-robust"), Walk(results, session)
     table = joint_correction.read(ROOT / "config" / "joint_offsets" / f"{NETWORK}.csv")
-    ((seen, sex_of, truth),) = error_fit.footage_with_truth(files, [files.take])
+    ((seen, sex_of, truth),) = error_fit.footage_with_truth([files.take])
     path = results / "virtual" / session / "court_points.csv"
     clicked = clicks.read(path, walk.one.names, list(walk.one.court.points))
     base, both, _ = walk.ways(clicked)
@@ -134,7 +134,9 @@ def player_rows(results):
             raw = error_fit.triangulated(
                 used, true_cameras.SHAPE, list(sex_of), CONFIG["triangulate"]
             )
-            for stage, points in true_cameras.stages(raw, table, sex_of, CONFIG).items():
+            cameras = [one.camera for one in used]
+            stages = true_cameras.stages(raw, table, sex_of, CONFIG, cameras)
+            for stage, points in stages.items():
                 printed = "{:.1f} / {:.1f}".format(*true_cameras.errors_mm(points, truth))
                 print(words, n, stage, printed, flush=True)
                 yield f"`{name}`, {n} cameras, {stage}", words, printed, "mm", session, 1

@@ -188,12 +188,7 @@ rule evaluate_body_frames:
 # Of every take of a development session. People were found with clicked cameras; what is fitted is
 # fitted with the true ones.
 FITTED = {
-    "cameras": paths.part(paths.CAMERAS, calibration="known18"),
-    "session_truth": paths.TRUTH,
-    "pose2d": of_job(evaluation.fitted_keypoints),
-    "people": of_job(takes.every_take, paths.PEOPLE, calibration="known18"),
-    "sync": of_job(takes.every_take, paths.CAMERA_CLOCKS, calibration="known18"),
-    "truth": of_job(evaluation.true_takes),
+    "files": lambda w: evaluation.fitted_files(STUDY, w.model),
     "skeleton": of_job(Job.skeleton_file),
 }
 
@@ -204,12 +199,14 @@ rule evaluate_joint_offsets:
     output:
         offsets_csv=paths.JOINT_OFFSETS,
     log:
-        "results/{session}/logs/evaluate_joint_offsets/{model}.log",
+        f"{paths.NETWORKS}logs/evaluate_joint_offsets/{{model}}.log",
     params:
         code=code("evaluate_joint_offsets.py"),
-        takes=of_job(evaluation.fitted_takes),
-        about=lambda w, output: evaluation.estimated_by(w.session, w.model, output.offsets_csv),
-        step=step("triangulate"),
+        takes=lambda w: evaluation.fitted_takes(STUDY, w.model),
+        about=lambda w, output: evaluation.estimated_by(
+            STUDY.sessions, w.model, output.offsets_csv
+        ),
+        step=STUDY.parameters["triangulate"],
     script:
         "../scripts/evaluate_joint_offsets.py"
 
@@ -221,12 +218,14 @@ rule evaluate_joint_errors:
     output:
         errors_csv=paths.JOINT_ERRORS,
     log:
-        "results/{session}/logs/evaluate_joint_errors/{model}.log",
+        f"{paths.NETWORKS}logs/evaluate_joint_errors/{{model}}.log",
     params:
         code=code("evaluate_joint_errors.py"),
-        takes=of_job(evaluation.fitted_takes),
-        about=lambda w, output: evaluation.estimated_by(w.session, w.model, output.errors_csv),
-        step=step("triangulate"),
+        takes=lambda w: evaluation.fitted_takes(STUDY, w.model),
+        about=lambda w, output: evaluation.estimated_by(
+            STUDY.sessions, w.model, output.errors_csv
+        ),
+        step=STUDY.parameters["triangulate"],
     script:
         "../scripts/evaluate_joint_errors.py"
 
@@ -241,7 +240,9 @@ rule evaluate_skin_depths:
         "results/{session}/logs/evaluate_skin_depths/{device}.{model}.log",
     params:
         code=code("evaluate_skin_depths.py"),
-        about=lambda w, output: evaluation.estimated_by(w.session, w.model, output.depths_csv),
+        about=lambda w, output: evaluation.estimated_by(
+            [w.session], w.model, output.depths_csv
+        ),
         step=step("lift_depth"),
     script:
         "../scripts/evaluate_skin_depths.py"

@@ -137,6 +137,7 @@ rule correct_joints:
     input:
         raw=paths.POSE3D,
         filtered=paths.POSE3D_FILTERED,
+        cameras=paths.CAMERAS,
         cutoffs=paths.CUTOFFS,
         skeleton=of_job(Job.skeleton_file),
         offsets=lambda w: CONFIG / paths.OFFSETS_CSV.format(model=w.model),
@@ -155,6 +156,7 @@ rule correct_joints:
 rule fit_skeleton:
     input:
         raw=paths.POSE3D,
+        cameras=paths.CAMERAS,
         corrected=paths.POSE3D_CORRECTED,
         contacts=paths.CONTACTS,
         cutoffs=paths.CUTOFFS,

@@ -15,7 +15,7 @@ from courtside.study.execution.script import run
 def main(paths, errors_csv, *, takes, about, step):
     table = joint_correction.read(paths.offsets) if paths.offsets else None
     joints, parts = skeleton.read(paths.skeleton), []
-    for seen, sex_of, truth in error_fit.footage_with_truth(paths, takes):
+    for seen, sex_of, truth in error_fit.footage_with_truth(takes):
         for count in range(2, len(seen) + 1):
             for used in combinations(seen, count):
                 parts.append(error_fit.joints_of(used, joints, sex_of, table, truth, step))

@@ -7,6 +7,7 @@ their contacts, which heels and toes stand.
 
 from courtside.body_model import take
 from courtside.exports import measures
+from courtside.geometry import camera
 from courtside.kinematics import cutoffs, skeleton_filter
 from courtside.reconstruction import joint_correction
 from courtside.records import footwork, tables
@@ -16,7 +17,8 @@ from courtside.study.execution.script import run
 
 def main(paths, joints_npz, motion_npz, angles_csv, *, max_gap_s, sex_of, height_m_of):
     raw = skeleton_filter.prepare(keypoints.read_3d(paths.raw), max_gap_s)
-    points = joint_correction.correct(raw, joint_correction.read(paths.offsets), sex_of)
+    cameras, offsets = camera.read_toml(paths.cameras), joint_correction.read(paths.offsets)
+    points = joint_correction.correct(raw, offsets, sex_of, cameras)
     shape, (chosen, _) = skeleton.read(paths.skeleton), cutoffs.read(paths.cutoffs)
     cutoff_hz = dict(zip(shape.joints, shape.by_group(chosen), strict=True))
     contacts = footwork.read_contacts(paths.contacts)

@@ -41,7 +41,8 @@ def main(paths, pose3d_npz, *, sex_of, fusion, **options):
     points = camera_error.merge(*halves, used) if halves else fuse(used, rule)
     if paths.offsets:
         table = joint_correction.read(paths.offsets)
-        points = replace(points, offset=joint_correction.offsets(points, table, sex_of))
+        cameras = [one.camera for one in seen.values()]
+        points = replace(points, offset=joint_correction.offsets(points, table, sex_of, cameras))
     keypoints.write_3d(pose3d_npz, points)
 
 

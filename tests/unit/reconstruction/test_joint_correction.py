@@ -7,10 +7,13 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from courtside.geometry import triangulation
 from courtside.kinematics import skeleton_filter
-from courtside.reconstruction import joint_correction
+from courtside.reconstruction import joint_correction, offset_vectors
+from courtside.reconstruction.joint_correction import Clip
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.errors import InputError
+from fixtures.cameras import scene
 from fixtures.people import footwork, walker
 
 CONFIG = Path(__file__).parents[3] / "config"
@@ -19,8 +22,8 @@ SHARES = {"up": 0.05, "out": -0.03, "forward": 0.02}
 ALONG_THIGH = 0.1
 
 
-def bodies(n, seed, size=1.0):
-    """Return (n, 12, 3): a standing body in random orientation with random limb directions."""
+def bodies(n, seed, size=1.0, turned=True):
+    """Return (n, 12, 3): a standing body, by default turned, with random limb directions."""
     rng = np.random.default_rng(seed)
     found = np.zeros((n, 12, 3))
     for at, sign in ((0, 1.0), (6, -1.0)):
@@ -30,7 +33,9 @@ def bodies(n, seed, size=1.0):
             way = rng.normal([0, 0, -1.0], 1.0, (n, 3))
             way /= np.linalg.norm(way, axis=1, keepdims=True)
             found[:, at + stop] = found[:, at + start] + length * way
-    turn = Rotation.random(n, rng=rng).as_matrix()
+    turn = (
+        Rotation.random(n, rng=rng).as_matrix() if turned else np.broadcast_to(np.eye(3), (n, 3, 3))
+    )
     return size * np.einsum("nij,nkj->nki", turn, found)
 
 
@@ -65,8 +70,8 @@ def test_forward_is_where_toes_point_and_out_is_the_joints_own_side():
     standing = bodies(1, seed=0)
     standing[0, :, :] = 0
     standing[0, [0, 6, 3, 9]] = [[0, 0.2, 1.4], [0, -0.2, 1.4], [0, 0.12, 0.9], [0, -0.12, 0.9]]
-    left = joint_correction.vectors(standing, JOINTS, "left", "hip")
-    right = joint_correction.vectors(standing, JOINTS, "right", "hip")
+    left = offset_vectors.of_body(standing, JOINTS, "left", "hip")
+    right = offset_vectors.of_body(standing, JOINTS, "right", "hip")
     np.testing.assert_allclose(left["up"][0], [0, 0, 0.5], atol=1e-12)
     np.testing.assert_allclose(left["forward"][0], [0.5, 0, 0], atol=1e-12)
     np.testing.assert_allclose(left["out"][0], [0, 0.5, 0], atol=1e-12)
@@ -76,7 +81,7 @@ def test_forward_is_where_toes_point_and_out_is_the_joints_own_side():
 def test_shares_are_found_and_hold_for_bodies_of_another_size():
     """The trunk is that of the displaced body: the result is not SHARES but removes them."""
     true = bodies(400, seed=1)
-    table = joint_correction.estimate([(displaced(true), true, None)], JOINTS, JOINTS)
+    table = joint_correction.estimate([Clip(displaced(true), true)], JOINTS, JOINTS)
     hips = table[table["joint"] == "hip"]
     assert (hips["n"] == 800).all()
     elsewhere = bodies(50, seed=2, size=0.8)
@@ -93,10 +98,11 @@ def test_shares_are_found_and_hold_for_bodies_of_another_size():
 
 def test_what_remains_is_its_standard_deviation_and_joins_the_covariance():
     rng = np.random.default_rng(3)
-    true = bodies(2000, seed=4)
+    sizes = rng.uniform(0.7, 1.3, (2000, 1, 1))  # else the lengths of limbs would show the noise
+    true = sizes * bodies(2000, seed=4)
     noisy = true.copy()
     noisy[:, [2, 8]] += rng.normal(0, 0.01, (2000, 2, 3))
-    table = joint_correction.estimate([(noisy, true, None)], JOINTS, JOINTS)
+    table = joint_correction.estimate([Clip(noisy, true)], JOINTS, JOINTS)
     sigma_m = table.groupby("joint")["sigma_m"].first()
     assert sigma_m["wrist"] == pytest.approx(0.01, rel=0.05)
     assert sigma_m["hip"] < 1e-3
@@ -114,7 +120,7 @@ def test_the_direction_of_an_arm_counts_whatever_its_length():
     for elbow in (1, 7):
         way = true[:, elbow + 1] - true[:, elbow]
         found[:, elbow] += 0.02 * way / np.linalg.norm(way, axis=-1, keepdims=True)
-    table = joint_correction.estimate([(found, true, None)], JOINTS, JOINTS)
+    table = joint_correction.estimate([Clip(found, true)], JOINTS, JOINTS)
     corrected = joint_correction.correct(record(found), table)
     at = [list(corrected.joints).index(name) for name in ("left_elbow", "right_elbow")]
     assert np.linalg.norm(corrected.xyz[0][:, at] - true[:, [1, 7]], axis=-1).mean() < 1e-3
@@ -130,7 +136,7 @@ def test_hips_of_men_and_women_may_be_off_in_opposite_directions():
         found[:, [3, 9]] += sign * SHARES["up"] * trunk[:, np.newaxis]
         return found
 
-    clips = [(moved(men, 1), men, "m"), (moved(women, -1), women, "f")]
+    clips = [Clip(moved(men, 1), men, "m"), Clip(moved(women, -1), women, "f")]
     table = joint_correction.estimate(clips, JOINTS, JOINTS)
     for sex, sign in (("m", 1), ("f", -1), (None, 0)):
         corrected = joint_correction.correct(record(moved(others, sign)), table, {"p1": sex})
@@ -140,9 +146,59 @@ def test_hips_of_men_and_women_may_be_off_in_opposite_directions():
     assert np.linalg.norm(wrong.xyz[0][:, at] - others[:, [3, 9]], axis=-1).mean() > 0.04
 
 
+def seen_at(true, cameras):
+    """Return bodies (n, 12, 3) as cameras triangulate them whose network errs by the view.
+
+    In each view knees are 5 cm too far forward, times the component along the body's own side of
+    the direction of view: in front and behind nothing, from the side all of it.
+    """
+    found, scores = true.copy(), np.ones((len(cameras), len(true)))
+    trunk = true[:, 0] + true[:, 6] - true[:, 3] - true[:, 9]
+    for at, sign in ((4, 1), (10, -1)):
+        out = sign * (true[:, 0] - true[:, 6] + true[:, 3] - true[:, 9])
+        out, forward = (v / np.linalg.norm(v, axis=1, keepdims=True) for v in (
+            out, np.cross(sign * out, trunk)))  # fmt: skip
+        pictures = []
+        for camera in cameras:
+            way = true[:, at] - camera.centre_in_world
+            way /= np.linalg.norm(way, axis=1, keepdims=True)
+            place = true[:, at] + 0.05 * (way * out).sum(axis=1, keepdims=True) * forward
+            pictures.append(scene.opencv_projection(camera, place))
+        limits = {"sigma_px": 1.0, "max_error_px": 60.0, "fade_px": 1e6}
+        seen = triangulation.triangulate_robust(cameras, np.stack(pictures), scores, **limits)
+        found[:, at] = seen.xyz
+    return found
+
+
+def test_offsets_that_depend_on_the_view_hold_for_cameras_elsewhere():
+    """Fitted with three cameras on one side, used with two of another height and distance."""
+    around = scene.ring(7, radius_m=7.0, height_m=1.0)[:3]
+    elsewhere = [*scene.ring(5, radius_m=12.0, height_m=5.0)[1:3]]
+    upright = Rotation.from_rotvec(np.linspace(0, 6, 300)[:, None] * [0, 0, 1]).as_matrix()
+    true = np.einsum("nij,nkj->nki", upright, bodies(300, seed=21, turned=False))
+    other = np.einsum("nij,nkj->nki", upright[::-1], bodies(300, seed=22, turned=False))
+    accepted = np.ones((300, len(JOINTS), 3), dtype=bool)
+    clip = Clip(seen_at(true, around), true, None, around, accepted)
+    by_view = joint_correction.estimate([clip], JOINTS, JOINTS)
+    alone = joint_correction.estimate([replace(clip, cameras=(), accepted=None)], JOINTS, JOINTS)
+    points = record(seen_at(other, elsewhere))
+    points = replace(points, cameras=np.array([camera.name for camera in elsewhere]))
+    at, error = [list(points.joints).index(f"{side}_knee") for side in ("left", "right")], {}
+    for name, found in (
+        ("raw", points),
+        ("alone", joint_correction.correct(points, alone)),
+        ("by view", joint_correction.correct(points, by_view, cameras=elsewhere[::-1])),
+    ):
+        error[name] = np.linalg.norm(found.xyz[0][:, at] - other[:, [4, 10]], axis=-1).mean()
+    assert error["raw"] > 0.01
+    assert error["by view"] < 0.2 * error["raw"] and error["alone"] > 0.7 * error["raw"]
+    with pytest.raises(ValueError, match="expected the cameras of the skeletons, missing"):
+        joint_correction.correct(points, by_view)
+
+
 def test_a_joint_whose_trunk_is_missing_keeps_its_place():
     true = bodies(20, seed=5)
-    table = joint_correction.estimate([(displaced(true), true, None)], JOINTS, JOINTS)
+    table = joint_correction.estimate([Clip(displaced(true), true)], JOINTS, JOINTS)
     points = record(displaced(true))
     points.xyz[0, 3, list(points.joints).index("left_shoulder")] = np.nan
     corrected = joint_correction.correct(points, table)
@@ -156,12 +212,12 @@ def test_a_joint_seen_in_no_clip_is_a_fault():
     blind = true.copy()
     blind[:, [5, 11]] = np.nan
     with pytest.raises(ValueError, match="expected hip in a clip"):
-        joint_correction.estimate([(blind, true, None)], JOINTS, JOINTS)
+        joint_correction.estimate([Clip(blind, true)], JOINTS, JOINTS)
 
 
 def test_a_table_is_read_back_and_other_files_are_refused(tmp_path):
     table = joint_correction.estimate(
-        [(displaced(bodies(50, 7)), bodies(50, 7), None)], JOINTS, JOINTS
+        [Clip(displaced(bodies(50, 7)), bodies(50, 7))], JOINTS, JOINTS
     )
     path = tmp_path / "offsets.csv"
     path.write_text("# made by a rule\n" + table.to_csv(index=False))

@@ -1,6 +1,7 @@
 """What is compared with truth, and how it is labelled: written out for the tiny study."""
 
 from dataclasses import replace
+from pathlib import Path
 
 from courtside.study import paths
 from courtside.study.jobs import evaluation
@@ -84,14 +85,20 @@ def test_stated_errors_are_judged_in_the_fusion_that_is_exported(job):
     assert evaluation.exported_labels(job(**NET)) == [{**NET, "stage": one} for one in stages]
 
 
-def test_errors_are_fitted_on_every_take_of_a_session(job):
-    one = job(session="players-tiny", model="net")
-    shot, rally = evaluation.fitted_takes(one)
-    folder = "results/players-tiny/takes/{}/pose2d/net/{}.npz"
-    assert shot["pose2d"] == [folder.format("shot", c) for c in ("oblique", "back", "mirror")]
-    assert evaluation.fitted_keypoints(one) == [*shot["pose2d"], *rally["pose2d"]]
-    sexes = {name: one.session.subjects[name].sex for name in one.session.takes["shot"].subjects}
+def test_offsets_are_fitted_on_every_virtual_take_with_its_true_cameras(study):
+    found = evaluation.fitted_takes(study, "net")
+    sessions = [Path(take["session_truth"]).parent.name for take in found]
+    virtual = {name: len(one.takes) for name, one in study.sessions.items() if one.virtual}
+    assert {name: sessions.count(name) for name in virtual} == virtual
+    shot = next(take for take in found if "/players-tiny/takes/shot/" in take["truth"])
+    folder = "results/players-tiny/takes/shot/pose2d/net/{}.npz"
+    assert shot["pose2d"] == [folder.format(c) for c in ("oblique", "back", "mirror")]
+    session = study.sessions["players-tiny"]
+    sexes = {name: session.subjects[name].sex for name in session.takes["shot"].subjects}
     assert shot["sex_of"] == sexes and set(sexes.values()) <= {"m", "f", None}
+    files = evaluation.fitted_files(study, "net")
+    assert len(set(files)) == len(files)
+    assert set(shot["pose2d"]) | {shot["truth"], shot["people"], shot["sync"]} <= set(files)
 
 
 def test_pairs_of_fusions_are_those_that_a_session_has(job):
@@ -105,9 +112,9 @@ def test_labels_are_some_wildcards_and_more(job):
 
 
 def test_a_table_says_the_command_that_made_it():
-    assert evaluation.estimated_by("players-dev", "net", "results/x.csv") == (
-        "Estimated on session players-dev by: "
-        "snakemake --config sessions=[players-dev] variations=[] models=[net] -- results/x.csv"
+    assert evaluation.estimated_by(["dev", "near"], "net", "results/x.csv") == (
+        "Estimated by: "
+        "snakemake --config sessions=[dev,near] variations=[] models=[net] -- results/x.csv"
     )
 
 

@@ -4,7 +4,7 @@ An error of the cameras moves all joints of a session: fitted by clicked cameras
 for the network's, and be carried into every other hall. Errors are fitted with fewer cameras, too.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -26,21 +26,29 @@ from courtside.records.truth.take_truth import TakeTruth
 # ASSUME: weight of a joint by the number of cameras of its set: all sets of four cameras of one
 # size together count about as much as the one of four.
 WEIGHT = {2: 0.25, 3: 0.4}
+# Neighbouring frames have nearly the same error. With all of them, takes of many frames per second
+# would count more than others.
+MOST_HZ = 10.0
 
 
 def footage_with_truth(
-    paths: Any, takes: Sequence[Mapping[str, Any]]
+    takes: Iterable[Mapping[str, Any]],
 ) -> Iterator[tuple[list[Footage], Mapping[str, str | None], TakeTruth]]:
     """Yield, for each take, its footage with the true cameras, its persons' sexes, and its truth.
 
-    `paths` has `cameras` (the calibration that people were found with), `session_truth`, and
-    `people`, `sync` and `truth` of each of the `takes`, which name their `pose2d` and `sex_of`.
+    Each of the `takes` names its files: `cameras` (the calibration that people were found with),
+    `session_truth`, `pose2d`, `people`, `sync` and `truth`; and `sex_of` its persons.
     """
-    true = {camera.name: camera for camera in session_truth.read(paths.session_truth).cameras}
-    for take, people, sync, path in zip(takes, paths.people, paths.sync, paths.truth, strict=True):
-        seen = footage.read(paths.cameras, take["pose2d"], people, sync)
+    for take in takes:
+        true = {one.name: one for one in session_truth.read(take["session_truth"]).cameras}
+        seen = footage.read(take["cameras"], take["pose2d"], take["people"], take["sync"])
         own = [replace(one, camera=true[one.camera.name]) for one in seen]
-        yield own, take["sex_of"], take_truth.read(path)
+        yield own, take["sex_of"], take_truth.read(take["truth"])
+
+
+def every(points: Keypoints3D) -> slice:
+    """Return which frames of a take are used for a fit: at most `MOST_HZ` in a second."""
+    return slice(None, None, max(1, round(points.rate_hz / MOST_HZ)))
 
 
 def triangulated(
@@ -72,7 +80,8 @@ def joints_of(
     signs = error_signs.of_points([one.camera for one in seen], raw, xy, score, skeleton)
     placed = raw
     if table is not None:
-        placed = replace(raw, xyz=raw.xyz - joint_correction.offsets(raw, table, sex_of))
+        moved = joint_correction.offsets(raw, table, sex_of, [one.camera for one in seen])
+        placed = replace(raw, xyz=raw.xyz - moved)
     names, error, _ = joints.errors(placed, truth.joints.tolist(), joints.true_places(raw, truth))
     error = error[:, :, [names.index(joint) for joint in limbs.JOINTS]]
     at = [raw.joints.tolist().index(joint) for joint in limbs.JOINTS]
@@ -80,6 +89,8 @@ def joints_of(
         raw.covariance_2d[:, :, at],
         joint_errors.design(signs, raw.joints.tolist()),
     )
-    known = np.isfinite(error).all(axis=-1) & np.isfinite(covariance).all(axis=(-2, -1))
+    used = np.zeros(error.shape[:-1], dtype=bool)
+    used[:, every(raw)] = True
+    known = used & np.isfinite(error).all(axis=-1) & np.isfinite(covariance).all(axis=(-2, -1))
     weight = np.full(int(known.sum()), WEIGHT.get(len(seen), 1.0))
     return columns[known], error[known], covariance[known], weight

@@ -1,106 +1,68 @@
 """Correction of a network's joints: joint offsets, and limbs of nearly constant length."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise, product
 
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
-from courtside.geometry import rotations
+from courtside.geometry.camera import Camera
 from courtside.kinematics import skeleton_filter
+from courtside.reconstruction import offset_vectors
 from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.errors import InputError, StrPath, reading
 
-# Lines (from, to) of a joint's own side that may explain its offset.
-BONES = {
-    "shoulder": (("shoulder", "elbow"), ("elbow", "wrist")),
-    "elbow": (("shoulder", "elbow"), ("elbow", "wrist"), ("wrist", "index"), ("wrist", "pinky")),
-    "wrist": (("elbow", "wrist"), ("wrist", "index"), ("wrist", "pinky")),
-    "hip": (("hip", "knee"), ("knee", "ankle")),
-    "knee": (("hip", "knee"), ("knee", "ankle"), ("ankle", "heel"), ("ankle", "foot_index")),
-    "ankle": (("knee", "ankle"), ("ankle", "heel"), ("ankle", "foot_index")),
-}
-ACROSS = {"shoulder": ("shoulder", "elbow"), "hip": ("hip", "knee")}  # and of the other side
-TRUNK = ("out", "up", "forward")  # names of the trunk's vectors, each as long as the trunk
-# Vectors with shares of opposite sign for men and women, besides the common shares: hips of
-# development bodies left out of the fit are 20 mm off with them, 33 mm without.
-BY_SEX = {"hip": TRUNK}
-SIGN: dict[str | None, float] = {"m": 1.0, "f": -1.0}  # for others, the mean of both
-# Lines that also count by their direction: if a part of the arm looks too short, the elbow is off.
-DIRECTED = {"elbow": (("shoulder", "elbow"), ("elbow", "wrist"))}
-# Of directions and of the vector along the world's z: about a limb, any unit will do.
-LENGTH_M = 0.3
 # Ridge, share of the vectors' mean square: undetermined shares stay near zero. Another weight did
 # not help (docs/measured.md).
 RIDGE = 1e-3
 OUTLIER = 1.5  # ASSUME: times the median error: beyond it a frame loses weight (Huber)
 ROUNDS = 15  # of reweighting
 NORMAL_MEDIAN = 1.5382  # median length of a vector of three standard normal numbers
+SIDES = ("left", "right")
 COLUMNS = ["joint", "vector", "share", "sigma_m", "n"]
 REMAKE = "make it again with the rule evaluate_joint_offsets"
 
 
-def vectors(
-    xyz: NDArray, joints: Sequence[str], side: str, joint: str, sex: str | None = None
-) -> dict[str, NDArray]:
-    """Return the vectors (..., 3) m that a joint's offset may be a combination of, by name.
+@dataclass(frozen=True)
+class Clip:
+    """Skeletons of one person whose true joints are known.
 
-    `xyz` (..., J, 3) m are skeletons in the world with the named `joints` (J,); `joint` is one of
-    `skeleton.LIMBS`, of the `side` left or right; `sex` is "m", "f" or None. Trunk axes have the
-    trunk's length (`out`: to the joint's own side; `up`; `forward`); `upright` is the world's z.
-    There are lines between joints of the own side (`hip-knee`) and of the other (`other hip-knee`),
-    if the network has these joints; `way elbow-wrist` and the like, lines of `DIRECTED` with length
-    `LENGTH_M`; and `sex up` and the like, those of `BY_SEX` with the sign of the sex.
+    `xyz` (T, J, 3) m are the estimated skeletons, `true` (T, K, 3) m the true ones, NaN where
+    either is missing; `sex` is "m", "f" or None; `accepted` (T, J, C) tells which views of the C
+    `cameras` were used. Without cameras, offsets do not depend on the view.
     """
-    place = dict(zip(joints, np.moveaxis(xyz, -2, 0), strict=True))
-    hips, shoulders = (
-        (place[f"left_{part}"] + place[f"right_{part}"]) / 2 for part in ("hip", "shoulder")
-    )
-    up = shoulders - hips
-    length = np.linalg.norm(up, axis=-1, keepdims=True)
-    across = place["left_shoulder"] - place["right_shoulder"]
-    across = across + place["left_hip"] - place["right_hip"]
-    forward = rotations.unit(np.cross(across, up))
-    left = np.cross(up, forward)  # as long as the trunk
-    other = {"left": "right", "right": "left"}[side]
-    found = dict(zip(TRUNK, (left if side == "left" else -left, up, forward * length), strict=True))
-    found["upright"] = np.broadcast_to([0.0, 0.0, LENGTH_M], up.shape)
-    lines = [(side, "", *bone) for bone in BONES[joint]]
-    lines += [(other, "other ", *ACROSS[joint])] if joint in ACROSS else []
-    for body_side, prefix, start, stop in lines:
-        ends = f"{body_side}_{start}", f"{body_side}_{stop}"
-        if set(ends) <= set(place):
-            found[f"{prefix}{start}-{stop}"] = place[ends[1]] - place[ends[0]]
-    for start, stop in DIRECTED.get(joint, ()):
-        found[f"way {start}-{stop}"] = LENGTH_M * rotations.unit(found[f"{start}-{stop}"])
-    sign = SIGN.get(sex, 0.0)
-    return found | {f"sex {name}": sign * found[name] for name in BY_SEX.get(joint, ())}
+
+    xyz: NDArray
+    true: NDArray
+    sex: str | None = None
+    cameras: Sequence[Camera] = ()
+    accepted: NDArray | None = None
 
 
 def estimate(
-    clips: Sequence[tuple[NDArray, NDArray, str | None]],
-    joints: Sequence[str],
-    true_joints: Sequence[str],
+    clips: Sequence[Clip], joints: Sequence[str], true_joints: Sequence[str]
 ) -> pd.DataFrame:
     """Fit the offsets on skeletons whose true joints are known.
 
-    `clips` hold the estimated (T, J, 3) and the true (T, K, 3) skeletons, metres, NaN where either
-    is missing, and the sex of the person ("m", "f" or None); `joints` and `true_joints` name the J
-    and the K joints. The table has `COLUMNS`: the share of each joint (both sides together) and
-    vector; `sigma_m`, the residual per axis; `n`, the number of joints used. A `ValueError` if a
-    joint is never seen.
+    `joints` and `true_joints` name the J and the K joints of the clips. The table has `COLUMNS`:
+    the share of each joint (both sides together) and vector; `sigma_m`, the residual per axis; `n`,
+    the number of joints used. A `ValueError` if a joint is never seen.
     """
     joints, true_joints, rows = list(joints), list(true_joints), []
     for joint in skeleton.LIMBS:
         columns_of, offset_of = [], []
-        for (found, true, sex), side in product(clips, ("left", "right")):
+        for clip, side in product(clips, SIDES):
             name = f"{side}_{joint}"
-            basis = vectors(found, joints, side, joint, sex)
+            at = joints.index(name)
+            basis = offset_vectors.of_body(clip.xyz, joints, side, joint, clip.sex)
+            if clip.accepted is not None:
+                seen = offset_vectors.views(clip.cameras, clip.xyz[:, at], clip.accepted[:, at])
+                basis |= offset_vectors.of_views(clip.xyz, joints, side, joint, seen)
             columns = np.stack(list(basis.values()), axis=-1)
-            difference = found[:, joints.index(name)] - true[:, true_joints.index(name)]
+            difference = clip.xyz[:, at] - clip.true[:, true_joints.index(name)]
             known = np.isfinite(difference).all(axis=-1) & np.isfinite(columns).all(axis=(-2, -1))
             columns_of.append(columns[known])
             offset_of.append(difference[known])
@@ -116,18 +78,22 @@ def estimate(
 
 
 def correct(
-    points: Keypoints3D, table: pd.DataFrame, sex_of: Mapping[str, str | None] | None = None
+    points: Keypoints3D,
+    table: pd.DataFrame,
+    sex_of: Mapping[str, str | None] | None = None,
+    cameras: Sequence[Camera] = (),
 ) -> Keypoints3D:
     """Subtract the offsets of `estimate` from the limb joints of a record.
 
-    `sex_of` gives "m", "f" or None for persons; for others the mean of both is used. Joints without
-    a row stay. A joint's offset needs shoulders, hips and the joint's own limb; if one of them is
-    missing the joint keeps its place and its offset. `sigma_m` of a corrected joint is added to its
+    `cameras` are those of the record, needed for offsets that depend on the view. `sex_of` gives
+    "m", "f" or None for persons; for others the mean of both is used. Joints without a row stay. A
+    joint's offset needs shoulders, hips and the joint's own limb; if one of them is missing the
+    joint keeps its place and its offset. `sigma_m` of a corrected joint is added to its
     `covariance_2d`, and its square is taken out of `covariance_network`, which contains it.
     """
     covariance, network = points.covariance_2d.copy(), points.covariance_network.copy()
-    moved = offsets(points, table, sex_of)
-    for joint, side in product(table["joint"].unique(), ("left", "right")):
+    moved = offsets(points, table, sex_of, cameras)
+    for joint, side in product(table["joint"].unique(), SIDES):
         at = list(points.joints).index(f"{side}_{joint}")
         sigma_m = table.loc[table["joint"] == joint, "sigma_m"].iloc[0]
         covariance[:, :, at] += sigma_m**2 * np.eye(3)
@@ -143,17 +109,37 @@ def correct(
 
 
 def offsets(
-    points: Keypoints3D, table: pd.DataFrame, sex_of: Mapping[str, str | None] | None = None
+    points: Keypoints3D,
+    table: pd.DataFrame,
+    sex_of: Mapping[str, str | None] | None = None,
+    cameras: Sequence[Camera] = (),
 ) -> NDArray:
-    """Return the offsets (P, T, J, 3) m of `correct`, NaN where unknown."""
+    """Return the offsets (P, T, J, 3) m of `correct`, NaN where unknown.
+
+    A `ValueError` if the table has offsets that depend on the view, and a camera is missing.
+    """
     joints, found = list(points.joints), np.full(points.xyz.shape, np.nan)
     sexes = [(sex_of or {}).get(str(person)) for person in points.person_id]
+    by_view = table["vector"].str.startswith(offset_vectors.SEEN).any()
+    used = _in_order(cameras, points.cameras) if by_view else []
     for joint, rows in table.groupby("joint"):
-        for side, (person, sex) in product(("left", "right"), enumerate(sexes)):
-            basis = vectors(points.xyz[person], joints, side, joint, sex)
+        for side, (person, sex) in product(SIDES, enumerate(sexes)):
+            xyz, at = points.xyz[person], joints.index(f"{side}_{joint}")
+            basis = offset_vectors.of_body(xyz, joints, side, joint, sex)
+            if used:
+                seen = offset_vectors.views(used, xyz[:, at], points.accepted[person][:, at])
+                basis |= offset_vectors.of_views(xyz, joints, side, joint, seen)
             offset = sum(basis[row.vector] * row.share for row in rows.itertuples())
-            found[person, :, joints.index(f"{side}_{joint}")] = offset
+            found[person, :, at] = offset
     return found
+
+
+def _in_order(cameras: Sequence[Camera], names: NDArray) -> list[Camera]:
+    by_name = {camera.name: camera for camera in cameras}
+    missing = [str(name) for name in names if name not in by_name]
+    if missing:
+        raise ValueError(f"expected the cameras of the skeletons, missing {missing}")
+    return [by_name[str(name)] for name in names]
 
 
 def correct_then_filter(
@@ -163,6 +149,7 @@ def correct_then_filter(
     sex_of: Mapping[str, str | None],
     cutoff_hz: ArrayLike,
     order: int,
+    cameras: Sequence[Camera] = (),
 ) -> Keypoints3D:
     """Return skeletons that are corrected (`correct`, `keep`) and then filtered, once.
 
@@ -175,9 +162,9 @@ def correct_then_filter(
     The covariance is that of `filtered` plus the scatter of the offsets. This scatter is slow, so
     the filter does not reduce it.
     """
-    moved = keep(correct(raw, table, sex_of))
+    moved = keep(correct(raw, table, sex_of, cameras))
     xyz = skeleton_filter.smooth(moved, cutoff_hz, order).xyz
-    return replace(correct(filtered, table, sex_of), xyz=xyz)
+    return replace(correct(filtered, table, sex_of, cameras), xyz=xyz)
 
 
 def read(path: StrPath) -> pd.DataFrame:
@@ -185,7 +172,9 @@ def read(path: StrPath) -> pd.DataFrame:
     with reading(path, "a table of joint offsets", REMAKE):
         table = pd.read_csv(path, comment="#")
         found = list(table.columns)
-        known = {(joint, vector) for joint in skeleton.LIMBS for vector in _vector_names(joint)}
+        known = {
+            (joint, vector) for joint in skeleton.LIMBS for vector in offset_vectors.names(joint)
+        }
         rows = table.reindex(columns=COLUMNS)
         pairs = set(zip(rows["joint"], rows["vector"], strict=True))
         numbers = rows[["share", "sigma_m"]].to_numpy(dtype=float)
@@ -197,13 +186,6 @@ def read(path: StrPath) -> pd.DataFrame:
             f"found columns {found} and joints {joints}; {REMAKE}"
         )
     return table
-
-
-def _vector_names(joint: str) -> list[str]:
-    names = [*TRUNK, "upright", *(f"{start}-{stop}" for start, stop in BONES[joint])]
-    names += [f"other {'-'.join(ACROSS[joint])}"] if joint in ACROSS else []
-    names += [f"way {start}-{stop}" for start, stop in DIRECTED.get(joint, ())]
-    return names + [f"sex {name}" for name in BY_SEX.get(joint, ())]
 
 
 def _fit(design: NDArray, offset: NDArray) -> tuple[NDArray, float]:
@@ -220,7 +202,6 @@ def _fit(design: NDArray, offset: NDArray) -> tuple[NDArray, float]:
     return shares, float(np.median(error) / NORMAL_MEDIAN)
 
 
-SIDES = ("left", "right")
 LEAST = 10  # ASSUME: frames of both sides that a median length needs
 # ASSUME: a take's own median length is wrong by 5 % (one standard deviation): on the development
 # bodies the ratio to the true length, after correction, has mean 0.98 and standard deviation 0.04.

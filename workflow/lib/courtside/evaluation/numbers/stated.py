@@ -88,6 +88,18 @@ def _value(printed: str) -> float:
 
 FOUND = {"by": "{found.origin}", "with": "{found.command}"}
 VIEWS = {  # the columns that the documents show of their tables
+    "offset-layouts": View(
+        "offset-layouts",
+        {
+            "cameras and movements": "{row}",
+            "raw": "{raw}",
+            "fitted on `players-dev`, by posture": "{far}",
+            "on all three, by posture": "{posture}",
+            "on all three, by posture and view (used)": "{view}",
+            "joints": "{view.n}",
+            "with": "{view.command}",
+        },
+    ),
     "offset-cameras": View(
         "offset-cameras",
         {

@@ -72,19 +72,36 @@ def exported_labels(job: Job) -> list[dict[str, str]]:
     return [{**job.wildcards, "stage": stage} for stage in job.stages()]
 
 
-def fitted_keypoints(job: Job) -> list[str]:
-    """Return the 2D keypoints of every take of a session."""
-    return [path for take in fitted_takes(job) for path in take["pose2d"]]
+def fitted_takes(study: Study, model: str) -> list[dict[str, Any]]:
+    """Return the files of every virtual take of a study that offsets of a network are fitted on.
 
-
-def fitted_takes(job: Job) -> list[dict[str, Any]]:
-    """Return 2D keypoints and the sexes of the persons of every take of a session."""
+    And the sexes of its persons, `sex_of`. People were found with cameras from 18 points.
+    """
     found = []
-    for name, take in job.session.takes.items():
-        pose2d = job.of_each(paths.POSE2D, take=name, camera=take.videos)
-        known = {who: job.session.subjects[who].sex for who in take.subjects}
-        found.append({"pose2d": pose2d, "sex_of": known})
+    for session in study.sessions.values():
+        of = {"session": session.name, "model": model, "calibration": "known18"}
+        for name, take in session.takes.items() if session.virtual else ():
+            job = Job(study, {**of, "take": name})
+            found.append(
+                {
+                    "cameras": job.fill(paths.CAMERAS),
+                    "session_truth": job.fill(paths.TRUTH),
+                    "pose2d": job.of_each(paths.POSE2D, camera=take.videos),
+                    "people": job.fill(paths.PEOPLE),
+                    "sync": job.fill(paths.CAMERA_CLOCKS),
+                    "truth": job.fill(paths.TRUE_TAKE),
+                    "sex_of": {who: session.subjects[who].sex for who in take.subjects},
+                }
+            )
     return found
+
+
+def fitted_files(study: Study, model: str) -> list[str]:
+    """Return these files in one list."""
+    keys = ("cameras", "session_truth", "people", "sync", "truth")
+    takes = fitted_takes(study, model)
+    every = [path for take in takes for path in (*(take[key] for key in keys), *take["pose2d"])]
+    return list(dict.fromkeys(every))
 
 
 def pairs(job: Job) -> list[tuple[str, str]]:
@@ -97,10 +114,11 @@ def chosen(job: Job, names: Iterable[str], **more: str) -> dict[str, str]:
     return {**{name: job[name] for name in names}, **more}
 
 
-def estimated_by(session: str, model: str, file: str) -> str:
-    """Return a line on where a network's table of a development session comes from."""
-    command = f"snakemake --config sessions=[{session}] variations=[] models=[{model}] -- {file}"
-    return f"Estimated on session {session} by: {command}"
+def estimated_by(sessions: Iterable[str], model: str, file: str) -> str:
+    """Return a line on where a network's table of development sessions comes from."""
+    named = ",".join(sessions)
+    command = f"snakemake --config sessions=[{named}] variations=[] models=[{model}] -- {file}"
+    return f"Estimated by: {command}"
 
 
 def sfm_errors(job: Job) -> dict[str, Any]:

@@ -1,0 +1,123 @@
+"""Joint offsets on bodies that were left out of their fit: docs/numbers/joint_offsets.csv.
+
+    python benchmarks/joint_offsets.py results
+
+RESULTS hold the development sessions as `evaluate_joint_offsets` reads them (CONTRIBUTING.md, "A
+network"). Each body is left out in turn: its errors are those of raw joints, by the true cameras,
+less offsets that were fitted on the other bodies. Three ways to fit are compared: with the far
+cameras of `players-dev` alone, by posture; with the cameras of all three sessions, by posture; and
+with all of them, by posture and direction of view, as the study does.
+"""
+
+import argparse
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
+from courtside.evaluation import error_fit, joints
+from courtside.evaluation.numbers import stated
+from courtside.evaluation.numbers.players import NETWORK
+from courtside.reconstruction import joint_correction
+from courtside.reconstruction.joint_correction import Clip
+from courtside.records.keypoints import skeleton
+from courtside.study.configuration import yaml_files
+
+SESSIONS = {
+    "players-dev": "18 to 27 m away, 2 m high, badminton",
+    "players-dev-stands": "on stands, 5.5 to 8 m high, free movements and badminton",
+    "players-dev-near": "7 to 9 m away, free movements and walking",
+}
+WAYS = {"far": (("players-dev",), False), "posture": (SESSIONS, False), "view": (SESSIONS, True)}
+SHAPE = skeleton.read(ROOT / "config" / "skeletons" / "blazepose33.yaml")
+CALIBRATION = "known18"
+COMMAND = "`python benchmarks/joint_offsets.py results`"
+
+
+def takes_of(results, session):
+    """Yield the files of the takes of a session, as `error_fit.footage_with_truth` needs them."""
+    content = yaml_files.read(ROOT / "config" / "sessions" / f"{session}.yaml")
+    virtual, folder = results / "virtual" / session, results / session
+    for name, take in content["takes"].items():
+        own = folder / "takes" / name
+        yield {
+            "cameras": folder / "calibration" / CALIBRATION / "cameras.toml",
+            "session_truth": virtual / "truth.npz",
+            "pose2d": [own / "pose2d" / NETWORK / f"{camera}.npz" for camera in content["cameras"]],
+            "people": own / "people" / CALIBRATION / f"{NETWORK}.npz",
+            "sync": own / "sync" / CALIBRATION / f"cameras.{NETWORK}.json",
+            "truth": virtual / "takes" / name / "truth.npz",
+            "sex_of": {who: content["subjects"][who]["sex"] for who in take["subjects"]},
+        }
+
+
+def clips_of(results, session):
+    """Return [(body, raw joints, Clip)] of a session, at most ten frames in a second."""
+    step, found = yaml_files.read(ROOT / "config" / "config.yaml")["triangulate"], []
+    for seen, sex_of, truth in error_fit.footage_with_truth(takes_of(results, session)):
+        raw = error_fit.triangulated(seen, SHAPE, list(sex_of), step)
+        every, cameras = error_fit.every(raw), [one.camera for one in seen]
+        (body, sex), true = *sex_of.items(), joints.true_places(raw, truth)[0, every]
+        thin = ("xyz", "accepted", "offset", "covariance_2d", "covariance_network", "n_views")
+        fields = {key: getattr(raw, key)[:, every] for key in thin}
+        points = replace(raw, time_s=raw.time_s[every], **fields)
+        clip = Clip(points.xyz[0], true, sex, cameras, points.accepted[0])
+        found.append((body, points, clip))
+    return found, truth.joints.tolist()
+
+
+def errors_m(points, clip, true_joints, table):
+    """Return the errors (N,) m of limb joints, less the offsets of a table; raw without one."""
+    xyz = points.xyz
+    if table is not None:
+        sex_of = dict.fromkeys(map(str, points.person_id), clip.sex)
+        xyz = xyz - joint_correction.offsets(points, table, sex_of, clip.cameras)
+    own = [points.joints.tolist().index(joint) for joint in skeleton.JOINTS]
+    true = [true_joints.index(joint) for joint in skeleton.JOINTS]
+    apart = np.linalg.norm(xyz[0][:, own] - clip.true[:, true], axis=-1).ravel()
+    return apart[np.isfinite(apart)]
+
+
+def left_out(of_session, true_joints, session, way):
+    """Return the errors of a session's bodies, each left out of its fit."""
+    found, (used, by_view) = [], WAYS[way]
+    for body in sorted({body for body, _, _ in of_session[session]}):
+        clips = [clip for name in used for other, _, clip in of_session[name] if other != body]
+        if not by_view:
+            clips = [replace(clip, cameras=(), accepted=None) for clip in clips]
+        names = of_session[session][0][1].joints.tolist()
+        table = joint_correction.estimate(clips, names, true_joints)
+        tested = [(points, clip) for other, points, clip in of_session[session] if other == body]
+        found += [errors_m(points, clip, true_joints, table) for points, clip in tested]
+    return np.concatenate(found)
+
+
+def rows_of(results):
+    """Yield the numbers of the table, and print them."""
+    of_session = {}
+    for session in SESSIONS:
+        of_session[session], true_joints = clips_of(results, session)
+    for session, words in SESSIONS.items():
+        raw = [errors_m(p, clip, true_joints, None) for _, p, clip in of_session[session]]
+        every = {"raw": np.concatenate(raw)}
+        every |= {way: left_out(of_session, true_joints, session, way) for way in WAYS}
+        for part, apart in every.items():
+            printed = "{:.1f} / {:.1f}".format(*(1000 * np.quantile(apart, [0.5, 0.9])))
+            print(session, part, printed, flush=True)
+            row = "offset-layouts", f"`{session}`: {words}", part, printed, "mm", session
+            yield *row, len(apart), 0, "benchmark", COMMAND
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("results", type=Path)
+    given = parser.parse_args()
+    rows = list(rows_of(given.results))
+    stated.write(ROOT / "docs" / "numbers" / "joint_offsets.csv", rows)
+
+
+if __name__ == "__main__":
+    main()

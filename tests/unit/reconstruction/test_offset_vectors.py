@@ -1,0 +1,116 @@
+"""Vectors of offsets: how views move a triangulated joint, how turning and mirroring act."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from courtside.geometry import triangulation
+from courtside.geometry.camera import Camera
+from courtside.reconstruction import offset_vectors
+from courtside.records.keypoints import skeleton
+from fixtures.cameras import scene
+from fixtures.people import walker
+
+JOINTS = list(walker.SKELETON.joints)
+MIRROR = np.diag([1.0, -1.0, 1.0])
+OTHER = {"left": "right", "right": "left"}
+
+
+def persons(n=6, seed=0):
+    """Return (n, J, 3) m: joints around a standing body, each moved at random."""
+    rng = np.random.default_rng(seed)
+    return walker.body(n) + rng.normal(0, 0.05, (n, len(JOINTS), 3))
+
+
+def every(xyz, joint, side, cameras, sex="m"):
+    """Return all vectors of a joint, all views accepted."""
+    at = JOINTS.index(f"{side}_{joint}")
+    accepted = np.ones((len(xyz), len(cameras)), dtype=bool)
+    seen = offset_vectors.views(cameras, xyz[:, at], accepted)
+    found = offset_vectors.of_body(xyz, JOINTS, side, joint, sex)
+    return found | offset_vectors.of_views(xyz, JOINTS, side, joint, seen)
+
+
+def test_a_joint_moves_by_what_the_triangulation_makes_of_one_ray():
+    """Truth from the triangulation itself: one camera's picture of the points is moved by 1 mm."""
+    cameras, xyz = scene.ring(3), scene.points(40)
+    accepted = np.ones((len(xyz), 3), dtype=bool)
+    seen, step = offset_vectors.views(cameras, xyz, accepted), np.array([0.6e-3, -0.5e-3, 0.6e-3])
+    for at, camera in enumerate(cameras):
+        pictures = scene.views(cameras, xyz)
+        pictures[at] = scene.opencv_projection(camera, xyz + step)
+        limits = {"sigma_px": 1.0, "max_error_px": 50.0, "fade_px": 1e6}
+        found = triangulation.triangulate_robust(
+            cameras, pictures, np.ones(accepted.T.shape), **limits
+        )
+        moved = found.xyz - xyz
+        assert np.linalg.norm(seen.gains[at] @ step - moved, axis=1).max() < 2e-5
+
+
+def test_what_all_rays_do_the_joint_does():
+    cameras, xyz = scene.ring(4), scene.points(10)
+    seen = offset_vectors.views(cameras, xyz, np.ones((10, 4), dtype=bool))
+    np.testing.assert_allclose(
+        seen.gains.sum(axis=0), np.broadcast_to(np.eye(3), (10, 3, 3)), atol=1e-9
+    )
+
+
+def test_views_that_were_not_accepted_do_not_count_unless_none_was():
+    cameras, xyz = scene.ring(4), scene.points(10)
+    all_four = offset_vectors.views(cameras, xyz, np.ones((10, 4), dtype=bool))
+    none = offset_vectors.views(cameras, xyz, np.zeros((10, 4), dtype=bool))
+    np.testing.assert_allclose(none.gains, all_four.gains, atol=1e-9)
+    first = np.tile([True, True, False, False], (10, 1))
+    two = offset_vectors.views(cameras[:2], xyz, first[:, :2])
+    seen = offset_vectors.views(cameras, xyz, first)
+    np.testing.assert_allclose(seen.gains[:2], two.gains, atol=0.02)
+    assert np.abs(seen.gains[2:]).max() < 0.02
+
+
+@pytest.mark.parametrize("joint", skeleton.LIMBS)
+def test_names_are_those_of_the_vectors(joint):
+    found = every(persons(), joint, "left", scene.ring(3))
+    assert list(found) == offset_vectors.names(joint) or set(found) == set(
+        offset_vectors.names(joint)
+    )
+    assert all(np.isfinite(vector).all() for vector in found.values())
+    seen = [name for name in found if name.startswith(offset_vectors.SEEN)]
+    assert len(seen) >= 9 + 15 + 6 * 2
+
+
+@pytest.mark.parametrize("joint", skeleton.LIMBS)
+def test_vectors_turn_with_body_and_cameras(joint):
+    turn = Rotation.from_rotvec([0, 0, 0.7]).as_matrix()  # about the world's z, as `upright`
+    cameras, xyz = scene.ring(3), persons()
+    turned = [
+        Camera(
+            one.name, one.size, one.K, one.dist,
+            np.column_stack([one.cam_from_world[:, :3] @ turn.T, one.cam_from_world[:, 3]]),
+        )
+        for one in cameras
+    ]  # fmt: skip
+    before, after = every(xyz, joint, "left", cameras), every(xyz @ turn.T, joint, "left", turned)
+    for name, vector in before.items():
+        np.testing.assert_allclose(after[name], vector @ turn.T, atol=1e-9, err_msg=name)
+
+
+@pytest.mark.parametrize("joint", skeleton.LIMBS)
+def test_vectors_of_the_right_side_are_mirror_images_of_those_of_the_left(joint):
+    """One share serves both sides: a mirrored body before mirrored cameras has mirrored vectors."""
+    xyz = persons()
+    order = [JOINTS.index(_other(name)) for name in JOINTS]
+    cameras = scene.ring(3)
+    mirrored = [
+        Camera(one.name, one.size, one.K, one.dist, scene.look_at(MIRROR @ place, (0, 0, 1.0)))
+        for one in cameras
+        for place in [one.centre_in_world]
+    ]
+    left = every(xyz, joint, "left", cameras)
+    right = every((xyz @ MIRROR)[:, order], joint, "right", mirrored)
+    for name, vector in left.items():
+        np.testing.assert_allclose(right[name], vector @ MIRROR, atol=1e-9, err_msg=name)
+
+
+def _other(name):
+    side, _, rest = name.partition("_")
+    return f"{OTHER[side]}_{rest}" if side in OTHER else name

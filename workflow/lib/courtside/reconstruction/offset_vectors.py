@@ -1,0 +1,174 @@
+"""Vectors that the offset of a network's joint may be a combination of.
+
+A network places a joint by what it sees, so a part of its error turns with the body, and another
+part depends on the direction from which a camera sees it. Vectors of the first kind (`of_body`) are
+the same for all cameras. Those of the second (`of_views`) differ between the cameras; they move the
+triangulated joint by what the accepted views make of them. Shares of both kinds were fitted on
+players around whom cameras stood far away, near, and high on stands: offsets of the body alone,
+fitted with one layout, are wrong in another one (docs/measured.md).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.geometry import rotations
+from courtside.geometry.camera import Camera
+
+# Lines (from, to) of a joint's own side that may explain its offset; the first is the joint's limb.
+BONES = {
+    "shoulder": (("shoulder", "elbow"), ("elbow", "wrist")),
+    "elbow": (("shoulder", "elbow"), ("elbow", "wrist"), ("wrist", "index"), ("wrist", "pinky")),
+    "wrist": (("elbow", "wrist"), ("wrist", "index"), ("wrist", "pinky")),
+    "hip": (("hip", "knee"), ("knee", "ankle")),
+    "knee": (("hip", "knee"), ("knee", "ankle"), ("ankle", "heel"), ("ankle", "foot_index")),
+    "ankle": (("knee", "ankle"), ("ankle", "heel"), ("ankle", "foot_index")),
+}
+ACROSS = {"shoulder": ("shoulder", "elbow"), "hip": ("hip", "knee")}  # and of the other side
+TRUNK = ("out", "up", "forward")  # names of the trunk's vectors, each as long as the trunk
+# Vectors with shares of opposite sign for men and women, besides the common shares: hips of
+# development bodies left out of the fit are 20 mm off with them, 33 mm without.
+BY_SEX = {"hip": TRUNK}
+SIGN: dict[str | None, float] = {"m": 1.0, "f": -1.0}  # for others, the mean of both
+# Lines that also count by their direction: if a part of the arm looks too short, the elbow is off.
+DIRECTED = {"elbow": (("shoulder", "elbow"), ("elbow", "wrist"))}
+# Of directions and of the vector along the world's z: about a limb, any unit will do.
+LENGTH_M = 0.3
+# Products of two components of the direction of view; the third square follows from the others.
+SQUARES = (("out", "out"), ("up", "up"), ("out", "forward"), ("up", "forward"), ("out", "up"))
+SEEN = "seen "  # begins the names of vectors that depend on the view
+# ASSUME: weight of a view that was not accepted, over one that was: enough for a joint between two
+# gaps, where no view was accepted, and nothing beside an accepted one.
+UNUSED = 1e-3
+
+
+@dataclass(frozen=True)
+class Views:
+    """From where the cameras of a take see one joint.
+
+    `ways` (C, T, 3) are unit vectors from each camera to the joint, in the world. `gains`
+    (C, T, 3, 3) tell how far the triangulated joint moves if one camera's ray is moved by 1 m at
+    the joint: triangulation is taken as weighted least squares of the accepted views.
+    """
+
+    ways: NDArray
+    gains: NDArray
+
+
+def views(cameras: Sequence[Camera], xyz: NDArray, accepted: NDArray) -> Views:
+    """Return from where cameras see a joint at `xyz` (T, 3) m; `accepted` (T, C) tells its views.
+
+    NaN where the joint is missing.
+    """
+    lines = xyz - np.stack([camera.centre_in_world for camera in cameras])[:, None]
+    away = np.linalg.norm(lines, axis=-1)
+    ways = lines / away[..., None]
+    focal_px = np.array([camera.K[0, 0] for camera in cameras])
+    weight = np.where(accepted.T, 1.0, UNUSED) * (focal_px[:, None] / away) ** 2
+    flat = weight[..., None, None] * (np.eye(3) - ways[..., :, None] * ways[..., None, :])
+    whole = np.where(np.isfinite(flat).all(axis=(0, -2, -1))[:, None, None], flat.sum(0), np.eye(3))
+    return Views(ways, np.linalg.solve(whole, flat))
+
+
+def of_body(
+    xyz: NDArray, joints: Sequence[str], side: str, joint: str, sex: str | None = None
+) -> dict[str, NDArray]:
+    """Return the vectors (..., 3) m that are the same for all cameras, by name.
+
+    `xyz` (..., J, 3) m are skeletons in the world with the named `joints` (J,); `joint` is one of
+    `skeleton.LIMBS`, of the `side` left or right; `sex` is "m", "f" or None. Trunk axes have the
+    trunk's length (`out`: to the joint's own side; `up`; `forward`); `upright` is the world's z.
+    There are lines between joints of the own side (`hip-knee`) and of the other (`other hip-knee`),
+    if the network has these joints; `way elbow-wrist` and the like, lines of `DIRECTED` with length
+    `LENGTH_M`; `lean up forward` and the like, the trunk's axis `forward` times the component along
+    `up` of the joint's limb; and `sex up` and the like, those of `BY_SEX` with the sign of the sex.
+    """
+    place = dict(zip(joints, np.moveaxis(xyz, -2, 0), strict=True))
+    axes, length = _trunk(place, side)
+    found = {name: axes[name] * length for name in TRUNK}
+    found["upright"] = np.broadcast_to([0.0, 0.0, LENGTH_M], axes["up"].shape)
+    other = {"left": "right", "right": "left"}[side]
+    found |= _lines(place, side, BONES[joint])
+    if joint in ACROSS:
+        across = _lines(place, other, [ACROSS[joint]])
+        found |= {f"other {name}": line for name, line in across.items()}
+    for start, stop in DIRECTED.get(joint, ()):
+        found[f"way {start}-{stop}"] = LENGTH_M * rotations.unit(found[f"{start}-{stop}"])
+    limb = rotations.unit(found["-".join(BONES[joint][0])])
+    for along, name in product(TRUNK, TRUNK):
+        found[f"lean {along} {name}"] = LENGTH_M * _dot(limb, axes[along]) * axes[name]
+    sign = SIGN.get(sex, 0.0)
+    return found | {f"sex {name}": sign * found[name] for name in BY_SEX.get(joint, ())}
+
+
+def of_views(
+    xyz: NDArray, joints: Sequence[str], side: str, joint: str, seen: Views
+) -> dict[str, NDArray]:
+    """Return the vectors (T, 3) m that depend on the directions of view, by name.
+
+    `xyz` (T, J, 3) m is one person. `seen out up` and the like: the trunk's axis `up` times the
+    component along `out` of the direction of view; `seen out out up` with a product of two
+    components. `seen along hip-knee`: a limb times the cosine to the direction of view, and times
+    its square (`seen square hip-knee`). `seen across hip-knee`: perpendicular to limb and view,
+    alone and times a component (`seen across out hip-knee`); its sign is that of the left side.
+    """
+    place = dict(zip(joints, np.moveaxis(xyz, -2, 0), strict=True))
+    axes, _ = _trunk(place, side)
+    part = {name: _dot(seen.ways, axes[name]) for name in TRUNK}
+    each = {f"{a} {name}": part[a] * axes[name] for a, name in product(TRUNK, TRUNK)}
+    for (a, b), name in product(SQUARES, TRUNK):
+        each[f"{a} {b} {name}"] = part[a] * part[b] * axes[name]
+    for name, line in _lines(place, side, BONES[joint]).items():
+        limb = rotations.unit(line)
+        cosine = _dot(seen.ways, limb)
+        each[f"along {name}"], each[f"square {name}"] = cosine * limb, cosine**2 * limb
+        across = np.cross(seen.ways, limb) * (1.0 if side == "left" else -1.0)
+        each[f"across {name}"] = across
+        each |= {f"across {a} {name}": part[a] * across for a in TRUNK}
+    moved = np.einsum("ctij,ctjm->mti", seen.gains, np.stack(list(each.values()), axis=-1))
+    return dict(zip((SEEN + name for name in each), LENGTH_M * moved, strict=True))
+
+
+def names(joint: str) -> list[str]:
+    """Return the names of all vectors of a joint."""
+    lines = ["-".join(bone) for bone in BONES[joint]]
+    found = [*TRUNK, "upright", *lines]
+    found += [f"other {'-'.join(ACROSS[joint])}"] if joint in ACROSS else []
+    found += [f"way {start}-{stop}" for start, stop in DIRECTED.get(joint, ())]
+    pairs = [f"{a} {name}" for a, name in product(TRUNK, TRUNK)]
+    found += [f"lean {pair}" for pair in pairs]
+    found += [f"sex {name}" for name in BY_SEX.get(joint, ())]
+    seen = [*pairs, *(f"{a} {b} {name}" for (a, b), name in product(SQUARES, TRUNK))]
+    for line in lines:
+        seen += [f"along {line}", f"square {line}", f"across {line}"]
+        seen += [f"across {a} {line}" for a in TRUNK]
+    return [*found, *(SEEN + name for name in seen)]
+
+
+def _trunk(place: dict[str, NDArray], side: str) -> tuple[dict[str, NDArray], NDArray]:
+    """Return the trunk's axes (..., 3), unit vectors, and its length (..., 1) m."""
+    hips, shoulders = (
+        (place[f"left_{part}"] + place[f"right_{part}"]) / 2 for part in ("hip", "shoulder")
+    )
+    along = shoulders - hips
+    length = np.linalg.norm(along, axis=-1, keepdims=True)
+    across = place["left_shoulder"] - place["right_shoulder"]
+    across = across + place["left_hip"] - place["right_hip"]
+    forward = rotations.unit(np.cross(across, along))
+    left = np.cross(along / length, forward)
+    out = left if side == "left" else -left
+    return dict(zip(TRUNK, (out, along / length, forward), strict=True)), length
+
+
+def _lines(place, side, bones) -> dict[str, NDArray]:
+    """Return the lines of one side between those joints that the network has, by name."""
+    ends = {f"{a}-{b}": (f"{side}_{a}", f"{side}_{b}") for a, b in bones}
+    return {name: place[b] - place[a] for name, (a, b) in ends.items() if {a, b} <= set(place)}
+
+
+def _dot(first: NDArray, second: NDArray) -> NDArray:
+    """Return the dot products (..., 1) of vectors (..., 3)."""
+    return np.sum(first * second, axis=-1, keepdims=True)
