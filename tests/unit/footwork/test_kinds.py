@@ -48,6 +48,14 @@ def test_a_hop_is_a_split_step_once_even_where_the_stances_show_it():
     assert row["x_m"] == pytest.approx(0.0)
 
 
+def test_where_hops_were_looked_for_no_other_flight_is_a_split_step():
+    _, events = kinds.tables({"p1": (together(1.0, 1.2), 0.9)}, {"p1": []})
+    assert "split_step" not in set(events.event)
+    assert events.event.tolist() == ["step", "step"]
+    _, events = kinds.tables({"p1": (together(1.0, 1.2), 0.9)}, {"p1": None})
+    assert events.event.tolist() == ["split_step"]
+
+
 def test_running_feet_take_steps():
     left = [stance(NAN, 0.5), stance(0.85, 1.1, 0, 1.2), stance(1.45, NAN, 0, 2.4)]
     right = [stance(NAN, 0.8, 0, 0.6), stance(1.15, 1.4, 0, 1.8)]

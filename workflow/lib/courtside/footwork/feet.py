@@ -28,8 +28,8 @@ def find(
         for foot, side in enumerate(footwork.FEET):
             found, floor[at, foot] = tracks.tracks(points, at, side, cutoff_hz)
             stood, known = stances.of_tracks(found, n_frames)
-            feet[side] = hops.cut(stood, own)
-            probability[at, :, foot] = hops.lifted(points.time_s, known, feet[side], own)
+            feet[side] = hops.cut(stood, own or ())
+            probability[at, :, foot] = hops.lifted(points.time_s, known, feet[side], own or ())
         people[person] = feet, leg_length(points, at)
     contacts = footwork.Contacts(
         points.person_id,

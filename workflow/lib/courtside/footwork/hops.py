@@ -30,6 +30,7 @@ TRAVEL_M_S = 1.5  # of the hips, mean; steps of a run look alike otherwise
 AROUND_S = 0.1  # before and after: where the feet stand, and where their speeds are looked for
 # The means of hips' and feet's times are early (positive) by this, with these standard deviations.
 EARLY_S, SIGMA_S = {"off": -0.006, "land": 0.009}, {"off": 0.010, "land": 0.012}
+LEAST_HZ = 20.0  # ASSUME: at lower frame rates a hop has too few frames
 USUAL_HZ = 30.0  # frame rate of those rallies; errors grow with the frame interval
 NEAR_S = 0.15  # an end or onset of a stance this near to a hop is that hop's
 AGAIN_S = 0.03  # a stance that ends this long after the landing has seen no hop
@@ -45,12 +46,15 @@ class Hop:
     land_sigma_s: float
 
 
-def find(points: Keypoints3D, person: int) -> list[Hop]:
-    """Return the hops of a person, by the person's index, from filtered skeletons."""
+def find(points: Keypoints3D, person: int) -> list[Hop] | None:
+    """Return the hops of a person, by the person's index, from filtered skeletons.
+
+    None: they cannot be seen, without heels or at a low frame rate.
+    """
     names = points.joints.tolist()
     feet = [points_of(names, side) for side in FEET]
-    if not all(feet) or len(points.time_s) < LEAST_FRAMES:
-        return []
+    if not all(feet) or len(points.time_s) < LEAST_FRAMES or points.rate_hz < LEAST_HZ:
+        return None
     hips = [names.index(f"{side}_hip") for side in FEET]
     xyz = points.xyz[person]
     paths = np.stack([xyz[:, chosen].mean(axis=1) for chosen in (hips, *feet)])
@@ -132,12 +136,15 @@ def cut(stances: Sequence[Stance], hops: Sequence[Hop]) -> list[Stance]:
             continue
         own, later = made[at], made[at + 1] if at + 1 < len(made) else None
         before = replace(own, end_s=hop.off_s, end_sigma_s=hop.off_sigma_s)
-        landed = {"onset_s": hop.land_s, "onset_sigma_s": hop.land_sigma_s, "first_s": hop.land_s}
         if not own.end_s <= hop.land_s + AGAIN_S:
-            made[at : at + 1] = [before, replace(own, **landed)]
+            made[at : at + 1] = [before, _landed(own, hop)]
         elif later and own.end_s >= hop.off_s - NEAR_S and later.onset_s <= hop.land_s + NEAR_S:
-            made[at : at + 2] = [before, replace(later, **landed)]
+            made[at : at + 2] = [before, _landed(later, hop)]
     return made
+
+
+def _landed(stance: Stance, hop: Hop) -> Stance:
+    return replace(stance, onset_s=hop.land_s, onset_sigma_s=hop.land_sigma_s, first_s=hop.land_s)
 
 
 def lifted(

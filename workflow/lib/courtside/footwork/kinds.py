@@ -22,19 +22,25 @@ LUNGE_LEGS, LUNGE_S = 0.9, 0.2
 
 
 def tables(
-    people: Mapping[str, tuple[Feet, float]], hopped: Mapping[str, Sequence[Hop]] | None = None
+    people: Mapping[str, tuple[Feet, float]],
+    hopped: Mapping[str, Sequence[Hop] | None] | None = None,
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Return the steps and the events of a take: rows of `records.footwork`.
 
     `people` gives by person the stances of both feet, and the length of the leg (m; NaN: unknown,
-    and no stance is called a lunge), `hopped` the hops, which are split steps.
+    and no stance is called a lunge), `hopped` the hops, which are split steps: then no other flight
+    is one. Where it is None or missing, flights of the stances alone are.
     """
     steps: list[tuple] = []
     events: list[tuple] = []
     for person, (feet, leg_m) in people.items():
         kinds: dict[tuple[str, int], str] = {}
-        hops = (hopped or {}).get(person, ())
-        flights = [one for one in _flights(feet) if not _is_of(feet, one, hops)]
+        looked, hops = (hopped or {}).get(person), (hopped or {}).get(person) or ()
+        flights = [
+            one
+            for one in _flights(feet)
+            if looked is None or (one[2] == "jump" and not _is_of(feet, one, hops))
+        ]
         for left, right, kind in flights:
             kinds |= {("left", left): kind, ("right", right): kind}
         kinds |= {

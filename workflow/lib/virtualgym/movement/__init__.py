@@ -1,7 +1,7 @@
 """Motions of virtual players: footwork, strokes, walking, T-pose and clap.
 
 - catalogue: `MOTIONS` (name -> function that makes a motion)
-- player: `Player`, `Motion` (route, feet and poses; gives a stance at any time)
+- player: `Player`, `hop_rise`, `Motion` (route, feet and poses; gives a stance at any time)
 - badminton: `rounds`, `visits`, `Drill`
 - exchange: `script`, `perform`, `Shot`
 - walking: `large_round`, `small_round`, `up_and_down`, `along`

@@ -96,7 +96,7 @@ class Motion:
         kernel = np.hanning(2 * round(SOFT_S / GRID_S) + 1)
         smooth = convolve1d(lowest, kernel / kernel.sum())
         object.__setattr__(self, "_height", CubicSpline(times, smooth))
-        object.__setattr__(self, "_hopped", _rise(self.hops) if self.hops else None)
+        object.__setattr__(self, "_hopped", hop_rise(self.hops) if self.hops else None)
 
     def stance(self, time_s: float) -> Stance:
         """Return the stance at a time, clipped to the motion's duration."""
@@ -208,7 +208,7 @@ class Motion:
         return directions, palms, racket
 
 
-def _rise(hops: tuple[tuple[float, float], ...]) -> CubicHermiteSpline:
+def hop_rise(hops: tuple[tuple[float, float], ...]) -> CubicHermiteSpline:
     """Return the pelvis's height in hops over its height without them, m; in flight a parabola."""
     knots = []
     for off, land in hops:
