@@ -28,6 +28,7 @@ OMITTED = 0.12  # share of hits that are answered without a split step
 FASTEST_M_S = 2.0
 ARRIVES_S = {"net": (0.12, 0.2), "side": (0.12, 0.2), "overhead": (0.3, 0.4)}  # before the hit
 CADENCE_HZ = 5.0  # faster than in a drill
+REACH = 0.98  # of a leg's length: nearly straight legs in a fast run would snap
 SHORT_M = 0.6  # a way back of two steps
 READY_S = (0.2, 0.35)  # before the opponent's hit a player is back
 STANDS_S = 0.1  # at least, before a hop
@@ -70,7 +71,7 @@ def perform(player: Player, fed_s: float, shots: Sequence[Shot]) -> Motion:
         if shot.player == own:
             next_s = hits_s[at + 2] if at + 2 < len(hits_s) else shot.hit_s + FLIGHT_S["rear"][0]
             part.answer(hits_s[at], shot, next_s)
-    return part.finish(hops=tuple(part.hops))
+    return part.finish(hops=tuple(part.hops), reach=REACH)
 
 
 class _Part(badminton.Drill):
