@@ -16,7 +16,7 @@ from courtside.records.keypoints import body_motion, keypoints, people, sighting
 from courtside.records.truth import session_truth as truth
 from courtside.records.truth import take_truth
 from courtside.sfm import grid
-from courtside.strokes import detect
+from courtside.strokes import detect, reaction
 from fixtures.cameras import networks_made, scene
 from fixtures.people import found, walker
 from fixtures.people.bodies_made import body
@@ -168,6 +168,12 @@ def strokes(folder):
     tables.write(folder / "strokes.csv", pd.DataFrame(rows, columns=detect.COLUMNS))
 
 
+def reactions(folder):
+    """Write reactions."""
+    rows = [("p2", "p1", 1.0, 1.0, 1.15, 1.35, 0.15, 0.02, 0.35, 0.03, 0.2, 0.02)]
+    tables.write(folder / "reactions.csv", pd.DataFrame(rows, columns=reaction.COLUMNS))
+
+
 def named(folder):
     """Write names of people as their page saves them."""
     head = ",".join([*sightings.COLUMNS, *sightings.BOUNDS])
@@ -210,4 +216,5 @@ FORMATS += [
     Format("foot-events-csv", 300, foot_events, footwork.read_events),
     Format("study-csv", 500, measured, study_table.read),
     Format("strokes-csv", 300, strokes, detect.read),
+    Format("reactions-csv", 300, reactions, reaction.read),
 ]

@@ -61,7 +61,7 @@ PLACES = {
         f"*/evaluation/takes/*/{table}/*.csv": [f"{TAKES} | {table}", LABELS]
         for table in (
             *("errors", "gains", "clocks", "kinematics", "angles", "detection", "round_trip"),
-            *("contacts", "strokes"),
+            *("contacts", "strokes", "reactions"),
         )
     },
     "*/evaluation/racket.csv": [f"{TAKES} | evaluation/racket.csv", OF_CALIBRATION],

@@ -99,10 +99,13 @@ rule evaluate_contacts:
 rule evaluate_strokes:
     input:
         strokes_csv=paths.STROKES,
+        reactions_csv=paths.REACTIONS,
+        events_csv=paths.FOOT_EVENTS,
         pose3d_npz=of_job(takes.measured),
         truth_npz=paths.TRUE_TAKE,
     output:
         errors_csv=paths.STROKE_ERRORS,
+        reaction_errors_csv=paths.REACTION_ERRORS,
     log:
         f"results/{{session}}/logs/evaluate_strokes/{paths.OF_FUSED}.log",
     params:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from courtside.footwork import kinds
+from courtside.footwork.hops import Hop
 from courtside.footwork.stances import Stance
 
 NAN = float("nan")
@@ -36,6 +37,23 @@ def test_both_feet_that_leave_and_land_together(feet, event):
     last, first = events.iloc[0].start_s, events.iloc[0].stop_s
     assert last == max(feet["left"][0].end_s, feet["right"][0].end_s)
     assert first == feet["left"][1].onset_s
+
+
+def test_a_hop_is_a_split_step_once_even_where_the_stances_show_it():
+    feet, hop = together(1.0, 1.2), Hop(1.0, 0.01, 1.2, 0.01)
+    steps, events = kinds.tables({"p1": (feet, 0.9)}, {"p1": [hop]})
+    assert steps.kind.tolist() == ["stand", "stand", "split_step", "split_step"]
+    (row,) = events.to_dict("records")
+    assert (row["event"], row["start_s"], row["stop_s"]) == ("split_step", 1.0, 1.2)
+    assert row["x_m"] == pytest.approx(0.0)
+
+
+def test_where_hops_were_looked_for_no_other_flight_is_a_split_step():
+    _, events = kinds.tables({"p1": (together(1.0, 1.2), 0.9)}, {"p1": []})
+    assert "split_step" not in set(events.event)
+    assert events.event.tolist() == ["step", "step"]
+    _, events = kinds.tables({"p1": (together(1.0, 1.2), 0.9)}, {"p1": None})
+    assert events.event.tolist() == ["split_step"]
 
 
 def test_running_feet_take_steps():

@@ -5,7 +5,9 @@ import pandas as pd
 import pytest
 
 from courtside.footwork import feet
+from courtside.records import tables
 from courtside.strokes import reaction
+from courtside.study.errors import InputError
 from fixtures.people import walking_feet
 
 COLUMNS = ["person", "event", "start_s", "start_sigma_s", "stop_s", "stop_sigma_s"]
@@ -40,6 +42,26 @@ def test_without_a_split_step_the_first_step_counts_from_the_hit():
     )
     assert row["to_step_s"] == pytest.approx(0.3)
     assert np.isnan([row["to_split_s"], row["split_to_step_s"]]).all()
+
+
+def test_a_split_step_may_land_just_before_the_stroke():
+    feet = events(("b", "split_step", 0.8, 0.95), ("b", "step", 1.2, 1.5))
+    (row,) = reaction.join(hits(("a", 1.0, 0.03)), feet).to_dict("records")
+    assert row["to_split_s"] == pytest.approx(-0.05)
+    assert row["split_to_step_s"] == pytest.approx(0.25)
+    early = events(("b", "split_step", 0.7, 0.85), ("b", "step", 1.2, 1.5))
+    assert np.isnan(reaction.join(hits(("a", 1.0, 0.03)), early).to_split_s[0])
+
+
+def test_a_written_table_is_read_again_and_another_is_refused(tmp_path):
+    feet = events(("b", "split_step", 1.05, 1.2), ("b", "step", 1.45, 1.7))
+    rows = reaction.join(hits(("a", 1.0, 0.03)), feet)
+    tables.write(tmp_path / "reactions.csv", rows)
+    again = reaction.read(tmp_path / "reactions.csv")
+    pd.testing.assert_frame_equal(again, rows, rtol=1e-5, check_dtype=False)
+    tables.write(tmp_path / "other.csv", rows.drop(columns="hit_s"))
+    with pytest.raises(InputError, match="found no column hit_s"):
+        reaction.read(tmp_path / "other.csv")
 
 
 def test_what_comes_after_the_next_stroke_or_too_late_is_no_reaction():

@@ -140,6 +140,7 @@ def test_strokes_of_takes_of_badminton_with_errors_of_virtual_ones(study):
         for path in (
             f"{folder}/takes/{take}/strokes/{way}.csv",
             f"{folder}/evaluation/takes/{take}/strokes/{way}.csv",
+            f"{folder}/evaluation/takes/{take}/reactions/{way}.csv",
         )
     ]
     session = replace(study.sessions["players-tiny"], court="tennis")

@@ -61,6 +61,14 @@ def test_layout_b_stands_on_one_line_and_has_a_mirror_image():
     assert list(by_name("b-mirror")) == ["oblique", "back", "mirror"]
 
 
+def test_four_corners_are_two_and_their_images_behind_the_other_half():
+    found = {name: c.centre_in_world - CENTRE for name, c in by_name("four-corners").items()}
+    assert list(found) == ["left", "right", "far-right", "far-left"]
+    for near, far in (("left", "far-left"), ("right", "far-right")):
+        np.testing.assert_allclose(found[near][:2] * [1, -1], found[far][:2])
+    assert list(by_name("corners")) == ["left", "right"]
+
+
 @pytest.mark.parametrize("court", ["badminton", "tennis", "rectangle-10x5"])
 @pytest.mark.parametrize("layout", layouts.LAYOUTS)
 @pytest.mark.parametrize("size", [(480, 270), (3840, 2160)])

@@ -27,6 +27,13 @@ def test_step_and_bump_are_smooth():
         assert np.abs(np.diff(np.gradient(y, X))).max() < 0.01  # no kink
 
 
+def test_an_arc_is_what_is_thrown_up_and_lands_as_fast():
+    y = easing.arc(X)
+    assert (y[0], y[-1], easing.arc(0.5)) == (0, 0, 1)
+    np.testing.assert_allclose(np.diff(y[(X > 0.01) & (X < 0.99)], 2), -8e-8, atol=1e-12)
+    assert easing.flight_m(0.2) == pytest.approx(9.81 * 0.1**2 / 2)  # falls for half of the time
+
+
 def test_a_glide_is_the_integral_of_its_speeds():
     knots, speeds = [1.0, 2.0, 2.5, 4.0], [0.0, 3.0, -1.0, 0.0]
     glide = easing.Glide(knots, speeds, start=0.5)

@@ -62,6 +62,22 @@ def test_feet_stand_at_a_station_as_it_says():
         assert plant.yaw == pytest.approx(-0.6 + yaw)
 
 
+def test_in_a_hop_both_feet_are_in_the_air_and_land_where_the_station_says():
+    hop = Station(1.15, 2.0, np.array([0.0, 0.1]), 0.0, hop=True)
+    for seed in range(3):
+        _, feet = footwork.plan((STATIONS[0], hop), BODY, np.random.default_rng(seed))
+        offs = [foot.plants[0].off_s for foot in feet.values()]
+        lands = [foot.plants[1].land_s for foot in feet.values()]
+        assert (max(offs), min(lands)) == (1.0, 1.15)
+        assert max(offs) - min(offs) <= footwork.HOP_APART_S >= max(lands) - min(lands)
+        for side, foot in feet.items():
+            lifts = [foot.at(time_s)[2] for time_s in np.arange(1.01, 1.145, 0.01)]
+            assert min(lifts) > 0
+            assert 0.02 < max(lifts) < 0.06  # the floor's push is gone: g t^2 / 8
+            left, forward, _ = footwork.WIDE[side]
+            np.testing.assert_allclose(foot.plants[1].place, [-left, forward + 0.1])
+
+
 def test_going_sideways_the_legs_stay_uncrossed():
     sideways = (STATIONS[0], Station(2.6, 3.5, np.array([1.6, 0.0]), 0.0, lead="left"))
     for seed in range(5):

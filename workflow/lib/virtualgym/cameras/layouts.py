@@ -27,6 +27,8 @@ HEIGHTS_M = {
     "front": 2.2,
     "left": 2.9,
     "right": 2.7,
+    "far-right": 2.8,
+    "far-left": 3.0,
     "stand_left": 6.5,
     "stand_right": 8.0,
     "stand_far_right": 5.5,
@@ -54,6 +56,7 @@ LAYOUTS = {  # in the order in which a walk passes them
     "b-mirror": ("oblique", "back", "mirror"),
     "b-mirror-front": ("oblique", "back", "mirror", "front"),
     "corners": ("left", "right"),
+    "four-corners": ("left", "right", "far-right", "far-left"),
     "stands": tuple(STANDS_M),
     "near": tuple(NEAR_M),
 }
@@ -77,7 +80,8 @@ def fixed_cameras(
         A key of `LAYOUTS`. In "a" two cameras look along the world's x (`side`) and y (`back`). In
         "b" one stands straight behind the court (`back`), one beside it on a line parallel to x
         (`oblique`); then the mirror image of that one (`mirror`); then one that faces the players.
-        In "corners" two stand high to the left and the right behind the court, 124 degrees apart.
+        In "corners" two stand high to the left and the right behind the court, 124 degrees apart;
+        "four-corners" adds their mirror images behind the other half.
         In "stands" four look down from the stands of a hall, 5.5 to 8 m high. In "near" four stand
         7 to 9 m around the middle of the near half, at which they are aimed.
     court : Court
@@ -183,10 +187,11 @@ def _places(
             "side": (away_m * np.cos(angle), away_m * np.sin(angle)),
             "back": (0.0, -away_m),
         }
-    if layout == "corners":
+    if layout in ("corners", "four-corners"):
         away_m, angle = max(SQUARE_ON_M, needed_m), np.radians(CORNER_DEG)
         across, behind = away_m * np.sin(angle), -away_m * np.cos(angle)
-        return {"left": (-across, behind), "right": (across, behind)}
+        near = {"left": (-across, behind), "right": (across, behind)}
+        return near | {"far-right": (across, -behind), "far-left": (-across, -behind)}
     if layout == "stands":
         return STANDS_M
     if layout == "near":

@@ -17,6 +17,7 @@ REAR_FEET = {"left": (0.27, 0.02, 0.35), "right": (-0.29, -0.02, -0.2)}
 SPEED_M_S = (1.35, 1.7)  # mean speed of a trip; the highest is 1.5 times that
 LEAST_S = 0.75  # of a trip
 PLACE_M = 0.12  # scatter of the corners: two standard deviations
+PREPARED_S = 0.2  # before the arrival the arm is raised for an overhead stroke
 SWING_S = (0.13, 0.15)  # from the cocked arm to the hit
 FOLLOW_SWINGS = 1.75  # from the hit to the end of the follow-through, in swing durations
 HALF_WINDOW_S = 8 / 30  # half of a hit's 17 frames at 30 fps
@@ -52,12 +53,14 @@ class Drill:
         Duration of strokes over that of real ones; above 1 they are only indicated.
     """
 
+    cadence_hz = CADENCE_HZ
+
     def __init__(self, player: Player, swing: float = 1.0) -> None:
         rng, self.half_m = player.rng, player.half_m
         self.player, self.rng, self.swing = player, rng, swing
         base = self._at(BASE)
         self.stations = [Station(0.0, rng.uniform(0.6, 0.9), base, rng.normal(0, 0.05))]
-        self.keys = [(0.0, upper_body.READY), (self.time_s - 0.1, _low(rng))]
+        self.keys = [(0.0, upper_body.READY), (self.time_s - 0.1, low(rng))]
         self.events: dict[str, float] = {}
 
     @property
@@ -75,17 +78,17 @@ class Drill:
         getattr(self, f"_{corner.stroke}")(arrive, place, heading)
         self._return()
 
-    def finish(self) -> Motion:
-        """Return the motion, which ends with a rest at the base."""
+    def finish(self, **options: Any) -> Motion:
+        """Return the motion, which ends with a rest at the base; `options` of `Player.motion`."""
         last = self.stations[-1]
         stop = last.arrive_s + 0.9
         self.stations[-1] = replace(last, leave_s=stop)
         self.keys[-1] = (stop, upper_body.READY)
         route, feet = footwork.plan(
-            self.stations, self.player.proportions, self.rng, cadence_hz=CADENCE_HZ
+            self.stations, self.player.proportions, self.rng, cadence_hz=self.cadence_hz
         )
         course = upper_body.course(self.keys, self.rng)
-        return self.player.motion(stop, route, feet, course, events=self.events)
+        return self.player.motion(stop, route, feet, course, events=self.events, **options)
 
     def _net(
         self,
@@ -94,19 +97,30 @@ class Drill:
         heading: float,
         pose: upper_body.Pose = upper_body.NET_REACH,
     ) -> None:
-        hit = arrive + self.rng.uniform(0.12, 0.2)
-        leave = hit + self.rng.uniform(0.1, 0.2)
-        self._stay(arrive, leave, place, heading, feet=footwork.LUNGE, settle_s=0.24)
-        self.keys += [(arrive - 0.06, pose.but(height=0.82, lean=20)), (hit, pose), (leave, pose)]
-        self._hit(hit)
+        self._reach(arrive, arrive + self.rng.uniform(0.12, 0.2), place, heading, pose)
 
     def _side(self, arrive: float, place: NDArray, heading: float) -> None:
         self._net(arrive, place, heading, upper_body.SIDE_REACH)
 
     def _overhead(self, arrive: float, place: NDArray, heading: float) -> None:
         swing = self.swing * self.rng.uniform(*SWING_S)
-        prepared = arrive - 0.2
-        hit = max(arrive + 0.32, prepared + 2.6 * swing) + self.rng.uniform(0, 0.12)
+        hit = max(arrive + 0.32, arrive - PREPARED_S + 2.6 * swing) + self.rng.uniform(0, 0.12)
+        self._strike(arrive, hit, place, heading, swing)
+
+    def _reach(
+        self, arrive: float, hit: float, place: NDArray, heading: float, pose: upper_body.Pose
+    ) -> None:
+        """Arrive in a lunge and reach for the shuttle."""
+        leave = hit + self.rng.uniform(0.1, 0.2)
+        self._stay(arrive, leave, place, heading, feet=footwork.LUNGE, settle_s=0.24)
+        self.keys += [(arrive - 0.06, pose.but(height=0.82, lean=20)), (hit, pose), (leave, pose)]
+        self._hit(hit)
+
+    def _strike(
+        self, arrive: float, hit: float, place: NDArray, heading: float, swing: float
+    ) -> None:
+        """Arrive sideways and strike above the head."""
+        prepared = arrive - PREPARED_S
         self._stay(arrive, hit + 0.05, place, heading, feet=REAR_FEET, settle_s=0.2)
         self.keys += [
             (prepared, upper_body.PREPARE),
@@ -123,7 +137,8 @@ class Drill:
         self.stations.append(Station(arrive, leave, place, heading, lead="right", **options))
 
     def _hit(self, time_s: float) -> None:
-        number = 1 + sum(name.endswith("_start") for name in self.events)
+        hits = [name for name in self.events if name.startswith("hit_")]
+        number = 1 + sum(name.endswith("_start") for name in hits)
         self.events[f"hit_{number}"] = time_s
         self.events[f"hit_{number}_start"] = time_s - HALF_WINDOW_S
         self.events[f"hit_{number}_stop"] = time_s + HALF_WINDOW_S
@@ -132,7 +147,7 @@ class Drill:
         """Return to the base, the right foot first, and get ready."""
         place, start = self._at(BASE, 0.08), self.time_s
         arrive = start + self._lasts(place)
-        steps = max(2, round((arrive - start) * CADENCE_HZ))
+        steps = max(2, round((arrive - start) * self.cadence_hz))
         leave = arrive + self.rng.uniform(0.3, 0.5)
         lead = "right" if steps % 2 else "left"
         heading = self.rng.normal(0, 0.05)
@@ -141,7 +156,7 @@ class Drill:
         self.keys += [
             (run, upper_body.RUN),
             (max(arrive, run + 0.1), upper_body.READY),
-            (leave - 0.05, _low(self.rng)),
+            (leave - 0.05, low(self.rng)),
         ]
 
     def _at(self, share: tuple[float, float], scatter_m: float = PLACE_M) -> NDArray:
@@ -171,6 +186,6 @@ def visits(player: Player, names: Iterable[str]) -> Motion:
     return drill.finish()
 
 
-def _low(rng: np.random.Generator) -> upper_body.Pose:
+def low(rng: np.random.Generator) -> upper_body.Pose:
     """Return the crouch from which a player starts."""
     return upper_body.READY.but(height=0.83 + rng.normal(0, 0.01), lean=25)

@@ -20,7 +20,7 @@ import numpy as np
 
 from courtside.calibration.court.court import Court
 from virtualgym.body.stance import Proportions
-from virtualgym.movement import badminton, upper_body, walking
+from virtualgym.movement import badminton, exchange, upper_body, walking
 from virtualgym.movement import player as performance
 from virtualgym.movement import single_view as free_motion
 from virtualgym.movement import tpose_clap as clapping
@@ -57,6 +57,33 @@ def rally(
 ) -> Motion:
     """Do the same as `six_corners`, with strokes at full speed."""
     return badminton.rounds(performance.Player(proportions, court, rng, hand, half), seconds)
+
+
+def exchange_of_shots(
+    proportions: Proportions,
+    court: Court,
+    rng: np.random.Generator,
+    *,
+    hand: str = "right",
+    half: str = "near",
+    seconds: float = 21.0,
+    script_rng: np.random.Generator | None = None,
+) -> Motion:
+    """Play one side of a rally of two for at least `seconds`.
+
+    Parameters
+    ----------
+    script_rng : numpy.random.Generator or None
+        Who hits when and where; the same for both players. None: of `rng`.
+
+    Returns
+    -------
+    motion : Motion
+        Events: see `exchange.perform`.
+    """
+    player = performance.Player(proportions, court, rng, hand, half)
+    fed_s, shots = exchange.script(script_rng or rng.spawn(1)[0], seconds)
+    return exchange.perform(player, fed_s, shots)
 
 
 def shot(
@@ -254,6 +281,7 @@ MOTIONS: dict[str, Callable[..., Motion]] = {
     "tpose_clap_bouncing": tpose_clap_bouncing,
     "crossing": crossing,
     "rally": rally,
+    "exchange": exchange_of_shots,
     "single_view": single_view,
     "stand": stand,
     "stroll": stroll,

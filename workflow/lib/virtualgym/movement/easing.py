@@ -1,4 +1,4 @@
-"""Smooth functions of time: from rest to rest, a step, a bump, and piecewise linear speed."""
+"""Smooth functions of time: from rest to rest, a step, a bump, an arc, piecewise linear speed."""
 
 from typing import TypeVar
 
@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 T = TypeVar("T", float, NDArray)
 # ASSUME: share of a move's duration in which it accelerates, and in which it slows down.
 RAMP = 0.35
+GRAVITY_M_S2 = 9.81
 
 
 def ease(x: T, ramp: T | float = RAMP) -> T:
@@ -32,6 +33,17 @@ def bump(x: T) -> T:
     """Return a bump over 0..1 of height 1, 0 outside; its first derivative is continuous."""
     x = _between(x, 0.0, 1.0)
     return 16 * (x * (1 - x)) ** 2
+
+
+def arc(x: T) -> T:
+    """Return a parabola over 0..1 of height 1, 0 outside: what is thrown up lands as fast."""
+    x = _between(x, 0.0, 1.0)
+    return 4 * x * (1 - x)
+
+
+def flight_m(lasts_s: T) -> T:
+    """Return how high a body rises that is in the air for a time, s."""
+    return GRAVITY_M_S2 * lasts_s**2 / 8
 
 
 def _between(x: T, low: float, high: T | float) -> T:

@@ -11,7 +11,7 @@ from scipy.interpolate import CubicSpline
 from virtualgym.body.stance import OTHER, Proportions
 from virtualgym.movement import easing, two_bone_ik
 
-Footfall = tuple[float, NDArray, float]  # time of landing, place (2,) m, yaw
+Footfall = tuple[float, NDArray, float, bool]  # time of landing, place (2,) m, yaw, after a hop
 OWN = {"left": 1.0, "right": -1.0}  # side on the body's x axis
 # ASSUME: gait values chosen to look natural and to keep the legs apart; no source is recorded.
 HALF_TRACK_M = 0.11  # of a foot from the pelvis's path, walking
@@ -19,6 +19,8 @@ GAP_M = 0.13  # a landing foot stays at least this far on its own side of the ot
 FURTHEST_M = 0.32  # but is moved no further than this to do so
 ROLL_SHARE = 0.45  # share of a stance phase, at its end, on the toes
 RAMP_S = 0.9  # longest time to reach walking speed
+HOP_APART_S = 0.03  # both feet leave, and land, in a hop within this
+HOP_ROLL_S = 0.08  # before a hop the heels rise
 TURN_SHARE = 0.7  # share of a trip in which the body turns
 # Feet at a station: left, forward (m) of the pelvis, yaw (rad).
 WIDE = {"left": (0.24, 0.05, 0.25), "right": (-0.24, -0.03, -0.25)}
@@ -46,6 +48,9 @@ class Station:
         Time after the landing in which the pelvis still moves.
     steps : int or None
         Number of steps on the way here; None: from the duration.
+    hop : bool
+        Both feet come here at once: the last leaves when the station before is left, the first
+        lands at `arrive_s`.
     """
 
     arrive_s: float
@@ -56,6 +61,7 @@ class Station:
     lead: str = "right"
     settle_s: float = 0.12
     steps: int | None = None
+    hop: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,16 +187,19 @@ def plan(
     path = route or Route(tuple(stations))
     first = stations[0]
     falls: dict[str, list[Footfall]]
-    falls = {side: [(first.arrive_s, *_beside(first, side))] for side in OTHER}
+    falls = {side: [(first.arrive_s, *_beside(first, side), False)] for side in OTHER}
     offs: dict[str, list[tuple[float, float]]] = {side: [] for side in OTHER}
     for before, after in pairwise(stations):
-        _trip(path, before, after, (cadence_hz, air), (falls, offs), rng)
+        if after.hop:
+            _hop(before, after, (falls, offs), rng)
+        else:
+            _trip(path, before, after, (cadence_hz, air), (falls, offs), rng)
     plants, rolls = {}, {}
     for side in OTHER:
         ends = [*(off for off, _ in offs[side]), stations[-1].leave_s]
         plants[side] = [
-            Plant(land, off, place, yaw)
-            for (land, place, yaw), off in zip(falls[side], ends, strict=True)
+            Plant(land, off, place, yaw, hop)
+            for (land, place, yaw, hop), off in zip(falls[side], ends, strict=True)
         ]
         rolls[side] = [roll for _, roll in offs[side]]
     return path, walk(plants, proportions, rolls=rolls)
@@ -223,7 +232,21 @@ def _trip(
         stretched = k < 2 and before.feet is LUNGE and side != before.lead
         roll = off - before.arrive_s if stretched else ROLL_SHARE * min(stood, 0.5)
         offs[side].append((off, roll))
-        falls[side].append((land, place, yaw))
+        falls[side].append((land, place, yaw, False))
+
+
+def _hop(
+    before: Station,
+    after: Station,
+    record: tuple[dict[str, list[Footfall]], dict[str, list[tuple[float, float]]]],
+    rng: np.random.Generator,
+) -> None:
+    """Add the footfalls of a hop to the record: one foot leaves last, one lands first."""
+    falls, offs = record
+    early, late = rng.permutation([0.0, rng.uniform(0, HOP_APART_S)]), rng.uniform(0, HOP_APART_S)
+    for side, sooner, later in zip(OTHER, early, rng.permutation([0.0, late]), strict=True):
+        offs[side].append((before.leave_s - sooner, HOP_ROLL_S))
+        falls[side].append((after.arrive_s + later, *_beside(after, side), True))
 
 
 def _beside(station: Station, side: str) -> tuple[NDArray, float]:
@@ -267,12 +290,15 @@ class Plant:
         Of the ankle while the foot is flat, metres.
     yaw : float
         Heading of the toes, radians.
+    hop : bool
+        The foot comes here in a hop of both: it flies as the body does, and lands without slowing.
     """
 
     land_s: float
     off_s: float
     place: np.ndarray
     yaw: float
+    hop: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -303,12 +329,19 @@ class Foot:
         steps = np.array([b.place - a.place for a, b in zip(before, after, strict=True)])
         steps = steps.reshape(-1, 2)
         length = np.linalg.norm(steps, axis=1)
+        off, land = (
+            np.array(times)
+            for times in ([p.off_s for p in before], [plant.land_s for plant in after])
+        )
+        hop = np.array([plant.hop for plant in after], bool)
+        lift = np.clip(0.04 + 0.08 * length, 0.04, 0.12)
         table = {
-            "off": np.array([plant.off_s for plant in before]),
-            "land": np.array([plant.land_s for plant in after]),
+            "off": off,
+            "land": land,
+            "hop": hop,
             "steps": steps,
             "turns": np.array([b.yaw - a.yaw for a, b in zip(before, after, strict=True)]),
-            "lift": np.clip(0.04 + 0.08 * length, 0.04, 0.12),
+            "lift": np.where(hop, easing.flight_m(land - off), lift),
             "heel": np.clip(0.15 + 0.6 * length, 0.15, 0.75),
             "toe": np.clip(0.3 * (length - 0.2), 0.0, 0.3),
         }
@@ -322,7 +355,8 @@ class Foot:
         moved = easing.ease(x)
         place = first.place + moved @ table["steps"] + easing.bump(x) @ self.aside
         yaw = first.yaw + moved @ table["turns"]
-        lift = float(table["lift"] @ easing.bump(x))
+        rise = np.where(table["hop"], easing.arc(x), easing.bump(x))
+        lift = float(table["lift"] @ rise)
         heel = float(table["heel"] @ self._heel(time_s, x, swing))
         toe = float(table["toe"] @ self._toe(time_s, x, swing))
         forward, flat = np.array([-np.sin(yaw), np.cos(yaw)]), self._flat_slope()

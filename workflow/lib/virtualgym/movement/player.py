@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicHermiteSpline, CubicSpline
 from scipy.ndimage import convolve1d, minimum_filter1d
 
 from courtside.calibration.court.court import Court
 from virtualgym.body import stance
 from virtualgym.body.stance import SIDES, Stance
-from virtualgym.movement import two_bone_ik
+from virtualgym.movement import easing, two_bone_ik
 from virtualgym.movement.footwork import Foot, Lap, Route
 from virtualgym.movement.tpose_clap import Arms
 from virtualgym.movement.upper_body import Course, Moment
@@ -27,6 +27,9 @@ COUNTER = 0.22  # radians of the pelvis per leg length between the feet; the tho
 PELVIS_SHARE = 0.35  # pelvis's share of the thorax's lean and twist
 DROP = 0.35  # radians of roll of the pelvis per metre of a foot's lift
 SWAY = 0.18  # shift of the pelvis over the standing foot per lift of the other
+# Of a hop: the body sinks before it leaves the floor, flies freely, and gives way as it lands.
+SINK_S, SINK_M = (0.22, 0.10), 0.03
+GIVE_S, GIVE_M = (0.10, 0.35), 0.04
 NARROWEST = 0.35  # of a leg's length: least height of a hip over its ankle
 
 
@@ -65,6 +68,8 @@ class Motion:
         net, y towards the net.
     left_handed : bool
         Mirrored at the court's long centre line.
+    hops : tuple of (float, float)
+        When the last foot leaves the floor and when the first lands, s; a second or more apart.
     """
 
     seconds: float
@@ -78,7 +83,9 @@ class Motion:
     reach: float = MOST_REACH
     frame: tuple[NDArray, NDArray] = (np.eye(3), np.zeros(3))
     left_handed: bool = False
+    hops: tuple[tuple[float, float], ...] = ()
     _height: CubicSpline = field(init=False, repr=False)
+    _hopped: CubicHermiteSpline | None = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         # The minimum over SOFT_S before and after, averaged over the same window: smooth, never too
@@ -89,6 +96,7 @@ class Motion:
         kernel = np.hanning(2 * round(SOFT_S / GRID_S) + 1)
         smooth = convolve1d(lowest, kernel / kernel.sum())
         object.__setattr__(self, "_height", CubicSpline(times, smooth))
+        object.__setattr__(self, "_hopped", hop_rise(self.hops) if self.hops else None)
 
     def stance(self, time_s: float) -> Stance:
         """Return the stance at a time, clipped to the motion's duration."""
@@ -123,7 +131,10 @@ class Motion:
         )
         thorax = body.upright @ thorax
         head = body.upright @ two_bone_ik.turn(moment.look[0], moment.look[1], 0.0)
-        middle = np.append(body.place, float(self._height(time_s)))
+        height = float(self._height(time_s))
+        if self._hopped is not None:
+            height += float(self._hopped(np.clip(time_s, *self._hopped.x[[0, -1]])))
+        middle = np.append(body.place, height)
         directions = self._legs(middle, body)
         arms, palms, racket = self._arms(moment, body.stride, time_s)
         directions |= {name: thorax @ way for name, way in arms.items()}
@@ -195,6 +206,18 @@ class Motion:
             }
             palms[side] = two_bone_ik.across(palm, hand)
         return directions, palms, racket
+
+
+def hop_rise(hops: tuple[tuple[float, float], ...]) -> CubicHermiteSpline:
+    """Return the pelvis's height in hops over its height without them, m; in flight a parabola."""
+    knots = []
+    for off, land in hops:
+        lasts = land - off
+        speed = easing.GRAVITY_M_S2 * lasts / 2
+        knots += [(off - SINK_S[0], 0.0, 0.0), (off - SINK_S[1], -SINK_M, 0.0), (off, 0.0, speed)]
+        knots += [((off + land) / 2, easing.flight_m(lasts), 0.0), (land, 0.0, -speed)]
+        knots += [(land + GIVE_S[0], -GIVE_M, 0.0), (land + GIVE_S[1], 0.0, 0.0)]
+    return CubicHermiteSpline(*np.array(knots).T)
 
 
 @dataclass(frozen=True, eq=False)

@@ -29,7 +29,7 @@ CLOCK = {"offset_s", "drift_ppm"}
 LATE_S = 60.0  # greatest offset between two clocks, as the schema of sessions has it
 SHAKE = {part.name for part in fields(camera_shake.Shake)}
 # Independent streams of random numbers, of the take's seed.
-MOTION, GRAIN, SHAKING, CLICKS, BYSTANDERS = range(5)
+MOTION, GRAIN, SHAKING, CLICKS, BYSTANDERS, SCRIPT = range(6)
 FIELD, FRAMES = range(2)  # of GRAIN and a camera
 
 
@@ -232,6 +232,8 @@ def _athlete(
     if "seconds" in taken:
         latest_s = max([0.0, *(-c.get("offset_s", 0.0) for c in take.clocks.values())])
         options["seconds"] = take.start_s + take.seconds + latest_s
+    if "script_rng" in taken:
+        options["script_rng"] = parallel.generator(take.seed, SCRIPT)
     options |= player.get("options", {})
     figure = skinned_body.Body.read(body_folder, shapes.BODIES[player["body"]])
     rng = parallel.generator(take.seed, stream, at)

@@ -211,6 +211,35 @@ VIEWS = {  # the columns that the documents show of their tables
             "with": "{hits.command}",
         },
     ),
+    "rally-hits": View(
+        "rally-hits",
+        {
+            "rallies of two": "{row}",
+            "hits": "{hits}",
+            "found (>= 95 %)": "{found}",
+            "false (<= 5 %)": "{false}",
+            "error of the time in frames, median (<= 1) / 95 %": "{median}",
+            "in 90 % intervals (80 to 97 %)": "{held}",
+            "frames with contact right (>= 97 %)": "{contact}",
+            "by": "{hits.origin}",
+            "with": "{hits.command}",
+        },
+    ),
+    "reactions": View(
+        "reactions",
+        {
+            "rallies of two: what": "{row}",
+            "true": "{true}",
+            "found": "{found}",
+            "false": "{false}",
+            "median error, signed, ms": "{bias}",
+            "size of the error, median / 95 %": "{median}",
+            "within 40 ms": "{within}",
+            "in 90 % intervals (80 to 97 %)": "{held}",
+            "by": "{true.origin}",
+            "with": "{true.command}",
+        },
+    ),
     "stroke-cues": View(
         "stroke-cues",
         {

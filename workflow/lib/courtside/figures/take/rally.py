@@ -10,7 +10,8 @@ from courtside.figures.style import style
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.strokes import signals
 
-HEAD_MM, ROW_MM = 18, 45
+HEAD_MM, ROW_MM = 22, 45
+A_ROW = 4  # entries of the legend
 KINDS = {True: ("overhead stroke", style.RIGHT), False: ("low stroke", style.LEFT)}
 STEPS = {"split_step": ("split step", "v", 5), "step": ("step", "|", 4), "lunge": ("lunge", "D", 3)}
 STROKE = ["sigma_s", "hand", "overhead", "speed_m_s"]
@@ -47,7 +48,7 @@ def draw(strokes: pd.DataFrame, events: pd.DataFrame, points: Keypoints3D) -> Fi
         for axis in rows
         for handle, label in zip(*axis.get_legend_handles_labels(), strict=True)
     }
-    drawing.legend(named.values(), named, loc="outside upper right", ncols=len(named))
+    drawing.legend(named.values(), named, loc="outside upper right", ncols=min(len(named), A_ROW))
     return drawing
 
 

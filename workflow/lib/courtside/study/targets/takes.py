@@ -10,6 +10,7 @@ from courtside.study.methods import IMPORTED
 
 # Figures of takes of badminton: elsewhere, throws and headers look like strokes.
 OF_STROKES = ("rally", "strokes")
+ERRORS_OF_STROKES = (paths.STROKE_ERRORS, paths.REACTION_ERRORS)
 # Figures that show persons in pictures.
 PICTURED = ("overlay", "badminton_fig09", "badminton_fig10", "badminton_fig11")
 
@@ -139,7 +140,7 @@ def every_stroke(study: Study) -> list[str]:
         path
         for session, take in study.takes()
         if badminton(session)
-        for pattern in (paths.STROKES, *([paths.STROKE_ERRORS] * bool(session.virtual)))
+        for pattern in (paths.STROKES, *(ERRORS_OF_STROKES if session.virtual else ()))
         for path in files(pattern, session, take, model=session.parameters["models"][:1])
     ]
 
