@@ -4,12 +4,14 @@
         [--cameras NAME ...]
 
 RESULTS are those of a run that detected poses in the takes of a virtual session. Lenses are
-unknown. Three cameras film two players, whose heights are stated to the centimetre; in other rows a
-length on the floor is known instead, clicked in every picture. True joints are projected by the
-true cameras and triangulated by the estimated ones. `joints`: median error after the best rigid
-motion. `shape`: the same after the best similarity. `scale`: error of all lengths. `hold`: share of
-the joints inside the 90 % ellipsoids of the cameras' covariance. `accepted`: views of held-out limb
-joints that agree with the others. Writes docs/numbers/people_alone.csv.
+unknown. Three cameras film two players, whose heights are stated to the centimetre; in other rows
+known lengths define the scale, clicked in every picture in 20 draws: a line on the floor, a racket
+at one place, or at five places where somebody holds it, alone or with the heights. True joints are
+projected by the true cameras and triangulated by the estimated ones. `joints`: median error after
+the best rigid motion. `shape`: the same after the best similarity. `scale`: error of all lengths,
+its root mean square over draws. `hold`: share of the joints inside the 90 % ellipsoids of the
+cameras' covariance, over all draws. `accepted`: views of held-out limb joints that agree with the
+others. Writes docs/numbers/people_alone.csv.
 """
 
 import argparse
@@ -18,6 +20,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+import scipy
 
 from people_seen import CONFIG, LIMITS, ROOT, WEIGHTS
 
@@ -25,7 +28,7 @@ sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
 from courtside.calibration.court import joint_adjustment
-from courtside.calibration.people import unit
+from courtside.calibration.people import from_nothing, unit, world_frame
 from courtside.evaluation.numbers import stated
 from courtside.evaluation.numbers.players import NETWORK as MODEL
 from courtside.geometry import camera as camera_models
@@ -40,13 +43,24 @@ from courtside.synchronisation import cameras as camera_sync
 TAKES = "footwork", "crossing"
 THREE = ("oblique", "mirror", "front")  # not on one line
 MADE = "benchmark", "`python benchmarks/people_alone.py RESULTS`"
-# Known lengths on the floor, m; heights are then not stated.
+# Places of a racket (top, butt), m: on the floor, then held by somebody who stands still.
+RACKETS = np.array([
+    [[3.674, 4.0, 0.0], [3.0, 4.0, 0.0]],
+    [[1.5, 2.5, 1.9], [1.5, 2.5, 1.226]],
+    [[4.5, 2.9, 1.0], [4.5, 2.226, 1.0]],
+    [[4.2, 5.6, 2.2], [4.2, 5.6, 1.526]],
+    [[1.4, 5.5, 1.1], [2.074, 5.5, 1.1]],
+])  # fmt: skip
+LINE = np.array([[[0, 4.72, 0], [6.1, 4.72, 0]]])
+# Known lengths, and whether heights are stated, too.
 KNOWN = {
-    "a court line of 6.1 m clicked": np.array([[0, 4.72, 0], [6.1, 4.72, 0]]),
-    "a racket on the floor clicked": np.array([[3.0, 4.0, 0], [3.674, 4.0, 0]]),
+    "a court line of 6.1 m clicked": (LINE, False),
+    "a racket on the floor clicked": (RACKETS[:1], False),
+    "a racket clicked at five places": (RACKETS, False),
+    "a racket clicked at five places, heights stated": (RACKETS, True),
 }
 CLICK = {key: WEIGHTS[key] for key in ("click_sigma_px", "click_bias_px")}
-SEED = 0  # of the clicks
+DRAWS = 20  # of the clicks
 EVERY = 12  # of the true frames: neighbouring ones are nearly equal
 
 
@@ -81,17 +95,34 @@ def errors(found, real, xyz):
     )
 
 
-def clicked(real, ends, seed):
-    """Return a known length with simulated clicks, of the errors in config.yaml."""
-    rng, length_m = np.random.default_rng(seed), float(np.linalg.norm(ends[1] - ends[0]))
+def clicked(real, places, seed):
+    """Return known lengths (L, 2, 3) with simulated clicks, of the errors in config.yaml."""
+    rng, ends = np.random.default_rng(seed), places.reshape(-1, 3)
     xy = np.stack([camera_models.project(camera, ends) for camera in real])
     for camera, px in zip(real, xy, strict=True):
         scatter, bias = (joint_adjustment.click_sigma(one, camera.size) for one in CLICK.values())
         px += rng.normal(0, scatter, px.shape) + rng.normal(0, bias, 2)
         px[((px < 0) | (px >= camera.size)).any(axis=1)] = np.nan
-    stated_ends = [{"points": ["one", "other"], "length_m": length_m, "on_floor": True}]
-    (found,) = unit.of_clicks(stated_ends, ["one", "other"], xy, **CLICK)
-    return found
+    names = [f"{end} {k}" for k in range(len(places)) for end in ("one", "other")]
+    length_m = float(np.linalg.norm(places[0, 1] - places[0, 0]))
+    stated_ends = [
+        {"points": names[2 * k : 2 * k + 2], "length_m": length_m} for k in range(len(places))
+    ]
+    return unit.of_clicks(stated_ends, names, xy, **CLICK)
+
+
+def with_lengths(found, known, heights):
+    """Return cameras by heights with the unit of known lengths, or of both.
+
+    This is what `from_nothing.adjust` does with its last cameras.
+    """
+    columns = found.covariance.of_columns()
+    shape = world_frame.of_shape(found.cameras, columns, found.places, 0.0)
+    each, covariance = unit.by_lengths(found.cameras, known, shape)
+    if heights:
+        each.append(unit.Unit(1.0, found.scale.sigma, unit.HEIGHTS))
+        covariance = scipy.linalg.block_diag(covariance, found.scale.sigma**2)
+    return from_nothing.rescaled(found, unit.combined(each, covariance))
 
 
 def rows(results, name, takes, names):
@@ -111,18 +142,25 @@ def rows(results, name, takes, names):
     xyz = np.concatenate([one.xyz[:, ::EVERY, :12].reshape(-1, 3) for one in true])
     seconds = sum(take["virtual"]["seconds"] for take in stated_takes.values())
     of_takes = partial(timed, results, name, stated_takes, names)
-    for what, ends in (("heights stated", None), *KNOWN.items()):
-        heights = heights_m if ends is None else [[None] * len(one) for one in heights_m]
-        known = [] if ends is None else [clicked(real, ends, SEED)]
-        found = self_calibration.calibrate(names, {}, of_takes, heights, LIMITS, known)
-        joint, shape, scale, inside = errors(found, real, xyz)
+    found = self_calibration.calibrate(names, {}, of_takes, heights_m, LIMITS)
+    print(found.warnings)
+    for what, (places, heights) in (("heights stated", (None, True)), *KNOWN.items()):
+        if places is None:
+            each = [found]
+        else:
+            draws = (clicked(real, places, seed) for seed in range(DRAWS))
+            each = [with_lengths(found, known, heights) for known in draws]
+        joint, shape, scale, inside = np.array([errors(one, real, xyz) for one in each]).T
         accepted = found.score.accepted_percent()
-        print(names, what, joint, shape, scale, inside, accepted, found.scale, found.warnings)
+        sigma = 100 * np.mean([one.scale.sigma for one in each])
+        print(names, what, joint.mean(), shape.mean(), scale, inside.mean(), accepted, sigma)
         row = f"`{name}`: people alone, {len(names)} cameras, {seconds} s, {what}"
-        text = f"joints after a rigid motion {joint:.0f} mm, scale {scale:+.1f} %"
-        yield row, "alone", f"{text}, hold {inside:.0f} %", "mm", 1
-        yield row, "alone_shape", f"{shape / 10:.2f}", "cm", 1
-        yield row, "alone_accepted", f"{accepted.mean():.1f}", "%", 1
+        off = f"{scale[0]:+.1f} %" if len(each) == 1 else f"{np.sqrt(np.mean(scale**2)):.1f} %"
+        text = f"joints after a rigid motion {np.median(joint):.0f} mm, scale {off}"
+        n = len(each)
+        yield row, "alone", f"{text} (stated {sigma:.1f}), hold {inside.mean():.0f} %", "mm", n
+        yield row, "alone_shape", f"{shape[0] / 10:.2f}", "cm", n
+        yield row, "alone_accepted", f"{accepted.mean():.1f}", "%", n
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ from courtside.records import tables
 from courtside.records.devices import clocks, device_motion
 from courtside.records.keypoints import keypoints
 from courtside.records.truth import take_truth
+from courtside.study.execution import log
 from courtside.study.execution.script import run
 
 
@@ -26,7 +27,10 @@ def main(
         if name in sigma_m_of:
             points = source.observed(points, sigma_m_of[name])
         for stage, one in (("source", points), ("model", keypoints.read_3d(fitted))):
-            errors = kinematics.angles_of(one, truth, person, of_device[devices[name]])
+            clock = of_device[devices[name]]
+            if line := kinematics.no_common_time(f"{name}, {stage}", one, truth, clock):
+                log.logger.warning("%s", line)
+            errors = kinematics.angles_of(one, truth, person, clock)
             rows.append(errors.assign(source=name, stage=stage))
     table = pd.concat(rows, ignore_index=True).drop(columns="person")
     tables.write(errors_csv, table.set_index(["source", "stage"]).reset_index(), labels)

@@ -8,7 +8,9 @@ import pandas as pd
 import pytest
 
 from courtside.evaluation import kinematics
+from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import derived_joints
+from fixtures.people import walker
 
 TABLE = derived_joints.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
 LIMBS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
@@ -192,3 +194,14 @@ def test_angles_without_truth_are_left_out_and_missing_ones_are_counted():
     measured.time_s = measured.time_s + 1.0
     row = kinematics.angles(measured, real).set_index("angle").loc["left_elbow_flexion"]
     assert (row["n"], row["missing_percent"]) == (61, pytest.approx(100 * 30 / 91))
+
+
+def test_a_source_without_a_common_time_has_rows_without_errors_and_one_line():
+    real, measured, late = posed(60.0), walker.points(n_frames=50), Clock(offset_s=-1000.0)
+    rows = kinematics.angles_of(measured, real, "p1", late).set_index("angle")
+    assert rows.loc["elbow_flexion", "n"] == 0 and np.isnan(rows.loc["elbow_flexion", "rmse_deg"])
+    line = kinematics.no_common_time("suit", measured, real, late)
+    assert line.startswith("source suit: expected frames from 0.00 to 4.00 s") and "1000.00" in line
+    usual = kinematics.angles_of(measured, real, "p1", Clock()).set_index("angle")
+    assert usual.loc["elbow_flexion", "n"] > 0 and set(usual.index) == set(rows.index)
+    assert kinematics.no_common_time("suit", measured, real, Clock()) == ""

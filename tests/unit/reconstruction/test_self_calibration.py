@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from courtside.calibration.people import unit
+from courtside.calibration import point_covariance
+from courtside.calibration.bundle import selection
+from courtside.calibration.people import from_nothing, unit
 from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.from_nothing import Guess
 from courtside.geometry import camera as camera_models
@@ -112,6 +114,28 @@ def test_a_known_length_stands_for_heights(calibrated):
     assert np.linalg.norm(placed[1] - placed[0]) == pytest.approx(2.0, rel=1e-3)
     assert placed[:, 2].mean() == pytest.approx(0, abs=1e-6)
     assert found.scale.by == "line"
+
+
+def test_another_unit_is_that_of_a_calibration_with_this_length(calibrated):
+    """`rescaled` gives the cameras, and the errors of points, of the calibration by the length."""
+    ends = np.array([[-1.0, 1.0, 0.0], [1.0, 1.0, 0.0]])
+    xy = np.stack([camera_models.project(camera, ends) for camera in CAMERAS])
+    known = unit.KnownLength("line", 2.0, xy, click_sigma_px=1.0)
+    wanted = calibrated(*[Clock()] * 3, heights_m=(None, None), known=[known])
+    tall = calibrated(*[Clock()] * 3, heights_m=(1.76, 1.98))
+    (own,), _ = unit.by_lengths(tall.cameras, [known])
+    assert abs(own.metres - 1) > 0.05
+    found = from_nothing.rescaled(tall, replace(wanted.scale, metres=own.metres))
+    for one, other in zip(found.cameras, wanted.cameras, strict=True):
+        np.testing.assert_allclose(one.centre_in_world, other.centre_in_world, atol=0.02)
+    spread = [
+        point_covariance.point_covariance(
+            selection.of_cameras(one.cameras), one.covariance.of_columns(), one.places[::20]
+        )
+        for one in (found, wanted)
+    ]
+    sigma = np.sqrt(np.trace(np.stack(spread), axis1=2, axis2=3))
+    np.testing.assert_allclose(sigma[0], sigma[1], rtol=0.1)
 
 
 def test_clocks_that_are_not_sure_are_refused(calibrated):

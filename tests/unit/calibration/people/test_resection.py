@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from courtside.calibration.people import prior, resection
 from courtside.calibration.people.adjustment import Limits
+from courtside.calibration.people.views import joined
 from courtside.calibration.records.covariance import PARAMETERS
 from fixtures.cameras import corner_cameras, walkers
 
@@ -34,6 +35,26 @@ def test_only_a_camera_that_agrees_with_nobody_is_lost():
     blind = SEEN.score.copy()
     blind[2] = np.nan
     assert resection.lost(BASE, replace(SEEN, score=blind), LIMITS) == [2]
+
+
+def test_spectators_whom_one_camera_sees_do_not_make_it_lost():
+    """It sees the walker in a tenth of its views, and spectators behind the walker in the rest."""
+    n_rows = 9 * WALK.shape[0]
+    some = {"xy": np.full((4, n_rows, 10, 2), np.nan), "score": np.full((4, n_rows, 10), np.nan)}
+    some["xy"][2], some["score"][2] = [300.0, 200.0], 1.0
+    alone = replace(
+        SEEN, **some, height_px=np.full((4, n_rows), 100.0),
+        track=np.zeros(n_rows, dtype=int), time_s=np.arange(n_rows) / 10,
+    )  # fmt: skip
+    assert resection.lost(TRUE, joined([SEEN, alone]), LIMITS) == []
+    assert resection.lost(BASE, joined([SEEN, alone]), LIMITS) == [2]
+
+
+def test_people_are_expected_where_the_camera_looks():
+    assert resection.expected(TRUE[2], WALK)
+    assert not resection.expected(moved(TRUE[2], degrees=90.0, metres=0.0), WALK)
+    assert not resection.expected(TRUE[2], WALK[:5])
+    assert not resection.expected(TRUE[2], np.full_like(WALK, np.nan))
 
 
 def test_its_pose_is_found_by_the_person_who_moves_as_its_tracklet_does():

@@ -99,6 +99,10 @@ def test_a_wand_on_the_floor_gives_the_floor():
     with pytest.raises(InputError, match=r"wand.floor: expected two frames or more .* on one line"):
         calibrate(seen(xyz), lenses=LENSES, floor=Floor((10.0,)))
     hidden = seen(xyz)
+    hidden.xy[:, 20] = np.nan
+    with pytest.raises(InputError, match=r"times at which a camera sees it, found 20; list"):
+        calibrate(hidden, lenses=LENSES, floor=floor)
+    hidden = seen(xyz)
     hidden.xy[:, 10, 1] = np.nan
     with pytest.raises(InputError, match=r"wand.floor: expected a first frame .* list another fr"):
         calibrate(hidden, lenses=LENSES, floor=floor)

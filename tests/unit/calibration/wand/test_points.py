@@ -62,6 +62,22 @@ def test_our_table_by_times_is_read_at_the_times_of_one_camera(tmp_path):
     np.testing.assert_allclose(found.xy[1, seen, 0, 0], 10 * np.arange(20)[seen])
 
 
+def test_times_of_the_floor_may_be_those_of_any_camera(tmp_path):
+    """The camera with most times has no row while the wand lies on the floor, at 0.95 s."""
+    rows = [f"cam_a,{k / 20},{m},{10 * k},{5 * n}"
+            for k in range(60) if k not in range(15, 25) for n, m in enumerate("ab")]  # fmt: skip
+    late = [f"cam_b,{k / 10 + 0.05},{m},{20 * k + 10},{5 * n}"
+            for k in range(29) for n, m in enumerate("ab")]  # fmt: skip
+    text = "\n".join(["camera,time_s,marker,x_px,y_px", *rows, *late])
+    assert 0.95 not in read(tmp_path, text).frames
+    found = read(tmp_path, text, floor=[0.95, 2.02])
+    assert len(found.frames) == 52 and (np.diff(found.frames) > 0).all()
+    (at,), (between,) = (np.flatnonzero(found.frames == time) for time in (0.95, 2.02))
+    assert np.isnan(found.xy[0, at]).all()
+    np.testing.assert_allclose(found.xy[1, at, :, 0], 190)
+    np.testing.assert_allclose(found.xy[:, between, :, 0], 404)
+
+
 @pytest.mark.parametrize(
     ("program", "text"),
     [

@@ -29,6 +29,21 @@ def test_numbers_by_camera():
     assert world.startswith("wand: the origin is the middle of the wand's path")
 
 
+def test_wrong_markers_that_two_cameras_see_are_counted():
+    """In two frames of three, two of four cameras see the wand: no wrong marker can be placed."""
+    found = seen(swung(seconds=60))
+    order = np.random.default_rng(3).random(found.xy.shape[:2]).argsort(axis=0)
+    order[:, ::3] = 4
+    found.xy[order < 2] = np.nan
+    pairs = np.flatnonzero((order < 2).any(axis=0))[::5]
+    one = order[:, pairs].argmax(axis=0)
+    found.xy[one, pairs, 0, 1] += 150
+    percent = summary(found)["wrong_percent"]
+    n_views = np.isfinite(found.xy[..., 0]).sum(axis=(1, 2))
+    wrong = sum(percent[name] * n / 100 for name, n in zip(found.cameras, n_views, strict=True))
+    assert wrong == pytest.approx(len(pairs), rel=0.05)
+
+
 def test_a_delayed_camera_has_a_warning():
     xyz = swung(seconds=60)
     later = 0.93 * xyz[:-1] + 0.07 * xyz[1:]  # 0.014 s

@@ -5,6 +5,7 @@ people, records, wand.
 
 file_formats: read, rename, known_lenses, with_principal_points: calibrations by other programs
 chessboard: find, calibrate: a lens from pictures of a chessboard
+robust_poses: essential, relative, resected: poses of cameras by RANSAC
 point_covariance: point_covariance, sensitivity, of_columns, pseudo_inverse, mahalanobis, ellipsoid,
     centre_sigma
 """

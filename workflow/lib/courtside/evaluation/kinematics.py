@@ -172,10 +172,26 @@ def angles(points: Keypoints3D, truth: Truth) -> pd.DataFrame:
 
 
 def angles_of(points: Keypoints3D, truth: Truth, person: str, clock: Clock) -> pd.DataFrame:
-    """Compare the joint angles of one person of a source with another clock (`angles`)."""
-    at = clock.to_reference(points.time_s)
-    found = angles(replace(points, time_s=at).between(truth.time_s[0], truth.time_s[-1]), truth)
+    """Compare the joint angles of one person of a source with another clock (`angles`).
+
+    Without a common time (`no_common_time`), each angle has a row with n = 0 and no errors.
+    """
+    at = replace(points, time_s=clock.to_reference(points.time_s))
+    within = at.between(truth.time_s[0], truth.time_s[-1])
+    found = angles(within if len(within.time_s) else at.frames(np.arange(1)), truth)
     return found[found["person"] == person]
+
+
+def no_common_time(name: str, points: Keypoints3D, truth: Truth, clock: Clock) -> str:
+    """Return a line if a source has no frame at a time with truth, else an empty string."""
+    at, (first, last) = clock.to_reference(points.time_s), truth.time_s[[0, -1]]
+    if ((at >= first) & (at <= last)).any():
+        return ""
+    span = f"{at.min():.2f} to {at.max():.2f} s" if len(at) else "none"
+    return (
+        f"source {name}: expected frames from {first:.2f} to {last:.2f} s, the times with truth, "
+        f"found {span} by its clock; no angle is compared: check the clock in `sync`"
+    )
 
 
 def all_angles(points: Keypoints3D, truth: Truth) -> tuple[NDArray, NDArray]:

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.calibration.court.court import Court
 from courtside.calibration.people import resection
@@ -46,6 +47,7 @@ def recover(
         "almost none, and people do not determine its pose: check its calibration"
         for at in which
         if found[at] is cameras[at]
+        and any(_expected(cameras, at, part, limits) for part in parts.values())
     ]
     which = [at for at in which if found[at] is not cameras[at]]
     if not which:
@@ -74,7 +76,9 @@ def _lost(
         gone = [take for take in of if at in lost[take]]
         if gone and len(gone) == len(of):
             which.append(at)
-        elif gone := [take for take in gone if _shows_people(camera, takes[take], limits)]:
+        elif gone := [
+            take for take in gone if _moved(cameras, at, takes[take], parts[take], limits)
+        ]:
             others = ", ".join(take for take in of if at not in lost[take])
             lines.append(
                 f"camera {camera.name}: expected people where the other cameras see them, found "
@@ -84,11 +88,24 @@ def _lost(
     return which, lines
 
 
-def _shows_people(camera: Camera, seen: Sequence[Footage], limits: Limits) -> bool:
-    """Say whether a camera sees joints in a take: people may stay out of its picture."""
-    scores = [one.tracklets.score for one in seen if one.camera.name == camera.name]
-    sure = sum(int((np.nan_to_num(score) >= limits.score).sum()) for score in scores)
-    return sure >= resection.FEWEST
+def _moved(
+    cameras: Sequence[Camera], at: int, seen: Sequence[Footage], part: Seen, limits: Limits
+) -> bool:
+    """Say whether a camera may have moved before a take in which it agrees with no other.
+
+    It sees joints, and the other cameras' people are expected in its picture, or are there with
+    another pose. Otherwise people may stay out of its picture, and its joints are of spectators.
+    """
+    views = [one.tracklets.score for one in seen if one.camera.name == cameras[at].name]
+    sure = sum(int((np.nan_to_num(score) >= limits.score).sum()) for score in views)
+    if sure < resection.FEWEST:
+        return False
+    return _expected(cameras, at, part, limits) or bool(_of_take(cameras, at, seen, part, limits))
+
+
+def _expected(cameras: Sequence[Camera], at: int, part: Seen, limits: Limits) -> bool:
+    """Say whether a camera should see the people whom the others place."""
+    return resection.expected(cameras[at], _by_others(cameras, at, part, limits))
 
 
 def found_again(
@@ -116,10 +133,7 @@ def _of_take(cameras, at: int, seen: Sequence[Footage], part: Seen, limits: Limi
     views = [one for one in seen if one.camera.name == cameras[at].name]
     if not views:
         return None
-    without = part.xy.copy()
-    without[at] = np.nan
-    wide = (resection.WIDENED * share for share in (limits.limit, limits.fade))
-    xyz = placed(cameras, replace(part, xy=without), limits.score, *wide).xyz
+    xyz = _by_others(cameras, at, part, limits)
     people, time_s = np.unique(part.track), np.unique(part.time_s)
     tracklets = views[0].tracklets
     joints = [list(tracklets.joints).index(name) for name in skeleton.JOINTS]
@@ -127,6 +141,14 @@ def _of_take(cameras, at: int, seen: Sequence[Footage], part: Seen, limits: Limi
     xy = np.where((np.nan_to_num(score) >= limits.score)[..., None], xy, np.nan)[:, :, joints]
     persons = xyz.reshape(len(people), len(time_s), len(joints), 3)
     return resection.find(cameras[at], persons, xy, limits)
+
+
+def _by_others(cameras: Sequence[Camera], at: int, part: Seen, limits: Limits) -> NDArray:
+    """Return the joints (N, 3) m that the other cameras place."""
+    without = part.xy.copy()
+    without[at] = np.nan
+    wide = (resection.WIDENED * share for share in (limits.limit, limits.fade))
+    return placed(cameras, replace(part, xy=without), limits.score, *wide).xyz
 
 
 def associated(

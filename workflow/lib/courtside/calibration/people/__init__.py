@@ -5,11 +5,11 @@ prior: `stated`, `knowledge`: what is known of cameras before
 adjustment: `refine`, `Clicks`, `court_clicks`, `Limits`: cameras and joints adjusted together
 held_out: `score`, `verdicts`, `better`: whether cameras are better, by what the fit did not see
 knocks: `find`, `in_all`, `between`, `undone`, `row`, `lines`: cameras knocked have two poses
-resection: `lost`, `find`, `widened`, `line`: cameras that agree with nobody, found again
+resection: `lost`, `expected`, `find`, `widened`, `line`: cameras that agree with nobody
 relative_poses: `pair`, `pose`: relative poses of cameras from tracks of unknown persons
-unit: `Body`, `KnownLength`, `of_clicks`, `find`: the unit from stated heights and known lengths
+unit: `Body`, `KnownLength`, `of_clicks`, `find`, `combined`, `by_lengths`, `by_heights`: the unit
 world_frame: `floor`, `axes`, `of_shape`: the floor from feet or points, axes, covariance
 warnings: `find`: warnings about cameras from people alone
-from_nothing: `guess`, `adjust`, `summary`: cameras from people alone
+from_nothing: `guess`, `adjust`, `rescaled`, `summary`: cameras from people alone
 refinement: `refine`, `unchanged`: which cameras are taken, what was wrong, the table
 """

@@ -67,6 +67,7 @@ class Found:
     score: Score  # on held-out blocks of time
     scale: unit.Unit
     warnings: list[str]  # one line each
+    places: NDArray  # (N, 3) m: joints that define the world frame of the covariance
 
 
 def guess(
@@ -218,9 +219,23 @@ def adjust(
     cameras = [world.camera(camera) for camera in cameras]
     joints = world.points(joints)
     found = [*scale.warnings, *warnings.find(cameras, seen, joints, score, limits)]
-    covariance = world_frame.of_shape(cameras, fitted.covariance, _places(joints), scale.sigma)
+    places = _places(joints)
+    covariance = world_frame.of_shape(cameras, fitted.covariance, places, scale.sigma)
     named = camera_covariance.of_network([camera.name for camera in cameras], covariance)
-    return Found(cameras, named, score, scale, found)
+    return Found(cameras, named, score, scale, found, places)
+
+
+def rescaled(found: Found, scale: unit.Unit) -> Found:
+    """Return the result with another unit, which replaces its scale and the error of its scale."""
+    factor, names = scale.metres, [camera.name for camera in found.cameras]
+    cameras, places = [_scaled(camera, factor) for camera in found.cameras], factor * found.places
+    grown = np.ones((len(names), len(PARAMETERS)))
+    grown[:, 3:6] = factor  # the translations
+    own = found.covariance.of(names).covariance * np.outer(grown, grown)
+    shape = CameraCovariance(names, own).of_columns()
+    covariance = world_frame.of_shape(cameras, shape, places, scale.sigma)
+    named = camera_covariance.of_network(names, covariance)
+    return replace(found, cameras=cameras, covariance=named, scale=scale, places=places)
 
 
 def summary(found: Found, takes: Sequence[str]) -> dict[str, Any]:

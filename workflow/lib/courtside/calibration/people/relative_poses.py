@@ -10,11 +10,11 @@ from dataclasses import dataclass, replace
 from itertools import combinations, product
 from typing import Any
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.geometry import boxes, epipolar, rotations, triangulation
+from courtside.calibration import robust_poses
+from courtside.geometry import boxes, epipolar, triangulation
 from courtside.geometry.camera import Camera, undistort
 from courtside.study.errors import InputError
 
@@ -27,8 +27,6 @@ RIVAL = 0.9  # ASSUME: share of the best pairing's joints with which another is 
 LEAST_SINE = 0.05  # ASSUME: of the angle between rays (3 degrees), for enough parallax
 SWEEPS = 2  # over all cameras: new tracks of one camera add joints for the tracks of others
 IN_FRONT = 0.75  # ASSUME: least share of joints in front of a camera
-CONFIDENCE, ROUNDS = 0.9999, 2000  # of RANSAC
-IDEAL = np.eye(3)  # the camera matrix of points on the z = 1 plane
 
 Track = tuple[int, tuple[tuple[int, ...], ...]]  # of one person: take, and the rows of each camera
 _Person = tuple[int, set[tuple[int, int]]]  # take, and pairs of a camera and a row of this person
@@ -146,14 +144,6 @@ def _shared(a: NDArray, b: NDArray) -> tuple[NDArray, NDArray]:
     return a[at], b[at]
 
 
-def _essential(a: NDArray, b: NDArray, reach: float) -> NDArray | None:
-    """Return the essential matrix of joints (N, 2) on the z = 1 planes of two cameras."""
-    matrix, _ = cv2.findEssentialMat(
-        a, b, IDEAL, method=cv2.RANSAC, prob=CONFIDENCE, threshold=reach, maxIters=ROUNDS
-    )
-    return None if matrix is None else matrix[:3]
-
-
 def _agreeing(
     matrix: NDArray, takes: Sequence[Take], rays: Rays, two: tuple[int, int]
 ) -> tuple[list[tuple[int, int, int]], int]:
@@ -190,9 +180,10 @@ def _paired(takes: Sequence[Take], rays: Rays, two: tuple[int, int]) -> Paired |
         limit = _reach(a)[:, None] / 2 + _reach(b) / 2
         for i, j in product(*(take.longest(camera, MOST_ROWS) for camera in two)):
             one, other = _shared(a[i], b[j])
-            matrix = _essential(one, other, limit[i, j]) if len(one) >= LEAST_OVERLAP else None
-            if matrix is not None:
-                found.append(_agreeing(matrix, takes, rays, two))
+            if len(one) < LEAST_OVERLAP:
+                continue
+            if estimated := robust_poses.essential(one, other, float(limit[i, j])):
+                found.append(_agreeing(estimated[0], takes, rays, two))
     found.sort(key=lambda one: -one[1])
     if not found or not found[0][0]:
         return None
@@ -228,15 +219,16 @@ def _related(rays: Rays, pair: Paired) -> _Related | None:
     reach = float(np.median([_reach(rays[t][a])[i] / 2 + _reach(rays[t][b])[j] / 2
                              for t, i, j in pair.rows]))  # fmt: skip
     every = np.linspace(0, len(one) - 1, min(len(one), 2 * SAMPLE)).astype(int)
-    matrix = _essential(one[every], other[every], reach)
-    if matrix is None:
+    estimated = robust_poses.essential(one[every], other[every], reach)
+    if estimated is None:
         return None
+    matrix, _ = estimated
     near = np.abs(epipolar.distance_px(matrix, one, other)) <= reach
     if not near.any():
         return None
-    _, rotation, shift, _ = cv2.recoverPose(matrix, one[near], other[near], IDEAL)
-    sine = np.median(epipolar.ray_sines(rotation, one[near], other[near]))
-    return _Related(pair, np.column_stack([rotation, shift]), float(sine))
+    pose, _ = robust_poses.relative(matrix, one[near], other[near])
+    sine = np.median(epipolar.ray_sines(pose[:, :3], one[near], other[near]))
+    return _Related(pair, pose, float(sine))
 
 
 def _check(cameras: Sequence[Camera], posed: list[_Related]) -> None:
@@ -334,16 +326,10 @@ def _posed(xyz: NDArray, rays: NDArray, reach: float) -> tuple[int, NDArray | No
     at = np.argwhere(np.isfinite(xyz).all(axis=-1) & np.isfinite(rays[..., 0]))
     if len(at) < LEAST_OVERLAP // 2:
         return 0, None
-    place, ray = xyz[_thinned(at)], rays[_thinned(at)]
-    fine, vector, shift, near = cv2.solvePnPRansac(
-        place, ray, IDEAL, None, iterationsCount=ROUNDS, confidence=CONFIDENCE,
-        reprojectionError=2 * float(reach), flags=cv2.SOLVEPNP_SQPNP,
-    )  # fmt: skip
-    if not fine or near is None:
-        return 0, None
-    pose = np.column_stack([rotations.rotation_from_rodrigues(vector.ravel()), shift])
-    depth = place[near[:, 0]] @ pose[2, :3] + pose[2, 3]
-    return (len(near), pose) if (depth > 0).mean() >= IN_FRONT else (0, None)
+    reached = robust_poses.resected(
+        xyz[_thinned(at)], rays[_thinned(at)], 2 * float(reach), IN_FRONT
+    )
+    return reached or (0, None)
 
 
 def _grown(

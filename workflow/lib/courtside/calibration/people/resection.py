@@ -11,7 +11,7 @@ from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.views import Seen, placed
 from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance
 from courtside.geometry import rotations
-from courtside.geometry.camera import Camera, project
+from courtside.geometry.camera import Camera, in_picture, project
 
 # ASSUME: a share of a camera's views that agree with the others, below which its pose is wrong:
 # poses off by 0.3 degrees and 3 cm leave a half or more.
@@ -20,17 +20,32 @@ FEWEST = 60  # joints seen, from some five rows
 MOST = 400  # more points say no more about a pose that is then adjusted
 WIDENED = 2.0  # times the limit of views: the other cameras, too, may be a little wrong
 AGREE = 0.5  # ASSUME: of the joints of the right person, with a wrong lens, too
+# ASSUME: largest residual over the movement of a joint in the picture, both medians: some pose fits
+# a spectator who sits as well as a player who stands.
+STILL = 0.5
 ITERATIONS = 300
 # ASSUME: standard deviations of a camera found again: its lens, too, may be that of another zoom.
 WIDE = {"rotation": np.radians(5), "place": 1.0, "focal": 0.1}
 
 
 def lost(cameras: Sequence[Camera], seen: Seen, limits: Limits) -> list[int]:
-    """Return the cameras of whose views next to none agree with those of the others."""
+    """Return the cameras of whose views next to none agree with those of the others.
+
+    Views of joints that no other camera sees are not counted, because they cannot agree: they may
+    show spectators. A camera with few other views counts as lost.
+    """
     accepted = placed(cameras, seen, limits.score, limits.limit, limits.fade).accepted
     usable = np.nan_to_num(seen.flat()[1]) >= limits.score
-    share = (accepted & usable).sum(axis=1) / np.maximum(usable.sum(axis=1), 1)
+    shared = usable & (usable.sum(axis=0) >= 2)
+    share = (accepted & shared).sum(axis=1) / np.maximum(shared.sum(axis=1), 1)
     return [int(at) for at in np.flatnonzero(share < LOST)]
+
+
+def expected(camera: Camera, xyz: NDArray) -> bool:
+    """Say whether a camera should see people whose joints (..., 3) m the other cameras place."""
+    known = np.isfinite(xyz).all(axis=-1)
+    inside = in_picture(camera, project(camera, xyz[known])).sum()
+    return bool(inside >= max(FEWEST, LOST * known.sum()))
 
 
 def find(
@@ -40,7 +55,8 @@ def find(
 
     `xyz` (K, T, J, 3) m are joints of persons, `tracklets` (P, T, J, 2) px those that the camera
     sees at the same times; NaN where missing. Each tracklet is tried as each person. Return the
-    camera for the pair with most agreeing joints, and how many agree.
+    camera for the pair with most agreeing joints, and how many agree. The tracklet must move as the
+    person does: residuals are at most `STILL` of its movement.
     """
     best: tuple[Camera, int] | None = None
     for row in tracklets:
@@ -54,7 +70,9 @@ def find(
             if known.sum() < FEWEST:
                 continue
             found = _pose(camera, person[known], row[known], limit_px)
-            if found and found[1] >= AGREE * known.sum() and (not best or found[1] > best[1]):
+            if not found or found[1] < AGREE * known.sum() or (best and found[1] <= best[1]):
+                continue
+            if _follows(found[0], person, row):
                 best = found
     return best
 
@@ -77,6 +95,15 @@ def _pose(camera: Camera, xyz: NDArray, xy: NDArray, limit_px: float) -> tuple[C
     found = replace(camera, cam_from_world=pose)
     off_px = np.linalg.norm(project(found, xyz) - xy, axis=1)
     return found, int((off_px <= limit_px).sum())
+
+
+def _follows(camera: Camera, xyz: NDArray, xy: NDArray) -> bool:
+    """Say whether joints (T, J, 2) px move in the picture as those of a person (T, J, 3) m do."""
+    known = np.isfinite(xyz).all(axis=-1) & np.isfinite(xy).all(axis=-1)
+    seen = np.ma.masked_where(np.broadcast_to(~known[..., None], xy.shape), xy)
+    moved_px = np.linalg.norm((seen - np.ma.median(seen, axis=0)).filled(np.nan), axis=-1)
+    off_px = np.linalg.norm(project(camera, xyz) - xy, axis=-1)
+    return bool(np.nanmedian(off_px[known]) <= STILL * np.nanmedian(moved_px[known]))
 
 
 def widened(

@@ -10,6 +10,7 @@ from itertools import combinations, product
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from courtside.calibration import point_covariance
@@ -20,22 +21,24 @@ from courtside.geometry.triangulation import triangulate_all
 from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
 
-# ASSUME: length of leg and trunk by BlazePose heavy over the height: 0.722 +- 0.006 for the four
-# persons of players-dev; 0.715 by BlazePose full. Anatomical lengths are longer (0.78, Winter 2009,
-# fig. 4.1).
-OF_HEIGHT = 0.722
-OF_HEIGHT_SIGMA = 0.01  # ASSUME: between persons, share of the length
+# ASSUME: length of leg and trunk by BlazePose heavy with a mirrored second look, over the height:
+# 0.728, 0.727 (women), 0.714, 0.715 (men) for the persons of players-dev by their true cameras.
+# Anatomical lengths are longer (0.78, Winter 2009, fig. 4.1).
+OF_HEIGHT = 0.721
+OF_HEIGHT_SIGMA = 0.011  # between these persons, share of the length
+LEARNED_FROM = 4  # persons: the mean of so few is uncertain, too
 NETWORK_SIGMA = 0.01  # ASSUME: between networks, the same for all persons
 STATED_SIGMA_M = 0.01  # of a height stated to the centimetre, with shoes or without
 MEASURED_SIGMA = 0.01  # ASSUME: of the length of one track, share
 # ASSUME: constant errors of a network bend cameras: with exact clicks, the error of a line of 6.1 m
 # was 0.5 to 0.9 % in eight calibrations from players-dev.
-BEND_SIGMA = 0.008  # of a known length, share
+BEND_SIGMA = 0.008  # of a known length, share; common to all lengths
 KNOWN_SIGMA_M = 0.003  # ASSUME: of a known length: ends of painted lines, rackets, poles
 LEAST_FRAMES = 20  # ASSUME: for the length of a body
 SURE = 2.0  # standard deviations
 NOBODY = 3.0  # standard deviations: cost of a track of no person, and of a person without a track
 HEIGHTS = "stated heights"
+MOST_NAMED = 4  # lengths that a line names
 MOST_WAYS = 4096  # assignments of tracks to persons in one take; only the longest tracks are used
 MOST_PERSONS = 5  # of a take with assignments; with more, tracks are ordered by length
 ROUNDS = 4  # of assignment and unit, in turn
@@ -70,7 +73,8 @@ class KnownLength:
     name: str
     length_m: float
     xy: NDArray  # (C, 2, 2): both ends in each camera, px, NaN where not clicked
-    click_sigma_px: float  # of a click, per axis, in a picture of 3840 px width
+    click_sigma_px: float  # scatter of a click, per axis, in a picture of 3840 px width
+    click_bias_px: float = 0.0  # what all clicks in one picture have in common, likewise
     on_floor: bool = False  # whether both ends lie on the floor
 
 
@@ -120,9 +124,8 @@ def of_clicks(
                 "more"
             )
         ends = xy[:, [list(points).index(end) for end in one["points"]]]
-        sigma_px = float(np.hypot(click_sigma_px, click_bias_px))
-        on_floor = one.get("on_floor", False)
-        found.append(KnownLength(name, one["length_m"], ends, sigma_px, on_floor))
+        click = click_sigma_px, click_bias_px
+        found.append(KnownLength(name, one["length_m"], ends, *click, one.get("on_floor", False)))
     return found
 
 
@@ -133,36 +136,79 @@ def find(
     known: Sequence[KnownLength] = (),
     shape: NDArray | None = None,
 ) -> Unit:
-    """Return the unit from stated heights and known lengths, weighted by their variances.
+    """Return the unit from stated heights and known lengths, weighted by their covariance.
 
     `shape` (K, K) is the covariance of the cameras' columns without their scale. Heights are not
     needed if a length is known. Contradictions become warnings.
     """
-    each = [by_length(cameras, one, shape) for one in known]
+    each, covariance = by_lengths(cameras, known, shape)
     takes = _takes(bodies, heights_m)
     if takes or not each:
         each.append(by_heights(bodies, heights_m))
+        covariance = scipy.linalg.block_diag(covariance, each[-1].sigma ** 2)
+    return combined(each, covariance)
+
+
+def combined(each: Sequence[Unit], covariance: NDArray) -> Unit:
+    """Return one unit from several, `covariance` (U, U) of their logarithms.
+
+    The weights are those of least squares, without negative ones.
+    """
     if len(each) == 1:
         return each[0]
-    metres, sigma = (np.array([getattr(one, key) for one in each]) for key in ("metres", "sigma"))
-    weight = sigma**-2 / (sigma**-2).sum()
-    unit = float(np.exp(weight @ np.log(metres)))
-    apart = np.log(metres / unit)
+    weight = np.maximum(np.linalg.solve(covariance, np.ones(len(each))), 0.0)
+    weight /= weight.sum()
+    unit = float(np.exp(weight @ np.log([one.metres for one in each])))
     warnings = [
         f"{one.by}: expected a change of all lengths by {SURE * 100 * one.sigma:.1f} % at most if "
-        f"only these define the scale, found {100 * np.expm1(off):+.1f} %; check them against "
-        f"{each[int(weight.argmax())].by}"
-        for one, off in zip(each, apart, strict=True)
-        if abs(off) > SURE * one.sigma
+        f"only these define the scale, found {100 * (one.metres / unit - 1):+.1f} %; check them "
+        f"against {each[int(weight.argmax())].by}"
+        for one in each
+        if abs(np.log(one.metres / unit)) > SURE * one.sigma
     ]
     by = ", ".join(one.by for one in each)
-    return Unit(unit, float((sigma**-2).sum() ** -0.5), by, tuple(warnings))
+    if len(each) > MOST_NAMED:
+        by = f"{each[0].by} and {len(each) - 1} others"
+    return Unit(unit, float(np.sqrt(weight @ covariance @ weight)), by, tuple(warnings))
 
 
 def by_length(cameras: Sequence[Camera], known: KnownLength, shape: NDArray | None = None) -> Unit:
-    """Return the unit from one known length; arguments are as for `find`.
+    """Return the unit from one known length; arguments are as for `find`."""
+    return by_lengths(cameras, [known], shape)[0][0]
 
-    Raises `InputError` if fewer than two cameras see one of the ends.
+
+def by_lengths(
+    cameras: Sequence[Camera], known: Sequence[KnownLength], shape: NDArray | None = None
+) -> tuple[list[Unit], NDArray]:
+    """Return the units from known lengths, and the covariance (L, L) of their logarithms.
+
+    They have in common: the error of the cameras' shape, the bias of the clicks in a picture, the
+    bend by a network, and the error of the length of one object at several places: known lengths
+    of equal size are taken as such. Raises `InputError` if fewer than two cameras see an end.
+    """
+    if not known:
+        return [], np.zeros((0, 0))
+    each = [_share(cameras, one, shape) for one in known]
+    own, scatter, bias, by_column = (list(part) for part in zip(*each, strict=True))
+    covariance = np.diag(scatter) + np.stack(bias) @ np.stack(bias).T + BEND_SIGMA**2
+    if shape is not None:
+        covariance += np.stack(by_column) @ shape @ np.stack(by_column).T
+    length_m = np.array([one.length_m for one in known])
+    same = length_m[:, None] == length_m
+    covariance += same * KNOWN_SIGMA_M**2 / np.outer(length_m, length_m)
+    sigma = np.sqrt(np.diag(covariance))
+    ratio = length_m / own
+    units = [Unit(float(r), float(s), k.name) for r, s, k in zip(ratio, sigma, known, strict=True)]
+    return units, covariance
+
+
+def _share(
+    cameras: Sequence[Camera], known: KnownLength, shape: NDArray | None
+) -> tuple[float, float, NDArray, NDArray]:
+    """Return a known length by the cameras, and shares of it.
+
+    These are its variance by the scatter of clicks, its change by the bias of the clicks in each
+    picture (2 C,), of one standard deviation, and its change with each column of the cameras (K,).
     """
     ends = triangulate_all(cameras, known.xy)
     along = ends[1] - ends[0]
@@ -173,19 +219,23 @@ def by_length(cameras: Sequence[Camera], known: KnownLength, shape: NDArray | No
             "an end that cannot be triangulated; check its clicks"
         )
     n_clicks = known.xy.size
-    steps = np.zeros((n_clicks, *known.xy.shape))
-    sigma_px = [click_sigma(known.click_sigma_px, camera.size) for camera in cameras]
-    np.fill_diagonal(steps.reshape(n_clicks, -1), np.repeat(sigma_px, known.xy[0].size))
+    steps = np.eye(n_clicks).reshape(n_clicks, *known.xy.shape)  # 1 px each
     moved = (known.xy + steps).transpose(1, 0, 2, 3).reshape(len(cameras), -1, 2)
     moved_ends = triangulate_all(cameras, moved).reshape(n_clicks, 2, 3)
-    variance = ((np.linalg.norm(moved_ends[:, 1] - moved_ends[:, 0], axis=1) - own) ** 2).sum()
+    by_click = np.linalg.norm(moved_ends[:, 1] - moved_ends[:, 0], axis=1) / own - 1
+    by_click = np.nan_to_num(by_click.reshape(known.xy.shape))  # (C, 2, 2): camera, end, axis
+    sizes = [camera.size for camera in cameras]
+    scatter, bias = (
+        np.array([click_sigma(px, size) for size in sizes])[:, None]
+        for px in (known.click_sigma_px, known.click_bias_px)
+    )
+    variance = float(((by_click * scatter[:, None]) ** 2).sum())
+    by_bias = (by_click.sum(axis=1) * bias).ravel()
+    by_column = np.zeros(0)
     if shape is not None:
         one, other = point_covariance.sensitivity(selection.of_cameras(cameras), ends)
-        by_column = along / own @ (other - one)
-        variance += by_column @ shape @ by_column
-    shares = [np.sqrt(variance) / own, KNOWN_SIGMA_M / known.length_m, BEND_SIGMA]
-    sigma = float(np.linalg.norm(shares))
-    return Unit(known.length_m / own, sigma, known.name)
+        by_column = along / own**2 @ (other - one)
+    return own, variance, by_bias, by_column
 
 
 def by_heights(bodies: Sequence[Body], heights_m: Sequence[Sequence[float | None]]) -> Unit:
@@ -211,7 +261,8 @@ def by_heights(bodies: Sequence[Body], heights_m: Sequence[Sequence[float | None
     cost, unit, ratios = min(found, key=lambda one: one[0])
     persons = sum(max(list(one).count(height) for one in heights_m) for height in ratios)
     of_height = np.hypot(OF_HEIGHT_SIGMA, STATED_SIGMA_M / min(ratios))
-    sigma = float(np.hypot(of_height / np.sqrt(persons), NETWORK_SIGMA))
+    learned = OF_HEIGHT_SIGMA / np.sqrt(LEARNED_FROM)
+    sigma = float(np.linalg.norm([of_height / np.sqrt(persons), learned, NETWORK_SIGMA]))
     rivals = [np.expm1(one[1] - unit) for one in found if one[0] < cost + SURE**2]
     warnings = [*_rivals(rivals, sigma), *_disagreeing(ratios, SURE * np.sqrt(2) * of_height)]
     if persons == 1:

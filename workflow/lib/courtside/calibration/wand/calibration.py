@@ -44,7 +44,7 @@ class Found:
 
 @dataclass(frozen=True, eq=False)
 class Floor:
-    """Frames in which the wand lies on the floor, and the height of the markers' centres then."""
+    """Frames or times at which the wand lies on the floor, and the height of the markers then."""
 
     frames: tuple[float, ...]
     above_m: float = 0.0
@@ -110,11 +110,12 @@ def _world(
         places = places[np.isfinite(places).all(axis=1)]
         at = np.linspace(0, len(places) - 1, min(len(places), MOST_PLACES)).astype(int)
         return world.of_cameras(xyz, cameras), places[at], "the cameras' own"
-    missing = [frame for frame in floor.frames if frame not in seen.frames]
+    filled = seen.frames[np.isfinite(seen.xy[..., 0]).any(axis=(0, 2))]
+    missing = [frame for frame in floor.frames if frame not in filled]
     if missing:
         raise InputError(
-            f"wand.floor: expected frames of the wand's file, found {missing[0]:g}; list frames in "
-            "which the wand lies on the floor"
+            f"wand.floor: expected frames of the wand's file, or times at which a camera sees it, "
+            f"found {missing[0]:g}; list frames in which the wand lies on the floor"
         )
     lying = xyz[[int(np.flatnonzero(seen.frames == frame)[0]) for frame in floor.frames]]
     places = lying.reshape(-1, 3)

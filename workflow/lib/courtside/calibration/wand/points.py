@@ -80,7 +80,7 @@ def read(
         at = [order.index(name) for name in names]
         found = Seen(tuple(names), np.arange(theirs.shape[1], dtype=float), theirs[at])
     else:
-        found = _ours(path, wand, names)
+        found = _ours(path, wand, names, given.get("floor", ()))
     _check_cameras(path, names, {
         name for name, xy in zip(found.cameras, found.xy, strict=True) if np.isfinite(xy).any()
     })  # fmt: skip
@@ -111,7 +111,7 @@ def _check_cameras(path: StrPath, names: Mapping[str, str], seen: Collection[str
             )
 
 
-def _ours(path: StrPath, wand: Wand, names: Mapping[str, str]) -> Seen:
+def _ours(path: StrPath, wand: Wand, names: Mapping[str, str], floor: Iterable[float]) -> Seen:
     rows = table(path, OURS, TIMES)
     if not rows:
         raise InputError(f"{path}: expected rows of a wand's markers, found none; export it again")
@@ -139,7 +139,7 @@ def _ours(path: StrPath, wand: Wand, names: Mapping[str, str]) -> Seen:
             )
         xy[at] = [number(where, key, row[key]) for key in OURS[2:]]
     _check_cameras(path, names, [name for name, places in each.items() if places])
-    return _at_frames(each) if times == ["frame"] else _at_times(each)
+    return _at_frames(each) if times == ["frame"] else _at_times(each, floor)
 
 
 def _check_markers(path: StrPath, wand: Wand, found: Sequence[str]) -> None:
@@ -158,10 +158,13 @@ def _at_frames(each: Mapping[str, Mapping[float, NDArray]]) -> Seen:
     return Seen(tuple(each), np.array(frames), np.array(xy))
 
 
-def _at_times(each: Mapping[str, Mapping[float, NDArray]]) -> Seen:
-    """Return markers at the times of the camera with most times, linearly interpolated."""
+def _at_times(each: Mapping[str, Mapping[float, NDArray]], floor: Iterable[float]) -> Seen:
+    """Return markers at the times of the camera with most times, linearly interpolated.
+
+    The times at which the wand lies on the floor are added: they may be of any camera.
+    """
     most = max(each.values(), key=len)
-    times = np.array(sorted(most))
+    times = np.union1d(list(most), [float(time) for time in floor])
     xy = []
     for places in each.values():
         own = np.array(sorted(places))

@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle.problem import IMAGE, LENS, POSE
@@ -22,12 +23,14 @@ def summary(found: Found, wand: Wand, seen: Seen, known: set[str]) -> dict[str, 
     """Return the fit of the markers, and warnings; `known` are the cameras with given lenses.
 
     By camera: number of frames, `rms_px` per axis without wrong markers, the share of these
-    (`wrong_percent`), standard deviations of the position (mm) and of an estimated lens, and the
-    delay in frames (`late_frames`). `length_mm` is the error of the wand's length where two cameras
-    or more see both ends: median (`mean`), standard deviation, number.
+    (`wrong_percent`) of the markers that another camera sees, standard deviations of the position
+    (mm) and of an estimated lens, and the delay in frames (`late_frames`). `length_mm` is the error
+    of the wand's length where two cameras or more see both ends: median (`mean`), standard
+    deviation, number.
     """
     off = found.error_px
     fine = np.abs(off).max(axis=-1) < WRONG_SIGMAS * found.adjusted.sigma_px
+    wrong, shared = _wrong(found, seen, fine)
     late, late_sigma = timing.delays(found.cameras, seen, found.xyz)
     report: dict[str, Any] = {"warnings": [], "world": found.world}
     report |= {"sigma_px": found.adjusted.sigma_px, "covariance_factor": found.adjusted.factor}
@@ -35,12 +38,11 @@ def summary(found: Found, wand: Wand, seen: Seen, known: set[str]) -> dict[str, 
     first = IMAGE * len(found.cameras)
     for c, camera in enumerate(found.cameras):
         pose, lens = IMAGE * c + np.arange(len(POSE)), first + len(LENS) * c
-        both = np.isfinite(off[c, ..., 0])
         sigma = np.sqrt(np.diag(found.covariance)[lens : lens + len(LENS)])
         one = {
             "n_frames": int(np.isfinite(seen.xy[c, ..., 0]).any(axis=1).sum()),
             "rms_px": float(np.sqrt(np.mean(off[c][fine[c]] ** 2))),
-            "wrong_percent": 100 * float((both & ~fine[c]).sum() / max(int(both.sum()), 1)),
+            "wrong_percent": 100 * float(wrong[c].sum() / max(int(shared[c].sum()), 1)),
             "place_sigma_mm": 1000
             * point_covariance.centre_sigma(camera, found.covariance[np.ix_(pose, pose)]),
             "late_frames": float(late[c]),
@@ -52,6 +54,20 @@ def summary(found: Found, wand: Wand, seen: Seen, known: set[str]) -> dict[str, 
             report.setdefault(key, {})[camera.name] = value
     report["warnings"] = _warnings(found, wand, seen, known, late, late_sigma)
     return report
+
+
+def _wrong(found: Found, seen: Seen, fine: NDArray) -> tuple[NDArray, NDArray]:
+    """Return how much each marker (C, F, M) is wrong, 0 to 1, and which ones another camera sees.
+
+    If no two of n cameras agree on a marker, n - 1 of them or more see another spot. Which ones is
+    unknown, so each counts (n - 1) / n. So does each of two cameras that agree badly.
+    """
+    known = np.isfinite(seen.xy[..., 0])
+    count = known.sum(axis=0)
+    shared = known & (count >= 2)
+    single = np.isfinite(found.xyz[..., 0]) & (count > 2)
+    disagreeing = (known & ~fine).any(axis=0) * (count - 1) / np.maximum(count, 1)
+    return np.where(shared, np.where(single, ~fine, disagreeing), 0.0), shared
 
 
 def _length_mm(found: Found, wand: Wand) -> dict[str, float | int]:

@@ -9,13 +9,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, product
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.calibration import robust_poses
 from courtside.calibration.wand.points import Seen, Wand
 from courtside.geometry import camera as camera_models
-from courtside.geometry import epipolar, rotations
+from courtside.geometry import epipolar
 from courtside.geometry.camera import Camera, undistort
 from courtside.geometry.triangulation import triangulate_robust
 from courtside.study.errors import InputError
@@ -32,8 +32,6 @@ LEAST_AGREEING = 0.3  # ASSUME: the same of a further camera, whose lens may be 
 STARTS, ENOUGH = 6, 0.8  # first pairs that are tried; share of markers that ends the search
 LEAST_SINE = 0.05  # ASSUME: of the angle between rays (3 degrees), for enough parallax
 PAIRS = 3  # pairs of cameras that are tried, those with most common frames
-CONFIDENCE, ROUNDS = 0.9999, 2000  # of RANSAC
-IDEAL = np.eye(3)  # the camera matrix of points on the z = 1 plane
 HOW = "move it through the views of all cameras, near and far, high and low, in all directions"
 
 
@@ -181,16 +179,13 @@ def _related(wand: Wand, xy: NDArray, lenses: Sequence[Camera]) -> _Pair | None:
     if len(at) < FEWEST_FRAMES:
         return None
     limit = float(np.mean([_tolerance(camera) for camera in lenses]))
-    matrix, inside = cv2.findEssentialMat(
-        one, other, IDEAL, method=cv2.RANSAC, prob=CONFIDENCE, threshold=limit, maxIters=ROUNDS
-    )
-    if matrix is None or inside.sum() < LEAST_SHARE * len(at):
+    estimated = robust_poses.essential(one, other, limit)
+    if estimated is None or estimated[1].sum() < LEAST_SHARE * len(at):
         return None
-    inside = inside.ravel().astype(bool)
-    _, rotation, shift, front = cv2.recoverPose(matrix[:3], one[inside], other[inside], IDEAL)
-    if (front > 0).mean() < LEAST_SHARE:
+    matrix, inside = estimated
+    pose, in_front = robust_poses.relative(matrix, one[inside], other[inside])
+    if in_front < LEAST_SHARE:
         return None
-    pose = np.column_stack([rotation, shift])
     pair = lenses[0], replace(lenses[1], cam_from_world=pose)
     lengths = _lengths(triangulated(pair, xy[:, :: max(1, xy.shape[1] // SAMPLE)]))
     if len(lengths) < FEWEST_FRAMES // 2:
@@ -201,7 +196,7 @@ def _related(wand: Wand, xy: NDArray, lenses: Sequence[Camera]) -> _Pair | None:
     return _Pair(
         (lenses[0], replace(lenses[1], cam_from_world=pose)),
         int(inside.sum()),
-        float(np.median(epipolar.ray_sines(rotation, one[inside], other[inside]))),
+        float(np.median(epipolar.ray_sines(pose[:, :3], one[inside], other[inside]))),
         float(np.median(np.abs(lengths - typical))) / typical,
     )
 
@@ -237,13 +232,8 @@ def _resected(candidates: Sequence[Camera], xy: NDArray, xyz: NDArray) -> tuple[
         return best
     place, px = xyz[tuple(at.T)], xy[tuple(at.T)]
     for camera in candidates:
-        fine, vector, shift, near = cv2.solvePnPRansac(
-            place, undistort(camera, px), IDEAL, None, iterationsCount=ROUNDS,
-            confidence=CONFIDENCE, reprojectionError=_tolerance(camera), flags=cv2.SOLVEPNP_SQPNP,
-        )  # fmt: skip
-        if not fine or near is None or len(near) <= best[0]:
-            continue
-        pose = np.column_stack([rotations.rotation_from_rodrigues(vector.ravel()), shift])
-        if (place[near[:, 0]] @ pose[2, :3] + pose[2, 3] > 0).mean() > LEAST_SHARE:
-            best = len(near), len(at), replace(camera, cam_from_world=pose)
+        rays, limit = undistort(camera, px), _tolerance(camera)
+        found = robust_poses.resected(place, rays, limit, LEAST_SHARE)
+        if found and found[0] > best[0]:
+            best = found[0], len(at), replace(camera, cam_from_world=found[1])
     return best
