@@ -100,7 +100,7 @@ def test_a_source_without_a_t_pose_stops_the_take_with_the_times_of_the_others()
 def test_without_any_t_pose_the_line_asks_for_one():
     _, _, happened = take()
     none = {source: Events([], []) for source in happened}
-    with pytest.raises(InputError, match=r"d415-rgb none; mocopi none; begin and end the take wit"):
+    with pytest.raises(InputError, match=r"d415-rgb none; mocopi none; begin and end the"):
         common.common(none, CLOCKS)
 
 

@@ -86,8 +86,8 @@ class _Session:
         """Yield what is worth a look."""
         for name, take in self._session.takes.items():
             said = lengths.remarks(self._takes[name], synchronised=take.synchronised)
-            said = (*said, *stated_times.remarks(take, self._takes[name]))
-            every = (*said, *self._keypoints[name][1])
+            times = stated_times.remarks(take, self._takes[name])
+            every = (*said, *times, *self._keypoints[name][1])
             yield from (f"{self._session.file}: takes.{name}: {line}" for line in every)
 
     def _take_faults(self, name: str, take: Take) -> Iterator[str]:

@@ -173,14 +173,16 @@ def _other(pictures: Sequence[NDArray], board: Board) -> str:
 
 def _forms(board: Board) -> dict[str, Board]:
     """Return the board as it would be if one key of the session were wrong, by that key."""
-    forms = {f"inverted: {str(not board.inverted).lower()}": {"inverted": not board.inverted}}
+    forms = {
+        f"inverted: {str(not board.inverted).lower()}": replace(board, inverted=not board.inverted)
+    }
     columns, rows = board.squares
     counts = {"charuco": [(rows, columns)], "chessboard": [(columns + 1, rows + 1)]}
     if board.kind == "charuco":
-        forms[f"legacy: {str(not board.legacy).lower()}"] = {"legacy": not board.legacy}
+        forms[f"legacy: {str(not board.legacy).lower()}"] = replace(board, legacy=not board.legacy)
     for squares in counts.get(board.kind, []):  # exchanged; inner corners in place of squares
-        forms[f"squares: {list(squares)}"] = {"squares": squares}
-    return {words: replace(board, **change) for words, change in forms.items()}
+        forms[f"squares: {list(squares)}"] = replace(board, squares=squares)
+    return forms
 
 
 def _together(found: Mapping[str, list], sizes: dict[str, tuple[int, int]]) -> Corners:
