@@ -91,8 +91,17 @@ def test_no_common_t_pose_is_an_error_with_the_times():
 def test_a_source_without_a_t_pose_stops_the_take_with_the_times_of_the_others():
     _, _, happened = take()
     happened["mocopi"] = Events([], [])
-    with pytest.raises(InputError, match=r"found T-poses at .*: d415-rgb \d\.\d\d, .*; mocopi ;"):
+    with pytest.raises(
+        InputError, match=r"found T-poses at .*: d415-rgb \d\.\d\d, .*; mocopi none; film all"
+    ):
         common.common(happened, CLOCKS)
+
+
+def test_without_any_t_pose_the_line_asks_for_one():
+    _, _, happened = take()
+    none = {source: Events([], []) for source in happened}
+    with pytest.raises(InputError, match=r"d415-rgb none; mocopi none; begin and end the"):
+        common.common(none, CLOCKS)
 
 
 def test_the_counterpart_has_the_frame_of_the_same_t_pose():

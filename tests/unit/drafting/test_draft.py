@@ -175,6 +175,18 @@ def test_devices_and_left_over_files_are_told():
     assert '"data/north/chess.x"' in text
 
 
+def test_files_that_are_not_used_are_told_at_once():
+    """Otherwise a video that is cut short is one camera less, and nobody notices."""
+    bad = recording("data/north/a_back.mp4", "unusable", note="expected a video,\nfound none")
+    more = [recording(f"data/north/{at}.mp4", "unusable", note="cut short") for at in range(6)]
+    said = session_draft.to_check(draft(*TAKE, bad)[0], "n.yaml", "c.csv", "s.yaml")
+    assert said[1] == "Not used: data/north/a_back.mp4: expected a video, found none"
+    said = session_draft.to_check(draft(*TAKE, bad, *more)[0], "n.yaml", "c.csv", "s.yaml")
+    assert said[6] == "Not used: 2 more files"
+    said = session_draft.to_check(draft(*TAKE)[0], "n.yaml", "c.csv", "s.yaml")
+    assert not any("Not used" in line for line in said)
+
+
 def test_a_folder_without_recordings_says_what_is_there():
     with pytest.raises(
         InputError, match=r"data/north: expected videos, .* found none; put"

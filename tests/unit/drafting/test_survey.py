@@ -87,6 +87,25 @@ def test_folders_of_keypoints_are_found(tmp_path):
     assert "points, found nobody;" in found["pose/nobody_json"].note
 
 
+@pytest.mark.parametrize("beside", [None, "left.mp4", "more"])
+def test_photos_in_the_folder_itself_are_a_walk_if_nothing_else_is_there(tmp_path, beside):
+    folder = tmp_path / "data" / "door"
+    folder.mkdir(parents=True)
+    for number in range(3):
+        cv2.imwrite(str(folder / f"IMG_{number}.png"), video_files.draw(number, (160, 120)))
+    if beside == "left.mp4":
+        video_files.write(str(folder / beside), n=5, rate=10)
+    elif beside:
+        (folder / beside).mkdir()
+    found = survey.survey(folder, root=tmp_path)
+    if beside is None:
+        (photos,) = found
+        assert (photos.kind, photos.n_photos, photos.path) == ("photos", 3, "data/door")
+        assert photos.parts == ("door",)
+    else:
+        assert [one.kind for one in found if one.kind != "video"] == ["photo"] * 3
+
+
 def test_a_folder_elsewhere_gives_absolute_paths(gym, tmp_path):
     found = survey.survey(gym / "data" / "My Gym", root=tmp_path)
     assert all(

@@ -110,6 +110,18 @@ def test_other_faults_are_one_line():
         )
 
 
+def test_a_camera_whose_corners_fit_much_worse_is_named():
+    places = boards_made.places(30, 5)
+    seen = boards_made.seen(BOARD, RIG, places, 0.2, 1)
+    noise = np.random.default_rng(1).normal(0, 2.5, seen.xy.shape)
+    seen = replace(seen, xy=seen.xy + np.where(seen.camera[:, None] == 1, noise, 0.0))
+    found = adjustment.calibrate(BOARD, seen, SIZES, floor="000")
+    told = adjustment.summary(found, seen, BOARD, stated=True)["warnings"]
+    (line,) = (line for line in told if line.startswith("camera "))
+    assert line.startswith(f"camera {RIG[1].name}: its corners fit by 2.")
+    assert "give `lenses`" in line
+
+
 def test_cameras_that_do_not_film_at_one_time_are_refused():
     places = boards_made.places(30, 5)
     seen = boards_made.seen(BOARD, RIG, places, 0.2, 1)

@@ -1,5 +1,7 @@
 """Corners of a board: from folders of pictures, and from tables of our own and Caliscope's form."""
 
+import re
+
 import cv2
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from fixtures.cameras import boards_made
 from fixtures.recordings.real_data import REAL, needs_real
 
 BOARD = Board.of(boards_made.CHARUCO)
+CHESS = {"kind": "chessboard", "squares": [8, 5], "square_m": 0.1}
 XY = REAL / "charuco-4cams" / "calibration" / "extrinsic" / "xy.csv"
 NAMES = {"left": "left", "right": "cam_1"}
 TABLE = "picture,camera,corner,x_px,y_px\n7,left,0,10.5,20.5\n7,cam_1,3,30,40\n8,other,0,1,2\n"
@@ -37,6 +40,24 @@ def test_pictures_of_one_name_are_one_place(tmp_path):
     ) as caught:
         corners.of_pictures(folders, Board.of(boards_made.CHARUCO | {"dictionary": "DICT_6X6_50"}))
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("shown", "stated", "advice"),
+    [
+        (boards_made.CHARUCO | {"inverted": True}, boards_made.CHARUCO, "inverted: true"),
+        (boards_made.CHARUCO, boards_made.CHARUCO | {"inverted": True}, "inverted: false"),
+        (CHESS, CHESS | {"squares": [7, 4]}, r"squares: \[8, 5\]"),
+    ],
+)
+def test_a_board_of_another_form_is_recognised(tmp_path, shown, stated, advice):
+    camera = boards_made.hall()[0]
+    (tmp_path / "c0").mkdir()
+    image = boards_made.picture(Board.of(shown), camera, boards_made.places(1, 1)[0])
+    cv2.imwrite(str(tmp_path / "c0" / "1.png"), 255 - image if "inverted" in shown else image)
+    with pytest.raises(InputError) as caught:
+        corners.of_pictures({"c0": tmp_path / "c0"}, Board.of(stated))
+    assert re.search(f"found none in 1 pictures but one with `{advice}` in 1 of", str(caught.value))
 
 
 def test_a_table_of_our_own(tmp_path):

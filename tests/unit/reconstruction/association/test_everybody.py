@@ -1,10 +1,14 @@
 """Everybody in the footage of a take, with paths, rows on each camera's frames, and a line."""
 
+from dataclasses import replace
+
 import numpy as np
+import pytest
 
 from courtside.reconstruction.association import everybody
 from courtside.records.cameras.footage import Footage
 from courtside.records.devices.clocks import Clock
+from courtside.study.errors import InputError
 from fixtures.cameras import scene
 from fixtures.people import walker
 
@@ -20,3 +24,24 @@ def test_a_walker_is_one_person_in_all_cameras():
     assert all((rows[0] == 0).mean() > 0.9 for rows in found.index.values())
     middle = np.nanmedian(found.path[0], axis=0)
     assert np.linalg.norm(middle[:2] - np.nanmedian(record.xyz[0], axis=(0, 1))[:2]) < 0.2
+
+
+@pytest.mark.parametrize(("score", "hidden"), [(0.3, True), (0.9, False)])
+def test_where_nobody_is_placed_the_line_tells_whether_bodies_are_hidden(score, hidden):
+    """Two rows in each camera, which no other camera agrees with."""
+    random = np.random.default_rng(0)
+    views = walker.views(walker.points(n_frames=40), CAMERAS)
+    wrong = []
+    for view in views:
+        xy = random.uniform(0, view.size, (2, *view.xy.shape[1:]))
+        more = {
+            key: np.repeat(getattr(view, key), 2, axis=0)
+            for key in ("reason", "xyz_in_body", "clothing")
+            if getattr(view, key, None) is not None
+        }
+        wrong.append(replace(view, xy=xy, score=np.full(xy.shape[:3], score), **more))
+    seen = [Footage(c, v, Clock()) for c, v in zip(CAMERAS, wrong, strict=True)]
+    with pytest.raises(InputError, match="expected people whom two views see") as caught:
+        everybody.find(seen, walker.SKELETON, None)
+    assert ("0% in c0" in str(caught.value)) == hidden
+    assert ("film whole bodies" in str(caught.value)) == hidden

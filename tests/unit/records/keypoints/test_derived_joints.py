@@ -114,5 +114,5 @@ def test_faults_are_one_line(tmp_path):
     with pytest.raises(InputError, match=r"joints.neck.rig: expected one of \['a'\], found 'c'"):
         derived_joints.read(path)
     path.write_text("definitions: [1]\njoints: {}\n")
-    with pytest.raises(InputError, match="definitions: expected a value of type object"):
+    with pytest.raises(InputError, match="definitions: expected keys and values"):
         derived_joints.read(path)

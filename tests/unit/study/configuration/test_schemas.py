@@ -37,7 +37,7 @@ def test_every_fault_is_one_line(tmp_path):
         schemas.read(path, "court")
     unknown, width, place = caught.value.lines
     assert unknown.endswith("found 'size'; did you mean 'size_m'?")
-    expected = "line_width_m: expected a value of type number (metres above 0), found 'wide'"
+    expected = "line_width_m: expected a number (metres above 0), found 'wide'"
     assert width == f"{path}: {expected}"
     expected = "points.p01.xyz_m: expected at least 3 entries ([x, y, z], metres), found [0, 0]"
     assert place == f"{path}: {expected}"
@@ -58,3 +58,27 @@ def test_a_session_may_name_calibrations_of_its_own(name, n_faults):
     session = {"court": "none", "cameras": {}, "override": {"calibrations": [name]}}
     found = schemas.faults(session, "session", Path("s.yaml"))
     assert len([line for line in found if "override.calibrations" in line]) == n_faults
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "said"),
+    [
+        ("height_m", 174, "expected at most 2.5 (metres), found 174"),
+        ("height_m", "1.74 m", "expected a number (metres), found '1.74 m'"),
+        ("mass_kg", 66000, "expected at most 300 (kilograms), found 66000"),
+        ("seen", [], "expected where this person is, as one entry or a list, found []"),
+    ],
+)
+def test_a_fault_of_a_person_states_the_unit(key, value, said):
+    session = {"court": "none", "cameras": {}, "subjects": {"p1": {key: value}}}
+    found = schemas.faults(session, "session", Path("s.yaml"))
+    assert f"s.yaml: subjects.p1.{key}: {said}" in found
+
+
+def test_names_and_kinds_of_values_are_described_in_words():
+    session = {"court": "Badminton", "cameras": {}, "takes": {"Take 1": None, "t": {"trim_s": 1}}}
+    found = schemas.faults(session, "session", Path("s.yaml"))
+    assert "s.yaml: court: expected 'none' or a file of config/courts, found 'Badminton'" in found
+    name = "at most 64 lower-case letters, digits, _ and -; no device of Windows such as con"
+    assert f"s.yaml: takes: expected {name}, found 'Take 1'" in found
+    assert any("takes.t.trim_s: expected a list ([start, stop] in" in line for line in found)

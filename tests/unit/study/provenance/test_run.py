@@ -128,6 +128,27 @@ def test_sessions_that_wait_for_clicks_are_told(study):
     assert "save them as data/p.csv" in line
 
 
+def test_warnings_about_cameras_of_recorded_takes_are_told(study, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    session = study.sessions["plain-tiny"]
+    recorded = replace(session, virtual=None, calibration_file="c.toml")
+    ways = recorded.take_calibrations()
+    assert ways
+    study = replace(study, sessions={"north": replace(recorded, name="north")})
+    assert run.doubtful_cameras(study) == []
+    quality = tmp_path / f"results/north/calibration/{ways[0]}/quality.json"
+    quality.parent.mkdir(parents=True)
+    quality.write_text(json.dumps({"f_px": 1}))
+    assert run.doubtful_cameras(study) == []
+    quality.write_text(json.dumps({"warnings": ["camera left moved", "b", "c", "d", "e"]}))
+    said = run.doubtful_cameras(study)
+    where = f"results/north/calibration/{ways[0]}/quality.json"
+    assert said[0] == f"Warning: north: camera left moved; see {where}"
+    assert said[3:] == [f"Warning: north: 2 more warnings in {where}"]
+    virtual = {"north": replace(recorded, name="north", virtual={"seed": 1})}
+    assert run.doubtful_cameras(replace(study, sessions=virtual)) == []
+
+
 def test_pictures_that_a_model_of_photos_lost_are_told(study, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     session = study.sessions["plain-tiny"]

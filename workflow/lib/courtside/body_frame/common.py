@@ -35,14 +35,17 @@ def common(happened: Mapping[str, Events], clocks: Mapping[str, Clock]) -> dict[
     rests = {source: own.rest for source, own in happened.items() if own.rest}
     if len(rests) == len(happened):
         return rests
-    times = "; ".join(
-        f"{source} "
-        + ", ".join(f"{clocks[source].to_reference(s.start_s):.2f}" for s in own.tposes)
+    at_s = {
+        source: ", ".join(f"{clocks[source].to_reference(s.start_s):.2f}" for s in own.tposes)
         for source, own in happened.items()
-    )
+    }
+    times = "; ".join(f"{source} {at or 'none'}" for source, at in at_s.items())
+    advice = "film all devices together, or leave one out"
+    if not any(at_s.values()):
+        advice = "begin and end the take with a T-pose in view of all devices, held for a second"
     raise InputError(
         "expected a T-pose that all sources show, found T-poses at (s, reference clock): "
-        f"{times}; film all devices together, or leave one out"
+        f"{times}; {advice}"
     )
 
 

@@ -273,14 +273,18 @@ def _bridging_images(recording: Recording) -> int:
 
 
 def _unused(guess: Guess) -> list[str]:
-    lines = [f"#   {json.dumps(r.path)}: {_one_line(why)}" for r, why in guess.unused]
-    lines += [
-        f"#   {json.dumps(r.path)}: {d} of no take" for take, d, r in guess.devices if not take
-    ]
+    lines = [f"#   {json.dumps(path)}: {why}" for path, why in _left_out(guess)]
+    return ["# not used:", *lines] if lines else []
+
+
+def _left_out(guess: Guess) -> list[tuple[str, str]]:
+    """Return the path of each file that the draft does not use, with the reason in one line."""
+    found = [(r.path, _one_line(why)) for r, why in guess.unused]
+    found += [(r.path, f"{d} of no take") for take, d, r in guess.devices if not take]
     if guess.calibration and guess.court_points:
         why = "clicked points; as `static_points` they check the calibration file"
-        lines.append(f"#   {json.dumps(guess.court_points.path)}: {why}")
-    return ["# not used:", *lines] if lines else []
+        found.append((guess.court_points.path, why))
+    return found
 
 
 def _described(recording: Recording) -> str:
@@ -314,6 +318,7 @@ def _quoted(value: str) -> str:
 
 USUAL_IMAGES, EVERY_S = 40, 0.5  # `sweep.n_images` and `extract_frames.every_s` of config.yaml
 USABLE = 0.8  # ASSUME: share of a walk's frames that are sharp and differ
+SHOWN = 5  # files that are not used, on the terminal; the draft lists all
 SHORT_S = 15  # ASSUME: in shorter takes the clocks of cameras are seldom found
 
 
@@ -345,6 +350,9 @@ def to_check(guess: Guess, path: StrPath, court_points: str, study: StrPath) -> 
     that names the session.
     """
     lines = [f"Look at {path}: every line with `{MARK}`, and everything under `not used`."]
+    left_out = _left_out(guess)
+    lines += [f"Not used: {file}: {why}" for file, why in left_out[:SHOWN]]
+    lines += [f"Not used: {len(left_out) - SHOWN} more files"] * (len(left_out) > SHOWN)
     lines += [f"Odd: {line}" for line in _odd(guess)]
     lines += _translated(guess)
     if _synchronised(guess):

@@ -43,7 +43,9 @@ def survey(folder: StrPath, *, root: StrPath) -> list[Recording]:
         files = [Path(at) / name for name in sorted(names) if not name.startswith(".")]
         files = [path for path in files if path.is_file()]  # reading a pipe would block
         photos = [path for path in files if READERS.get(path.suffix.lower()) is _photos]
-        together = len(photos) > 1 and Path(at) != folder
+        # Beside videos, photos in the folder itself are of its cameras.
+        alone = not inner and not any(_reads_no_photo(path) for path in files)
+        together = len(photos) > 1 and (Path(at) != folder or alone)
         if together:
             found.append(_described(Path(at), folder, root, _photos))
         if sum(path.suffix == ".json" for path in files) > 1 and Path(at) != folder:
@@ -55,12 +57,17 @@ def survey(folder: StrPath, *, root: StrPath) -> list[Recording]:
     return [recording for recording in found if recording]
 
 
+def _reads_no_photo(path: Path) -> bool:
+    return READERS.get(path.suffix.lower(), _photos) is not _photos
+
+
 def _described(
     path: Path, folder: Path, root: StrPath, reader: Callable[[Path], dict[str, Any] | None]
 ) -> Recording | None:
     """Return the `Recording` of a file; None if it is none."""
     inside = path.relative_to(folder)
-    keys: dict[str, Any] = {"path": written(path, root), "parts": (*inside.parts[:-1], inside.stem)}
+    parts = (*inside.parts[:-1], inside.stem or path.resolve().name)
+    keys: dict[str, Any] = {"path": written(path, root), "parts": parts}
     if any(not letter.isprintable() for letter in keys["path"]):
         return Recording(**keys, kind="unusable", note="a control character in its name; rename it")
     try:

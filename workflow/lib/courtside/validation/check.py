@@ -10,7 +10,7 @@ from courtside.study.configuration.session_files import is_there
 from courtside.study.configuration.sessions import Session, Study, Take
 from courtside.study.errors import InputError
 from courtside.study.methods import Calibration, fewer_images
-from courtside.validation import calibrated, keypoint_folders, lengths, views
+from courtside.validation import calibrated, keypoint_folders, lengths, stated_times, views
 from courtside.validation.remembered import Remembered
 from courtside.video.glance import Glance
 
@@ -86,18 +86,14 @@ class _Session:
         """Yield what is worth a look."""
         for name, take in self._session.takes.items():
             said = lengths.remarks(self._takes[name], synchronised=take.synchronised)
-            every = (*said, *self._keypoints[name][1])
+            times = stated_times.remarks(take, self._takes[name])
+            every = (*said, *times, *self._keypoints[name][1])
             yield from (f"{self._session.file}: takes.{name}: {line}" for line in every)
 
     def _take_faults(self, name: str, take: Take) -> Iterator[str]:
         looks = self._takes[name]
         yield from lengths.faults(looks, synchronised=take.synchronised)
-        for camera, look in looks.items():
-            if take.trim_s and look.duration_s and take.trim_s[0] >= look.duration_s:
-                yield (
-                    f"trim_s: expected a start within {take.videos[camera]}, which lasts "
-                    f"{look.duration_s:.3f} s, found {take.trim_s[0]:g} s; correct it"
-                )
+        yield from stated_times.faults(self._session, take, looks)
         smalls = {camera: look.small for camera, look in looks.items()}
         known, what = self._known_views(name)
         yield from views.faults(take.videos, smalls, known, what)

@@ -36,6 +36,8 @@ LEAST_SIGMA_PX = 0.01  # no corner is found better
 FAR_PX = 5.0  # ASSUME: a corner so far off is another, or its camera filmed at another time
 LEAST_NEAR = 0.7  # ASSUME: share of the corners, in pictures that two cameras see, that is nearer
 
+# ASSUME: one camera is told whose corners fit worse by this factor, and by more than a pixel.
+MUCH_WORSE, WORSE_PX = 3.0, 1.0
 OUT_OF_STEP = 2.0  # ASSUME: more excess scatter of whole pictures is told; at rest it is about 1
 
 
@@ -348,15 +350,18 @@ def summary(found: Found, seen: Corners, board: Board, *, stated: bool) -> dict[
             "it rest, and give `lenses`"
         )
     report: dict[str, Any] = {"warnings": warnings, "world_of_picture": found.world}
+    own = [seen.camera == c for c in range(len(found.cameras))]
+    rms_px = [float(np.sqrt(np.nanmean(found.error_px[rows] ** 2))) for rows in own]
+    warnings += _worse_cameras(found, rms_px)
     report |= {"sigma_px": found.sigma_px, "covariance_factor": found.factor}
     first = IMAGE * len(found.cameras)
     for c, camera in enumerate(found.cameras):
         at, lens = IMAGE * c + np.arange(len(POSE)), first + len(LENS) * c
-        own = (seen.camera == c) & np.isfinite(found.error_px[:, 0])
+        used = own[c] & np.isfinite(found.error_px[:, 0])
         one = {
-            "n_corners": int(own.sum()),
-            "n_pictures": len(np.unique(seen.picture[own])),
-            "rms_px": float(np.sqrt(np.mean(found.error_px[own] ** 2))),
+            "n_corners": int(used.sum()),
+            "n_pictures": len(np.unique(seen.picture[used])),
+            "rms_px": rms_px[c],
             "place_sigma_mm": 1000
             * point_covariance.centre_sigma(camera, found.covariance[np.ix_(at, at)]),
             "f_px": float(camera.K[1, 1]),
@@ -367,6 +372,20 @@ def summary(found: Found, seen: Corners, board: Board, *, stated: bool) -> dict[
     mean, spread, count = neighbours_mm(found, seen, board)
     report["neighbour_mm"] = {"mean": mean, "standard_deviation": spread, "n": count}
     return report
+
+
+def _worse_cameras(found: Found, rms_px: Sequence[float]) -> list[str]:
+    """Return a line for each camera whose corners fit far worse than those of the others."""
+    said = []
+    for c, camera in enumerate(found.cameras):
+        others = float(np.median([*rms_px[:c], *rms_px[c + 1 :]])) if len(rms_px) > 2 else np.inf
+        if rms_px[c] > max(MUCH_WORSE * others, WORSE_PX):
+            said.append(
+                f"camera {camera.name}: its corners fit by {rms_px[c]:.1f} px, those of the other "
+                f"cameras by {others:.1f} px: its lens is probably wrong by more than stated; give "
+                "`lenses`, or film the board nearer to this camera, tilted and at rest"
+            )
+    return said
 
 
 def neighbours_mm(found: Found, seen: Corners, board: Board) -> tuple[float, float, int]:

@@ -6,7 +6,7 @@ videos at one time.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import cv2
@@ -151,7 +151,14 @@ def _seen(source: StrPath, name: str, grey: Iterable[tuple[str, NDArray]], board
 
 
 def _other(pictures: Sequence[NDArray], board: Board) -> str:
-    """Name another dictionary whose markers the pictures show; empty if there is none."""
+    """Name what the pictures show instead: another form of the board, or another dictionary."""
+    seen = {
+        words: sum(len(other.find(picture)[0]) > 0 for picture in pictures)
+        for words, other in _forms(board).items()
+    }
+    best = max(seen, key=lambda words: seen[words])
+    if seen[best]:
+        return f" but one with `{best}` in {seen[best]} of the first {len(pictures)}"
     if board.dictionary is None:
         return ""
     counts = {}
@@ -162,6 +169,20 @@ def _other(pictures: Sequence[NDArray], board: Board) -> str:
         counts[name] = sum(0 if ids is None else len(ids) for ids in each)
     best = max(counts, key=lambda name: counts[name])
     return f" but {counts[best]} markers of {best}" if counts[best] else ""
+
+
+def _forms(board: Board) -> dict[str, Board]:
+    """Return the board as it would be if one key of the session were wrong, by that key."""
+    forms = {
+        f"inverted: {str(not board.inverted).lower()}": replace(board, inverted=not board.inverted)
+    }
+    columns, rows = board.squares
+    counts = {"charuco": [(rows, columns)], "chessboard": [(columns + 1, rows + 1)]}
+    if board.kind == "charuco":
+        forms[f"legacy: {str(not board.legacy).lower()}"] = replace(board, legacy=not board.legacy)
+    for squares in counts.get(board.kind, []):  # exchanged; inner corners in place of squares
+        forms[f"squares: {list(squares)}"] = replace(board, squares=squares)
+    return forms
 
 
 def _together(found: Mapping[str, list], sizes: dict[str, tuple[int, int]]) -> Corners:

@@ -9,8 +9,12 @@ from courtside.calibration.court.court import Court
 from courtside.reconstruction import resampling
 from courtside.reconstruction.association import associate, identity, lengths, scale
 from courtside.records.cameras.footage import Footage
+from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.records.keypoints.people import People
 from courtside.records.keypoints.skeleton import Skeleton
+from courtside.study.errors import InputError
+
+SURE = 0.5  # ASSUME: score of a joint that a network sees, not guesses
 
 
 def find(seen: Sequence[Footage], joints: Skeleton, court: Court | None) -> tuple[People, str]:
@@ -26,18 +30,23 @@ def find(seen: Sequence[Footage], joints: Skeleton, court: Court | None) -> tupl
     xy = [resampling.resample(v, time_s, c)[0] for v, c in zip(limbs, clocks, strict=True)]
     trunk = [at for at, name in enumerate(names) if name.endswith(("hip", "shoulder"))]
     scale.check([one.camera for one in seen], xy, names)
-    found = associate.associate(
-        [one.camera for one in seen],
-        xy,
-        time_s,
-        trunk=trunk,
-        mirror=[chosen.index(joints.mirror()[joint]) for joint in chosen],
-        court=court,
-        bones=lengths.bones(names),
-        clothing=[
-            resampling.nearest(v, time_s, c)[0].clothing for v, c in zip(views, clocks, strict=True)
-        ],
-    )
+    mirror = [chosen.index(joints.mirror()[joint]) for joint in chosen]
+    worn = [
+        resampling.nearest(v, time_s, c)[0].clothing for v, c in zip(views, clocks, strict=True)
+    ]
+    try:
+        found = associate.associate(
+            [one.camera for one in seen],
+            xy,
+            time_s,
+            trunk=trunk,
+            mirror=mirror,
+            court=court,
+            bones=lengths.bones(names),
+            clothing=worn,
+        )
+    except InputError as error:
+        raise InputError(f"{error}{_hidden(limbs)}") from None
     frames_s = [c.to_reference(v.time_s) for c, v in zip(clocks, views, strict=True)]
     index = {
         view.camera: associate.on_frames(rows, time_s, frame_s)
@@ -47,3 +56,18 @@ def find(seen: Sequence[Footage], joints: Skeleton, court: Court | None) -> tupl
     sure = identity.confidence(found.doubts, len(ids))
     kept = {key: getattr(found, key) for key in ("placed", "time_s", "path", "doubts")}
     return People(views[0].model, ids, index=index, confidence=sure, **kept), found.line()
+
+
+def _hidden(limbs: Sequence[Keypoints2D]) -> str:
+    """Return what bodies lack where most cameras hardly see their limbs; empty where they do."""
+    sure = {}
+    for view in limbs:
+        shown = np.isfinite(view.xy[..., 0])
+        sure[view.camera] = float((view.score[shown] > SURE).mean()) if shown.any() else 0.0
+    if np.median(list(sure.values())) >= 0.5:
+        return ""
+    shares = ", ".join(f"{share:.0%} in {name}" for name, share in sure.items())
+    return (
+        f"; of the limb joints of the people found, few are seen with certainty ({shares}): they "
+        "are hidden, or cut off by the picture's border; film whole bodies"
+    )

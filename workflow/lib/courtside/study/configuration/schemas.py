@@ -23,6 +23,15 @@ TYPES = {
         and abs(value) <= sys.float_info.max
     ),
 }
+WORDS = {  # of types, as people call them
+    "object": "keys and values",
+    "array": "a list",
+    "string": "text",
+    "number": "a number",
+    "integer": "a whole number",
+    "boolean": "true or false",
+    "null": "nothing",
+}
 REPLACED = {  # keys of former versions: what to use now
     "measure_kinematics": "remove it: kinematics are measured on the exported skeletons, whose "
     "filter and cut-offs are those of filter_motion"
@@ -113,8 +122,9 @@ def _lines(error: Any) -> Iterator[str]:  # of jsonschema, whose types leave all
         expected = error.schema.get("description", "another form")
         yield f"{where}: expected {expected}, found {shown(error.instance)}"
     else:
-        hint = error.schema.get("description")
-        wanted = f"{_wanted(error)} ({hint})" if hint else _wanted(error)
+        wanted = _wanted(error)
+        if hint := error.schema.get("description"):
+            wanted = hint if error.validator == "pattern" else f"{wanted} ({hint})"
         found = shown(error.instance)
         if error.validator == "uniqueItems":
             values = error.instance
@@ -143,7 +153,6 @@ def _key_lines(error: Any, where: str) -> Iterator[str]:
 
 def _wanted(error: Any) -> str:
     words = {
-        "type": "a value of type {}",
         "enum": "one of {}",
         "minimum": "at least {}",
         "maximum": "at most {}",
@@ -156,7 +165,11 @@ def _wanted(error: Any) -> str:
         "multipleOf": "a multiple of {}",
         "uniqueItems": "entries that differ",
     }
-    return words.get(error.validator, error.validator + " {}").format(error.validator_value)
+    value = error.validator_value
+    if error.validator == "type":
+        kinds = [value] if isinstance(value, str) else value
+        return " or ".join(WORDS[kind] for kind in kinds)
+    return words.get(error.validator, error.validator + " {}").format(value)
 
 
 def shown(value: object) -> str:

@@ -11,6 +11,7 @@ LARGEST_BYTES = 1 << 20  # the largest that is read within seconds
 DEEPEST = 40  # levels
 MOST = 200_000  # values, those of an alias counted each time
 LARGEST = 10**4000  # Python refuses to write out longer numbers
+LEVELS = "begin the keys of one level in the same column"
 Content = dict[str, Any]  # of a YAML file, or of a part of it
 
 
@@ -27,6 +28,8 @@ class _StrictLoader(yaml.SafeLoader):
             problem = ""
             if not isinstance(key, str):
                 problem = f"expected a name, found {key!r}; put it in quotes"
+                if node.flow_style and isinstance(key, int | float):
+                    problem += ", or, if it is the rest of a number such as 1,74, write 1.74"
             elif key in seen:
                 problem = f"expected each key once, found {key!r} again"
             if problem:
@@ -50,13 +53,24 @@ def read(path: StrPath) -> Content:
             mark = getattr(error, "problem_mark", None)
             where = f"{path}: line {mark.line + 1}" if mark else path
             problem = getattr(error, "problem", None) or str(error).splitlines()[0]
-            raise InputError(f"{where}: {problem}") from None
+            raise InputError(f"{where}: {problem}{_advice(problem)}") from None
         except RecursionError:
             raise InputError(f"{path}: expected YAML, found too deep nesting") from None
     if not isinstance(content, dict):
         raise InputError(f"{path}: expected keys and values, found {type(content).__name__}")
     _check_extent(path, content)
     return content
+
+
+def _advice(problem: str) -> str:
+    """Return what to do about PyYAML's words for the commonest mistakes."""
+    if "'\\t'" in problem:
+        return "; write spaces in place of tabs, for YAML allows no tabs before keys"
+    if problem.startswith("mapping values"):
+        return f"; {LEVELS}, and put a text that holds a colon in quotes"
+    if problem.startswith(("expected <block end>", "could not find expected ':'")):
+        return f"; {LEVELS}, write `key: value`, and begin only the entries of a list with `-`"
+    return ""
 
 
 def _check_extent(path: StrPath, content: Content) -> None:

@@ -13,6 +13,8 @@ from courtside.study.execution import files, summary
 from courtside.study.execution import verdicts as verdict_files
 from courtside.study.provenance import environment, provenance
 
+N_WARNINGS = 3  # of one calibration, on the terminal
+
 
 def record(
     workflow: Any, repository: Path, config: Mapping[str, Any], shared: Iterable[str]
@@ -124,6 +126,22 @@ def lost_pictures(study: Study) -> list[str]:
                     f"{paths.MATCH_TABLE.format(session=session.name)}; add pictures in between"
                 )
     return found
+
+
+def doubtful_cameras(study: Study) -> list[str]:
+    """Return the warnings about cameras with which recorded takes are measured, a line for each."""
+    found = []
+    for session in study.sessions.values():
+        ways = [] if session.virtual else session.take_calibrations()
+        read = {paths.CALIBRATION_QUALITY.format(session=session.name, calibration=w) for w in ways}
+        if "file" in ways:
+            read.add(paths.CALIBRATION_CHECK.format(session=session.name, suffix="json"))
+        for path in (path for path in sorted(read) if Path(path).is_file()):
+            warnings = files.read_json(Path(path)).get("warnings", [])
+            found += [f"{session.name}: {line}; see {path}" for line in warnings[:N_WARNINGS]]
+            more = len(warnings) - N_WARNINGS
+            found += [f"{session.name}: {more} more warnings in {path}"] * (more > 0)
+    return [f"Warning: {line}" for line in found]
 
 
 def left_out(study: Study) -> list[str]:

@@ -1,0 +1,53 @@
+"""Times and pixels that do not lie in the videos: each is one line, before any job."""
+
+from fixtures.recordings import rooms_filmed
+
+
+def seen(hall, **entry):
+    there = {"take": "serve", "camera": "left", "time_s": 0.5, "at_px": [160, 90]}
+    hall.content["subjects"]["p1"] = {"seen": there | entry}
+    return hall
+
+
+def test_a_sighting_in_the_video_says_nothing(hall):
+    assert seen(hall).said() == ([], [])
+    width, height = rooms_filmed.SIZE
+    assert seen(hall, at_px=[width - 1, height - 1], time_s=0).said() == ([], [])
+
+
+def test_the_number_of_a_frame_as_time_is_told(hall):
+    said = seen(hall, time_s=12).fault()
+    assert "takes.serve: subjects.p1.seen: expected time_s from 0.00 to 2.00 s" in said
+    assert said.endswith(
+        "of left's video that is used, found 12; state the time in seconds, not the frame"
+    )
+
+
+def test_a_time_outside_of_the_part_that_is_used_is_told(hall):
+    hall.content["takes"]["serve"]["trim_s"] = [0.2, 0.4]
+    assert "expected time_s from 0.20 to 0.40 s" in seen(hall, time_s=0.6).fault()
+
+
+def test_a_pixel_outside_of_the_picture_is_told(hall):
+    said = seen(hall, at_px=[400, 90]).fault()
+    assert "expected a pixel of left's pictures of 320 x 180 px, found (400, 90)" in said
+
+
+def test_a_part_in_frames_is_a_remark(hall):
+    hall.content["takes"]["serve"]["trim_s"] = [0, 24]
+    faults, (remark,) = hall.said()
+    assert faults == []
+    assert "takes.serve: trim_s ends at 24 s, but no video is longer than 2.00 s" in remark
+    hall.content["takes"]["serve"]["trim_s"] = [0, 2]
+    assert hall.said() == ([], [])
+
+
+def test_an_offset_in_milliseconds_is_told(hall):
+    take = hall.content["takes"]["serve"]
+    del take["synchronised"]
+    take["clocks"] = {"right": {"offset_s": 150}, "back": {"offset_s": 0.15}}
+    said = hall.fault()
+    assert "takes.serve: clocks.right: expected an offset with which its video of 2.00 s" in said
+    assert said.endswith("found offset_s 150; state the offset in seconds")
+    take["clocks"]["right"] = {"offset_s": -0.5}
+    assert hall.said() == ([], [])

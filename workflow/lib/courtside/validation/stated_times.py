@@ -1,0 +1,84 @@
+"""Times and pixels that a session states of its videos, against the videos."""
+
+from collections.abc import Iterator, Mapping
+
+from courtside.study.configuration.sessions import Session, Take
+from courtside.video.glance import Glance
+
+Looks = Mapping[str, Glance]  # by camera
+
+
+def faults(session: Session, take: Take, looks: Looks) -> Iterator[str]:
+    """Yield what cannot be right: parts, sightings and clocks outside of the videos."""
+    yield from _late_starts(take, looks)
+    yield from _clocks(take, looks)
+    for name in take.subjects:
+        for entry in session.subjects[name].seen:
+            look = looks.get(entry["camera"])
+            if look and entry.get("take", take.name) == take.name:
+                where = f"subjects.{name}.seen: expected"
+                yield from (f"{where} {line}" for line in _sighting(take, entry, look))
+
+
+def remarks(take: Take, looks: Looks) -> Iterator[str]:
+    """Yield what may be right, but is worth a look: a part that ends after all videos."""
+    lengths = [look.duration_s for look in looks.values()]
+    longest = max((length for length in lengths if length), default=0.0)
+    frame_s = max((1 / look.rate_hz for look in looks.values() if look.rate_hz), default=0.0)
+    start_s, stop_s = take.trim_s or (0.0, 0.0)
+    if None not in lengths and start_s < longest < stop_s - frame_s:
+        yield (
+            f"trim_s ends at {stop_s:g} s, but no video is longer than {longest:.2f} s: all are "
+            "used to their ends; trim_s is in seconds, not in frames"
+        )
+
+
+def _late_starts(take: Take, looks: Looks) -> Iterator[str]:
+    for camera, look in looks.items():
+        if take.trim_s and look.duration_s and take.trim_s[0] >= look.duration_s:
+            yield (
+                f"trim_s: expected a start within {take.videos[camera]}, which lasts "
+                f"{look.duration_s:.3f} s, found {take.trim_s[0]:g} s; correct it"
+            )
+
+
+def _sighting(take: Take, entry: Mapping, look: Glance) -> Iterator[str]:
+    """Yield the faults of an entry of `seen`, as `reconstruction.association.marks` states them."""
+    start_s, stop_s = take.trim_s or (0.0, float("inf"))
+    stop_s = min(stop_s, look.duration_s or float("inf"))
+    slack_s = 1 / look.rate_hz if look.rate_hz else 0.0
+    camera, time_s, (x, y) = entry["camera"], entry["time_s"], entry["at_px"]
+    if not start_s - slack_s <= time_s <= stop_s + slack_s:
+        yield (
+            f"time_s from {start_s:.2f} to {stop_s:.2f} s, the part of {camera}'s video that is "
+            f"used, found {time_s:g}; state the time in seconds, not the frame"
+        )
+    width, height = look.size
+    if not (-0.5 <= x <= width - 0.5 and -0.5 <= y <= height - 0.5):
+        yield (
+            f"a pixel of {camera}'s pictures of {width} x {height} px, found ({x:g}, {y:g}); "
+            "correct at_px"
+        )
+
+
+def _clocks(take: Take, looks: Looks) -> Iterator[str]:
+    """Yield cameras whose stated clock puts their video outside of those of all others."""
+    stated = {name: clock for name, clock in take.clocks.items() if name in looks}
+    if not stated:
+        return
+    # The first camera is the reference; clocks that nobody states are found from the videos.
+    offsets = {next(iter(take.videos)): 0.0} | {n: c["offset_s"] for n, c in stated.items()}
+    spans = {
+        name: (-offset, length - offset)
+        for name, offset in offsets.items()
+        if name in looks and (length := looks[name].duration_s)
+    }
+    for name in (name for name in stated if name in spans and len(spans) > 1):
+        others = [span for other, span in spans.items() if other != name]
+        start, stop = spans[name]
+        if all(stop <= first or last <= start for first, last in others):
+            yield (
+                f"clocks.{name}: expected an offset with which its video of {stop - start:.2f} s "
+                f"overlaps that of another camera, found offset_s {stated[name]['offset_s']:g}; "
+                "state the offset in seconds"
+            )
