@@ -72,12 +72,12 @@ def test_a_parameter_goes_before_a_wildcard_of_its_name():
     def main(camera):
         raise AssertionError
 
-    given = job(params={"camera": "said"}, wildcards={"camera": "left"})
-    assert arguments(main, given) == {"camera": "said"}
+    given = job(params={"camera": "stated"}, wildcards={"camera": "left"})
+    assert arguments(main, given) == {"camera": "stated"}
 
 
 @pytest.mark.parametrize(
-    ("parts", "message"),
+    ("parts", "stated"),
     [
         ({}, "rule count_frames: expected video for its script, found none"),
         ({"input": {"video": "a"}, "output": {"video": "b"}},
