@@ -243,8 +243,8 @@ def register_rows(found):
 
 def checked(data):
     """End with one line where the recording is not there."""
-    lacking = [name for name in (*FILES, *(f"{one}.mp4" for one in CAMERAS))]
-    lacking = [name for name in lacking if not (data / name).is_file()]
+    needed = (*FILES, *(f"{one}.mp4" for one in CAMERAS))
+    lacking = [name for name in needed if not (data / name).is_file()]
     if lacking:
         sys.exit(
             f"{data}: expected the recording mocap_8, found no {lacking[0]}; it is no part of the "

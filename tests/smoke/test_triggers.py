@@ -88,7 +88,7 @@ PLAYERS_FUSED = {
     "measure_kinematics": 2 + 4,  # the exported way in both takes, the others where they are drawn
     "find_contacts": 2,
     "evaluate_contacts": 2,
-    **{name: 2 for name in ("find_strokes", "evaluate_strokes", "draw_rally", "draw_strokes")},
+    **dict.fromkeys(("find_strokes", "evaluate_strokes", "draw_rally", "draw_strokes"), 2),
     "judge_take": 2,
     "evaluate_kinematics": 2 + 4,
     "evaluate_take": 2,
