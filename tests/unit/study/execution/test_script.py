@@ -16,7 +16,9 @@ def job(**parts):
     named = ("input", "output", "params", "wildcards")
     return SimpleNamespace(
         **{name: Named(parts.get(name, {})) for name in named},
-        **{"rule": "count_frames", "threads": 3, "log": [parts.get("log", "all.log")]},
+        rule="count_frames",
+        threads=3,
+        log=[parts.get("log", "all.log")],
     )
 
 
@@ -77,7 +79,7 @@ def test_a_parameter_goes_before_a_wildcard_of_its_name():
 
 
 @pytest.mark.parametrize(
-    ("parts", "stated"),
+    ("parts", "message"),
     [
         ({}, "rule count_frames: expected video for its script, found none"),
         ({"input": {"video": "a"}, "output": {"video": "b"}},

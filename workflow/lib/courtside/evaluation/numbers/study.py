@@ -128,8 +128,8 @@ def summary(others: Sequence[Number]) -> list[Number]:
                 "none; run docs/make_tables.py"
             )
         text, first = markers.cell(pattern, label, parts), parts[named[0]]
-        about = {"table": SUMMARY, "row": label, "part": "error", "unit": ""}
-        found.append(replace(first, printed=text, value=math.nan, **about))
+        shown = replace(first, table=SUMMARY, row=label, part="error", printed=text)
+        found.append(replace(shown, value=math.nan, unit=""))
     return found
 
 
