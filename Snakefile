@@ -52,14 +52,14 @@ onstart:
 onsuccess:
     files.delete_unfinished("results")
     record_provenance()
-    told, n_failed = run.verdicts(workflow)
+    verdicts, n_failed = run.verdicts(workflow)
     print(
         end_of_run(n_failed),
         *run.waiting_for_clicks(STUDY),
         *run.left_out(STUDY),
         *asked(run.lost_pictures, STUDY),
         *asked(run.doubtful_cameras, STUDY),
-        *told,
+        *verdicts,
         sep="\n",
         file=sys.stderr,
     )

@@ -114,16 +114,16 @@ def trial(kind, cameras, xyz, views, seed):
     static, people = clicked(cameras, xyz, rng), residuals.of_people(views)
     by = {"static": (static, None), "people": (None, people), "both": (static, people)}
     for what, data in by.items():
-        said = verdict.judge(spoilt, verdict.Seen(*data), residuals.height_px(views))
-        line = " ".join(one.what for one in said.faults) or " ".join(said.warnings)
+        judged = verdict.judge(spoilt, verdict.Seen(*data), residuals.height_px(views))
+        line = " ".join(one.what for one in judged.faults) or " ".join(judged.warnings)
         named = name in line
         yield {
             "kind": kind,
             "by": what,
             "n": 1,
-            "warned": bool(said.warnings),
+            "warned": bool(judged.warnings),
             "camera": named,
-            "camera_and_parameter": named and bool(said.faults) and KINDS[kind] in line,
+            "camera_and_parameter": named and bool(judged.faults) and KINDS[kind] in line,
         }
 
 

@@ -73,7 +73,7 @@ def main(paths, repeats):
         + "   ratio   max diff"
     )
     for path in paths:
-        best = {name: np.inf for name in READERS}
+        best = dict.fromkeys(READERS, np.inf)
         for _ in range(repeats):
             for name, read in READERS.items():
                 took_s, count = seconds(read, path)

@@ -100,11 +100,15 @@ def write_study(folder, data, model):
     }
     other = {key: value for key, value in content.items() if key != "court_points"}
     other["calibration"] = {"file": "data/given.toml"}
-    for name, told in {"hall-markers": content, GIVEN: other}.items():
+    for name, session_content in {"hall-markers": content, GIVEN: other}.items():
         ways = calibrations(name)
-        told["override"] = {"models": [model], "calibrations": ways, "take_calibrations": ways}
+        session_content["override"] = {
+            "models": [model],
+            "calibrations": ways,
+            "take_calibrations": ways,
+        }
         session = folder / "config" / "sessions" / f"{name}.yaml"
-        session.write_text(yaml.safe_dump(told, sort_keys=False), encoding="utf-8")
+        session.write_text(yaml.safe_dump(session_content, sort_keys=False), encoding="utf-8")
     study = folder / "config" / "hall-markers-study.yaml"
     study.write_text(
         yaml.safe_dump({"sessions": ["hall-markers", GIVEN], "plans": [], "variations": []}),
@@ -202,8 +206,8 @@ def way_rows(results, data, model):
             share = 100 * points.accepted[0][:, limbs].mean(axis=(0, 1))
             printed = ", ".join(f"{one:.0f}" for one in share)
             yield "ways", row, f"{part}_accepted", printed, "%", raw
-        said = read_json(folder / "calibration" / f"{base}-people" / "quality.json")
-        yield "ways", row, "refined_taken", said["taken"], "", raw
+        quality = read_json(folder / "calibration" / f"{base}-people" / "quality.json")
+        yield "ways", row, "refined_taken", quality["taken"], "", raw
 
 
 def rows(found):
@@ -239,8 +243,8 @@ def register_rows(found):
 
 def checked(data):
     """End with one line where the recording is not there."""
-    lacking = [name for name in (*FILES, *(f"{one}.mp4" for one in CAMERAS))]
-    lacking = [name for name in lacking if not (data / name).is_file()]
+    needed = (*FILES, *(f"{one}.mp4" for one in CAMERAS))
+    lacking = [name for name in needed if not (data / name).is_file()]
     if lacking:
         sys.exit(
             f"{data}: expected the recording mocap_8, found no {lacking[0]}; it is no part of the "

@@ -75,13 +75,13 @@ def write_sessions(folder, n_sessions, n_takes, n_cameras):
 def timed(folder, *options):
     """Run a dry run; return its seconds, processor seconds, memory in MB, and what it printed."""
     command = [sys.executable, "-m", "snakemake", "--dry-run", *options]
-    with tempfile.TemporaryFile("w+") as said:
+    with tempfile.TemporaryFile("w+") as output:
         started = time.monotonic()
-        process = subprocess.Popen(command, cwd=folder, stdout=said, stderr=said)
+        process = subprocess.Popen(command, cwd=folder, stdout=output, stderr=output)
         _, status, usage = os.wait4(process.pid, 0)
         seconds = time.monotonic() - started
-        said.seek(0)
-        text = said.read()
+        output.seek(0)
+        text = output.read()
     if status:
         sys.exit(f"{' '.join(command)} ended with status {status}:\n{text[-2000:]}")
     return seconds, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024, text

@@ -37,10 +37,10 @@ STAGES = ("model", "opensim")
 
 def run(python, script, *given):
     """Run one method; return what it said."""
-    said = peers.run_method(python, script, *given)
-    if "failed" in said:
-        raise SystemExit(f"{script}: {said['failed']}")
-    return said
+    timed = peers.run_method(python, script, *given)
+    if "failed" in timed:
+        raise SystemExit(f"{script}: {timed['failed']}")
+    return timed
 
 
 def located(folder, points):
@@ -72,16 +72,16 @@ def one(results, session, way, folder, python):
     corrected = points["corrected"].between(seen_s[0], seen_s[-1])
     trc.write(folder / "corrected.trc", corrected, 0)
     files = [folder / name for name in ("a.osim", "corrected.trc", "a.trc", "a.mot")]
-    said = run(python, "ik_opensim.py", *files, folder)
+    timed = run(python, "ik_opensim.py", *files, folder)
     other = replace(corrected, joints=np.array(markers.names(corrected.joints.tolist())))
     trc.write(folder / "named.trc", other, 0)
     theirs = run(python, "ik_pose2sim.py", folder / "named.trc", folder)
     truth = take_truth.read(results / "virtual" / session / "takes" / way[0] / "truth.npz")
     per_frame = 1000 / len(corrected.time_s)
     more = {
-        "model": {"time a frame, ms": 1000 * seconds, "played, mm": said["markers_mm"]},
+        "model": {"time a frame, ms": 1000 * seconds, "played, mm": timed["markers_mm"]},
         "opensim": {
-            "time a frame, ms": per_frame * said["seconds"],
+            "time a frame, ms": per_frame * timed["seconds"],
             "of Pose2Sim's model": per_frame * theirs["seconds"],
         },
     }

@@ -140,11 +140,11 @@ def measured(runs, arrays, environments):
         np.savez(given, **arrays)
         for peer, script, arguments in runs:
             python = interpreter(peer, environments) if peer else sys.executable
-            said = run_method(python, script, given, result, *arguments)
-            if "failed" in said:
-                raise SystemExit(f"{script}: {said['failed']}")
+            timed = run_method(python, script, given, result, *arguments)
+            if "failed" in timed:
+                raise SystemExit(f"{script}: {timed['failed']}")
             with np.load(result) as made:
-                for function, each in said.items():
+                for function, each in timed.items():
                     method = f"{peer} {function}" if peer else rows.OURS
                     best_s = min([*each["seconds"], found.get(method, (np.inf,))[0]])
                     found[method] = best_s, made[function]

@@ -66,7 +66,7 @@ def measure(path, sizes, rounds):
         np.concatenate(each)
         for each in zip(*(single.run(None, {name: one[None]}) for one in crops), strict=True)
     ]
-    ms, apart = {size: np.inf for size in sizes}, {}
+    ms, apart = dict.fromkeys(sizes, np.inf), {}
     for _ in range(rounds):
         for size, network in networks.items():
             start = time.process_time()

@@ -106,15 +106,15 @@ def kept(path, names):
 def sentences(table):
     """Return what bounds each comparison, and what its limit counts."""
     core = machine.measured()
-    said = [
+    lines = [
         f"\nOne core: {core.flops_32 / 1e9:.0f} GFlop/s of 32 bits, "
         f"{core.bytes_s / 1e9:.1f} GB/s copied. "
         "`over limit`: the time over the least that this core needs for"
     ]
     for each in ALL:
         if of_table := [name for name in table["comparison"].unique() if of(name) is each]:
-            said.append(f"- {of_table[0].split(',')[0]}: {each.LIMIT}. Bounded by {each.BOUNDS}.")
-    return said
+            lines.append(f"- {of_table[0].split(',')[0]}: {each.LIMIT}. Bounded by {each.BOUNDS}.")
+    return lines
 
 
 def report_study(root):

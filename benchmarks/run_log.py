@@ -40,16 +40,16 @@ def jobs(log):
     """
     stamp, job, found = None, None, {}
     for line in Path(log).read_text(errors="replace").splitlines():
-        if said := STAMP.match(line):
-            stamp = datetime.strptime(said[1], "%a %b %d %H:%M:%S %Y")
-        elif said := BEGINS.match(line):
-            job = Job(said[1], stamp)
-        elif said := NUMBER.match(line):
-            found[said[1]] = job
-        elif (said := BENCHMARK.match(line)) and job:
-            job.benchmark = said[1]
-        elif (said := ENDS.match(line)) and said[1] in found:
-            found[said[1]].ended = stamp
+        if match := STAMP.match(line):
+            stamp = datetime.strptime(match[1], "%a %b %d %H:%M:%S %Y")
+        elif match := BEGINS.match(line):
+            job = Job(match[1], stamp)
+        elif match := NUMBER.match(line):
+            found[match[1]] = job
+        elif (match := BENCHMARK.match(line)) and job:
+            job.benchmark = match[1]
+        elif (match := ENDS.match(line)) and match[1] in found:
+            found[match[1]].ended = stamp
     return [each for each in found.values() if each.ended]
 
 
@@ -61,8 +61,8 @@ def longest(folder):
 
 def cores(log):
     """Return how many cores a run was given, 1 where its log does not say."""
-    said = CORES.search(Path(log).read_text(errors="replace"))
-    return int(said[1]) if said else 1
+    match = CORES.search(Path(log).read_text(errors="replace"))
+    return int(match[1]) if match else 1
 
 
 def stages(root):

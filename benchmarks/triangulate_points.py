@@ -36,14 +36,14 @@ def errors_mm(xyz, truth):
 def measure(folder, name, python, script, *arguments):
     """Run one script on the scene in `folder`; return {function: (us per point, points (N, 3))}."""
     result = folder / f"{name}.npz"
-    said = peers.run_method(python, script, folder / "scene.npz", result, *arguments)
-    if "failed" in said:
-        print(f"{name}: {said['failed']}", file=sys.stderr)
+    timed = peers.run_method(python, script, folder / "scene.npz", result, *arguments)
+    if "failed" in timed:
+        print(f"{name}: {timed['failed']}", file=sys.stderr)
         return {}
     with np.load(result) as found:
         return {
             f"{name} {function}": (1e6 * min(times["seconds"]) / times["points"], found[function])
-            for function, times in said.items()
+            for function, times in timed.items()
         }
 
 

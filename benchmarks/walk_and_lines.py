@@ -65,11 +65,11 @@ class Walk:
         """Yield the cameras of each way."""
         base, court = self.solve(clicked), self.one.court
         yield base
-        told = walk_and_lines.from_edges(base, self.ties, clicked, court, self.seen, **WEIGHTS)
-        yield told.solution
+        adjusted = walk_and_lines.from_edges(base, self.ties, clicked, court, self.seen, **WEIGHTS)
+        yield adjusted.solution
         nothing = {name: np.full_like(xy, np.nan) for name, xy in clicked.items()}
-        told = walk_and_lines.from_edges(base, self.ties, nothing, court, self.seen, **WEIGHTS)
-        yield told.solution
+        adjusted = walk_and_lines.from_edges(base, self.ties, nothing, court, self.seen, **WEIGHTS)
+        yield adjusted.solution
 
     def errors(self, n_draws):
         """Return volume error, cm, and coverage of the 90 % ellipsoids, (draws, ways, 2)."""

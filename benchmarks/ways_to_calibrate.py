@@ -114,12 +114,12 @@ def of_lines(one):
     for camera in one.real.cameras:
         image = cv2.imread(str(one.results / one.name / "static" / f"{camera.name}.png"))
         best = search.find(image, court, step["lines"])
-        said = verdict.judge(best, court, camera.name, camera.size, step["lines"])
-        if said.outcome != verdict.FOUND:
+        judged = verdict.judge(best, court, camera.name, camera.size, step["lines"])
+        if judged.outcome != verdict.FOUND:
             found[camera.name] = None
             continue
         reach = {"search_px": step["search_share"] * camera.size[0], "lines": step["lines"]}
-        xy = verdict.proposed(said, image, court, max_sigma_px=step["max_sigma_px"], **reach).xy
+        xy = verdict.proposed(judged, image, court, max_sigma_px=step["max_sigma_px"], **reach).xy
         off = [
             np.nanmedian(np.abs(points - camera_models.project(camera, one.real.court_xyz)))
             for points in (xy, xy[half_turn])
@@ -330,8 +330,8 @@ def rows(results, halls, charuco, n_draws):
             yield ["lines-clicks", f"`{name}`", part, printed, unit, name, n, 0, *MADE]
         if name == SESSION:
             chosen = one, n_draws, lines
-    told = [(SESSION, virtual_rows(*chosen)), ("walk-4cams", walk_rows(results))]
-    for name, found in [*told, ("charuco-4cams", charuco_rows(charuco))]:
+    halls_rows = [(SESSION, virtual_rows(*chosen)), ("walk-4cams", walk_rows(results))]
+    for name, found in [*halls_rows, ("charuco-4cams", charuco_rows(charuco))]:
         for row, part, printed, unit, n in found:
             yield ["ways", row, part, printed, unit, name, n, 0, *MADE]
 

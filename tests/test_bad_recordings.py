@@ -297,8 +297,8 @@ def test_points_alone_call_a_click_wrong_beyond_what_persons_scatter(
     """Also where all others are exact: one in hundreds of clicks is four sigmas, 1.2 px, off."""
     marked = {camera.name: project(camera, real.court_xyz) for camera in real.cameras}
     marked["back"][COURT.indices(["p06"]), 0] += off_px
-    said = resected(good, tmp_path, marked)
-    assert [line[:24] for line in said] == ["camera back: point p06: "] * named
+    messages = resected(good, tmp_path, marked)
+    assert [line[:24] for line in messages] == ["camera back: point p06: "] * named
 
 
 def test_of_a_doubtful_map_nothing_else_is_said(good, clicked, tmp_path, monkeypatch):
@@ -385,8 +385,8 @@ def test_photos_without_a_focal_length_are_named_with_the_guess(tmp_path, caplog
     pd.DataFrame([{**row, "reason": ""}]).to_csv(made.frames["walk"], index=False)
     with caplog.at_level(logging.INFO, log.logger.name):
         made.extract(focal_factor=0.8)
-    said = [line for line in caplog.messages if "no focal length" in line]
-    assert said == [
+    messages = [line for line in caplog.messages if "no focal length" in line]
+    assert messages == [
         f"{group}: no focal length in its pictures, first guess 0.8 picture widths"
         for group in (*CAMERAS, "walk")
     ]

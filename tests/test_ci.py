@@ -86,7 +86,7 @@ FAULTY = {"name": "c", "version": "2", "vulns": [{"id": "CVE-1", "fix_versions":
 
 
 @pytest.mark.parametrize(
-    ("packages", "status", "said"),
+    ("packages", "status", "message"),
     [
         ([CLEAN], 0, "1 of 1 packages looked up, 0 vulnerable"),
         ([CLEAN, FAULTY], 1, "c 2: CVE-1, mended in 2.1, 3"),
@@ -96,7 +96,7 @@ FAULTY = {"name": "c", "version": "2", "vulns": [{"id": "CVE-1", "fix_versions":
         ([], 2, "0 of 0 packages"),
     ],
 )
-def test_only_what_was_looked_up_is_sound(audit, packages, status, said):
+def test_only_what_was_looked_up_is_sound(audit, packages, status, message):
     lines, found = audit.judge(packages)
     assert found == status
-    assert any(said in line for line in lines)
+    assert any(message in line for line in lines)

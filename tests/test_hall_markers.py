@@ -42,9 +42,11 @@ def test_ten_cameras_are_found_from_floor_points_of_three_sports(tmp_path):
     points = placed(tmp_path)
     where = court.of_places("hall", points.points, points.xyz)
     found = points_alone.calibrate(where, points.clicks, dict.fromkeys(FITS_PX, SIZE), **WEIGHTS)
-    said = points_alone.summary(found)
+    message = points_alone.summary(found)
     assert found.warnings == []
-    assert all(said["rms_px"][name] < limit for name, limit in FITS_PX.items()), said["rms_px"]
+    assert all(message["rms_px"][name] < limit for name, limit in FITS_PX.items()), message[
+        "rms_px"
+    ]
     refined = camera_models.read_toml(FOLDER / "calibration_refined.toml")
     own = {camera.name: camera for camera in found.solution.cameras}
     for other in refined:

@@ -30,17 +30,17 @@ def main(noisy_npz, result_npz, repeats):
         WITHOUT_HAMPEL: lambda: filtered(columns),
         WITH_HAMPEL: lambda: filtered(columns.apply(hampel_filter, axis=0)),
     }
-    said, results = {}, {}
+    report, results = {}, {}
     for name, way in ways.items():
         seconds = []
         for _ in range(int(repeats) if name == WITHOUT_HAMPEL else 1):
             start = time.process_time()
             found = way()
             seconds.append(time.process_time() - start)
-        said[name] = {"seconds": seconds}
+        report[name] = {"seconds": seconds}
         results[name] = found.to_numpy().reshape(given["xyz"].shape)
     np.savez(result_npz, **results)
-    print(json.dumps(said))
+    print(json.dumps(report))
 
 
 if __name__ == "__main__":

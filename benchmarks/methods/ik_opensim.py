@@ -64,9 +64,9 @@ def main(model_osim, markers_trc, fitted_trc, motion_mot, folder):
     opensim.Logger.setLevelString("Off")
     model = opensim.Model(model_osim)
     fitted = opensim.TimeSeriesTableVec3(fitted_trc)
-    said = {"markers_mm": played_mm(model, fitted, motion_mot)}
-    said["seconds"] = solved(model, markers_trc, folder)
-    print(json.dumps(said))
+    report = {"markers_mm": played_mm(model, fitted, motion_mot)}
+    report["seconds"] = solved(model, markers_trc, folder)
+    print(json.dumps(report))
 
 
 if __name__ == "__main__":

@@ -33,9 +33,9 @@ def open_page(browser):
         if not wanted.url.startswith(INSIDE):
             faults.append(f"request to {wanted.url[:200]}")
 
-    def message(said):
-        if said.type == "error":
-            faults.append(f"console: {said.text}")
+    def note_error(message):
+        if message.type == "error":
+            faults.append(f"console: {message.text}")
 
     def opened(path, width=1280, height=900, **options):
         viewport = {"width": width, "height": height}
@@ -44,7 +44,7 @@ def open_page(browser):
         page = context.new_page()
         page.set_default_timeout(15_000)
         page.faults = faults
-        page.on("console", message)
+        page.on("console", note_error)
         page.on("pageerror", lambda error: faults.append(f"error: {error}"))
         page.on("request", request)
         page.goto(Path(path).resolve().as_uri())

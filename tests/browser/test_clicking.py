@@ -224,7 +224,7 @@ def test_a_table_of_the_workflow_is_loaded_and_saved_as_it_was(open_page, make, 
     clicks.write(path, given, court.points)
     page = open_page(make())
     page.set_input_files("#chooser", path)
-    page.wait_for_function("document.getElementById('said').textContent.startsWith('Loaded 35')")
+    page.wait_for_function("document.getElementById('message').textContent.startsWith('Loaded 35')")
     again = saved(page, tmp_path)
     assert again.name == "court_points.csv"
     read = clicks.read(again, ["back", "oblique"], court.points)
@@ -252,9 +252,9 @@ def test_a_table_that_is_none_changes_nothing(open_page, make, tmp_path, text, w
     path.write_text(text)
     page = open_page(make(clicks={"back": {"p01": (5.0, 6.0)}}))
     page.set_input_files("#chooser", path)
-    page.wait_for_selector("#said.bad")
-    said = page.inner_text("#said")
-    assert words in said and "\n" not in said and said.startswith("odd.csv: ")
+    page.wait_for_selector("#message.bad")
+    message = page.inner_text("#message")
+    assert words in message and "\n" not in message and message.startswith("odd.csv: ")
     assert marked(page) == {("back", "p01"): (5.0, 6.0)}
 
 
@@ -270,9 +270,9 @@ def clicked(court, views, rng, wrong=None, points=None):
 def test_the_point_that_fits_worst_is_named(open_page, make, court, views, wrong):
     rng = np.random.default_rng(1)
     page = open_page(make(clicks=clicked(court, views, rng, wrong)))
-    said = page.inner_text("#fit")
-    assert f"Look again at {wrong}:" in said
-    off = float(re.search(r"([\d.]+) px from where", said).group(1))
+    message = page.inner_text("#fit")
+    assert f"Look again at {wrong}:" in message
+    off = float(re.search(r"([\d.]+) px from where", message).group(1))
     assert 7 < off < 14
     assert page.locator("#list .worst").count() == 1
 
@@ -319,7 +319,7 @@ def test_proposals_wait_for_a_key(open_page, make, court, views):
     assert marked(page) == {}
     assert "proposed, ±0.3 px" in page.inner_text("#chosen-state")
     page.keyboard.press("Enter")  # the first shows it from near
-    assert marked(page) == {} and "Look at p01" in page.inner_text("#said")
+    assert marked(page) == {} and "Look at p01" in page.inner_text("#message")
     page.keyboard.press("Enter")
     assert list(marked(page)) == [("back", "p01")]
     choose(page, "p04")
@@ -328,7 +328,7 @@ def test_proposals_wait_for_a_key(open_page, make, court, views):
     page.keyboard.press("h")
     page.keyboard.press("n")
     page.keyboard.press("Enter")
-    assert "no proposal for p06" in page.inner_text("#said")
+    assert "no proposal for p06" in page.inner_text("#message")
     found = marked(page)
     assert set(found) == {("back", "p01"), ("back", "p04")}
     for (_, point), xy in found.items():
@@ -343,7 +343,7 @@ def test_one_mark_says_which_end_of_the_court_is_meant(open_page, make, court, v
     hollow = {p: {"x": true[p][0], "y": true[p][1], "sigma_px": 0.3} for p in turned if p in true}
     hollow = {p: {**place, "either": True} for p, place in hollow.items()}
     page = open_page(make(proposals={"back": hollow}, clicks={"back": {first: true["p01"]}}))
-    assert "not which end" in page.inner_text("#said")
+    assert "not which end" in page.inner_text("#message")
     choose(page, "p04" if first == "p01" else "p07")
     page.keyboard.press("Enter")
     page.keyboard.press("Enter")
@@ -352,7 +352,7 @@ def test_one_mark_says_which_end_of_the_court_is_meant(open_page, make, court, v
     page = open_page(make(name="unmarked", proposals={"back": hollow}))
     choose(page, "p04")
     page.keyboard.press("Enter")
-    assert "no proposal for p04" in page.inner_text("#said") and marked(page) == {}
+    assert "no proposal for p04" in page.inner_text("#message") and marked(page) == {}
 
 
 def test_work_is_kept_by_the_browser_and_can_be_forgotten(open_page, make):
@@ -360,7 +360,7 @@ def test_work_is_kept_by_the_browser_and_can_be_forgotten(open_page, make):
     page.keyboard.press("Space")
     kept = marked(page)
     page.reload()
-    assert marked(page) == kept and "is here again" in page.inner_text("#said")
+    assert marked(page) == kept and "is here again" in page.inner_text("#message")
     page.click("#help summary")
     page.click("#afresh")
     page.reload()
@@ -402,7 +402,7 @@ def test_ends_of_rackets_are_clicked_on_frames_of_takes(open_page, make, picture
     ]
     page.keyboard.press("Control+z")
     page.set_input_files("#chooser", path)
-    page.wait_for_function("document.getElementById('said').textContent.startsWith('Loaded 2')")
+    page.wait_for_function("document.getElementById('message').textContent.startsWith('Loaded 2')")
     assert page.input_value("#text") == path.read_text()
     assert page.is_hidden("#drawings")
 

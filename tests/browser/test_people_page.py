@@ -70,7 +70,7 @@ def test_a_name_is_saved_with_two_pixels_of_the_largest_view(opened, tmp_path):
     ]
     assert {one.xy for one in found} == {named_takes.place_px(1, 1)}
     assert page.inner_text("#missing") == "Not named yet: b."
-    assert "data/p.csv" in page.inner_text("#said")
+    assert "data/p.csv" in page.inner_text("#message")
 
 
 def test_a_split_saves_its_bounds_by_the_clock_of_the_camera(opened, tmp_path):
@@ -88,7 +88,7 @@ def test_a_split_saves_its_bounds_by_the_clock_of_the_camera(opened, tmp_path):
     assert bounds == {"a": (0.5, 3.7), "b": (3.7, 6.5)}
     page.fill("article[data-person=person-1] input", "99")
     page.keyboard.press("Tab")
-    assert "begins after the one before" in page.inner_text("#said")
+    assert "begins after the one before" in page.inner_text("#message")
     page.click("text=Join to the part before")
     _, found = saved(page, tmp_path)
     assert {(one.subject, one.from_s) for one in found} == {("a", None)}
@@ -119,9 +119,9 @@ def test_a_file_of_other_takes_can_be_loaded(opened, tmp_path):
     head = ",".join([*sightings.COLUMNS, *sightings.BOUNDS])
     path.write_text(f"{head}\nrun,a,c0,1,2,3,,\nwalk,b,c0,1,2,3,,\n")
     page.set_input_files("#chooser", path)
-    page.wait_for_function("document.getElementById('said').textContent.includes('other takes')")
+    page.wait_for_function("document.getElementById('message').textContent.includes('other takes')")
     assert sightings.of_other_takes(saved(page, tmp_path)[0], "walk", ["walk", "run"]) == [OTHER]
     path.write_text("camera,point\n")
     page.set_input_files("#chooser", path)
-    page.wait_for_function("document.getElementById('said').className.includes('bad')")
-    assert "loaded.csv: expected the columns" in page.inner_text("#said")
+    page.wait_for_function("document.getElementById('message').className.includes('bad')")
+    assert "loaded.csv: expected the columns" in page.inner_text("#message")

@@ -31,8 +31,8 @@ def test_data_and_pictures_come_out_as_they_went_in(open_page, tmp_path):
 
 def test_a_script_that_speaks_of_scripts_is_whole(open_page, tmp_path):
     script = tmp_path / "speaks.js"
-    script.write_text(f"window.said = {ROGUE!r};")
-    assert open_page(built(tmp_path, js=[script])).evaluate("window.said") == ROGUE
+    script.write_text(f"window.message = {ROGUE!r};")
+    assert open_page(built(tmp_path, js=[script])).evaluate("window.message") == ROGUE
 
 
 @pytest.mark.parametrize(

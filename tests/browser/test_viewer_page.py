@@ -194,8 +194,8 @@ def test_a_joint_is_picked_and_read(opened):
     picked = page.evaluate("courtside.viewer.state()")["picked"]
     assert picked["person"] == ROGUE
     page.locator("#readout table").wait_for()  # drawn with the next picture
-    told = page.locator("#readout").inner_text()
-    assert ROGUE in told
+    message = page.locator("#readout").inner_text()
+    assert ROGUE in message
     j = points.joints.tolist().index(picked["joint"])
     xyz = points.xyz[0, 600, j]
     for name, value in zip("xyz", xyz, strict=True):

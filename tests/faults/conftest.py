@@ -19,9 +19,9 @@ def untouched(tmp_path_factory):
     seconds = {}
     for _, _, ended in killing.watch(main):
         seconds |= {job.log: time.monotonic() - job.started_s for job in ended}
-    if main.returncode and "from the package registry" in study_copies.said(main):
+    if main.returncode and "from the package registry" in study_copies.output(main):
         pytest.skip("the pinned artefacts are neither fetched nor within reach")
-    assert main.returncode == 0, study_copies.said(main)
+    assert main.returncode == 0, study_copies.output(main)
     return root, seconds
 
 

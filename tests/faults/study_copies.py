@@ -78,7 +78,7 @@ def start(root, *options, cores=2):
     return main
 
 
-def said(main):
+def output(main):
     """Return what a process of `start` has said by now."""
     descriptor = main.words.fileno()
     content = os.pread(descriptor, os.fstat(descriptor).st_size, 0)

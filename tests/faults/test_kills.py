@@ -120,14 +120,14 @@ def killed(untouched, tmp_path_factory):
     before = study_copies.raw(root)
     killer = Killer(untouched[1])
     main = killer.run_through(root, *ALL)
-    assert main.returncode == 0, study_copies.said(main)
+    assert main.returncode == 0, study_copies.output(main)
     for latest in EARLIER:
         spared = rules_of(root) - set(killer.killed)
         if spared:
             main = killer.again(root, spared, latest)
-            assert main.returncode == 0, study_copies.said(main)
+            assert main.returncode == 0, study_copies.output(main)
     main = killer.run_through(root, *ALL)  # what rests on a folder that was made again is due
-    assert main.returncode == 0, study_copies.said(main)
+    assert main.returncode == 0, study_copies.output(main)
     psutil.wait_procs(killer.orphans, timeout=120)
     return root, killer, before
 

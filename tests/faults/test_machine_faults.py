@@ -11,7 +11,7 @@ import psutil
 import pytest
 
 from faults import killing, study_copies
-from faults.study_copies import CUT, JOBS, said, start
+from faults.study_copies import CUT, JOBS, output, start
 from faults.tally import tries
 from smoke.conftest import ASKED_FOR
 from smoke.snakemake_runs import FOLDER, planned, run
@@ -77,13 +77,13 @@ def first_job(main, rule):
         for job in begun:
             if job.rule == rule:
                 return job
-    raise AssertionError(said(main))
+    raise AssertionError(output(main))
 
 
 def assert_one_line(main, *words):
     """Check that a run failed and said why in one line, without a traceback."""
     assert main.wait() != 0
-    text = said(main)
+    text = output(main)
     assert "Traceback" not in text, text
     assert any(all(word in line for word in words) for line in text.splitlines()), text
 
@@ -91,7 +91,7 @@ def assert_one_line(main, *words):
 def assert_survived(root, untouched):
     """Run the cut again: it must end with the results of the untouched run, and nothing else."""
     main = start(root, "--", *CUT)
-    assert main.wait() == 0, said(main)
+    assert main.wait() == 0, output(main)
     assert all((root / FOLDER / name).is_file() for name in CUT)
     assert study_copies.differences(root, untouched[0]) == []
     assert planned("--", *CUT, root=root) == {}
@@ -113,7 +113,8 @@ def test_a_disk_full_during_a_job_is_one_line(on_small_disk, untouched):
             first_job(main, rule)
             with filled(on_small_disk):
                 assert_one_line(main, f"  {rule}: ")
-                assert "No space left on device" in said(main) or "free or allow" in said(main)
+                text = output(main)
+                assert "No space left on device" in text or "free or allow" in text
         assert_survived(on_small_disk, untouched)
 
 
@@ -166,7 +167,7 @@ def test_inputs_of_the_future_are_one_line(cut, untouched):
         shift(of_inputs(cut), lambda: YEAR_S)
         main = start(cut, "--", *CUT)
         assert_one_line(main, "Error: ", "expected a date in the past", "touch")
-        advice = re.search(r"find .*touch {} \+", said(main)).group(0)
+        advice = re.search(r"find .*touch {} \+", output(main)).group(0)
         subprocess.run(advice, shell=True, cwd=cut / FOLDER, check=True)
         assert_survived(cut, untouched)
         assert planned(*ALL, root=cut) == {}
@@ -204,5 +205,5 @@ def test_of_two_runs_at_once_the_second_stops(cut, untouched):
         assert second.returncode != 0
         assert "Directory cannot be locked" in second.stdout + second.stderr
         assert "--unlock" in second.stdout + second.stderr
-        assert first.wait() == 0, said(first)
+        assert first.wait() == 0, output(first)
         assert_survived(cut, untouched)

@@ -28,7 +28,7 @@ def value(rng):
             None, True, False, 0, -1, 1, 2**31, 2**63, 2**64, 10**400, 0.5, 1e308, -1e308, 1e-320,
             float("nan"), float("inf"), float("-inf"), "", [], {}, [[]], [None], {"": None},
             [[1], [2, 3]], ["x"] * 2000, list(range(3000)), deep(60), deep(400), deep(2000),
-            {"a": deep(30)}, {name: 1 for name in NAMES[:12]}, rng.choice(NAMES), rng.choice(NAMES),
+            {"a": deep(30)}, dict.fromkeys(NAMES[:12], 1), rng.choice(NAMES), rng.choice(NAMES),
             rng.choice(NUMBERS),
         )
     )  # fmt: skip

@@ -257,7 +257,7 @@ def read_offsets(path):
 def read_errors(path):
     """Read a model of joint errors and state them."""
     record = walker.points(6)
-    signs = {name: record.xyz[..., 0] for name in error_signs.NAMES}
+    signs = dict.fromkeys(error_signs.NAMES, record.xyz[..., 0])
     return joint_errors.state(record, joint_errors.read(path), signs)
 
 

@@ -177,7 +177,7 @@ class Watched:
             )  # fmt: skip
         self.n_read, self.rest = 0, b""
         if self._answer(STARVED_S) != "ready":
-            raise RuntimeError(f"the worker does not start: {self._said()}")
+            raise RuntimeError(f"the worker does not start: {self._output()}")
 
     def stop(self):
         """End the process."""
@@ -191,10 +191,10 @@ class Watched:
         seconds = self.limit_s
         self.process.kill()
         code = self.process.wait()
-        said, self.process = self._said(), None
-        return "failure", f"{why} (status {code}): {said}", seconds
+        message, self.process = self._output(), None
+        return "failure", f"{why} (status {code}): {message}", seconds
 
-    def _said(self):
+    def _output(self):
         text = self.noise.read_bytes()[-600:].decode("utf-8", "replace")
         return " | ".join(text.split("\n")[-6:])
 

@@ -91,8 +91,8 @@ def started(root, cores, *options):
     command = [sys.executable, "-m", "snakemake", "--workflow-profile", "profiles/slurm"]
     command += ["--cores", str(cores), "--slurm-init-seconds-before-status-checks", "5"]
     command += ["--directory", str(FOLDER), "--configfile", str(TINY), *options]
-    with (root / "said.txt").open("w") as said:
-        return subprocess.Popen(command, cwd=root, stdout=said, stderr=said)
+    with (root / "said.txt").open("w") as output:
+        return subprocess.Popen(command, cwd=root, stdout=output, stderr=output)
 
 
 def finish(process, root, timeout_s):
@@ -103,13 +103,13 @@ def finish(process, root, timeout_s):
         process.kill()
         process.wait()
         status = "none: too long"
-    said = (root / "said.txt").read_text()
-    assert status == 0, said
-    return said
+    output = (root / "said.txt").read_text()
+    assert status == 0, output
+    return output
 
 
-def slurm_jobs(said):
-    return re.findall(r"submitted with SLURM jobid (\d+)", said)
+def slurm_jobs(output):
+    return re.findall(r"submitted with SLURM jobid (\d+)", output)
 
 
 @pytest.fixture(scope="module")
@@ -143,9 +143,9 @@ def test_one_take_with_a_cancelled_job_gives_the_same_skeletons(slurm, copy, tin
     except BaseException:
         process.kill()
         raise
-    said = finish(process, copy, timeout_s=600)
-    assert len(slurm_jobs(said)) >= 2, said
-    assert "Trying to restart job" in said
+    output = finish(process, copy, timeout_s=600)
+    assert len(slurm_jobs(output)) >= 2, output
+    assert "Trying to restart job" in output
     local = tiny_study.parent / SKELETONS
     assert (copy / FOLDER / SKELETONS).read_bytes() == local.read_bytes()
 

@@ -63,5 +63,5 @@ def test_nothing_is_made_of_somebody_who_withdrew(gym):
 def test_a_file_asked_for_by_name_is_refused_in_one_line(gym, consent, target, words):
     done = run("-n", "--", target, root=gym(consent), check=False)
     assert done.returncode != 0
-    said = (done.stdout + done.stderr).splitlines()
-    assert sum(words in line for line in said) == 1
+    message = (done.stdout + done.stderr).splitlines()
+    assert sum(words in line for line in message) == 1

@@ -211,13 +211,13 @@ def test_an_own_detector_is_checked_and_kept(gym):
     listed["with-own"] = {**listed["blazepose-full"], "detector": "own"}
     models.write_text(yaml.safe_dump(listed))
     kept = Path("results") / "networks" / "with-own" / "detector.checked.onnx"
-    for stated, said in ((sha256, ""), ("0" * 64, f"data/own.onnx: expected sha256 {'0' * 64}")):
+    for stated, message in ((sha256, ""), ("0" * 64, f"data/own.onnx: expected sha256 {'0' * 64}")):
         named = {"network": {"file": "data/own.onnx", "sha256": stated}}
         detectors.write_text(before + yaml.safe_dump({"own": entry | named}))
         done = snakemake(gym, "config/tiny.yaml", "--config", "models=[with-own]", "--", kept)
-        assert (done.returncode == 0) == (not said), done.stdout + done.stderr
-        assert said in done.stdout + done.stderr
-        assert (gym / kept).exists() == (not said)
+        assert (done.returncode == 0) == (not message), done.stdout + done.stderr
+        assert message in done.stdout + done.stderr
+        assert (gym / kept).exists() == (not message)
 
 
 def test_another_court_is_a_file(gym):

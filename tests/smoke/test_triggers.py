@@ -88,7 +88,7 @@ PLAYERS_FUSED = {
     "measure_kinematics": 2 + 4,  # the exported way in both takes, the others where they are drawn
     "find_contacts": 2,
     "evaluate_contacts": 2,
-    **{name: 2 for name in ("find_strokes", "evaluate_strokes", "draw_rally", "draw_strokes")},
+    **dict.fromkeys(("find_strokes", "evaluate_strokes", "draw_rally", "draw_strokes"), 2),
     "judge_take": 2,
     "evaluate_kinematics": 2 + 4,
     "evaluate_take": 2,
@@ -185,10 +185,12 @@ def test_an_older_date_hides_a_change_from_snakemake_but_not_from_verify_study(k
     with changed(video, video.read_bytes() + b"\0"):
         os.utime(video, ns=(state.st_atime_ns, state.st_mtime_ns))
         assert planned(root=kept) == {}
-        told = {line.split(":")[0] for line in by_file(verify(kept)) if "cam01.mp4 changed" in line}
+        message = {
+            line.split(":")[0] for line in by_file(verify(kept)) if "cam01.mp4 changed" in line
+        }
     folder = "results/walk-4cams-tiny/"
-    assert f"{folder}takes/balancing/figures/overlay.file.all-robust.blazepose-full.png" in told
-    others = {name for name in told if not name.startswith(folder)}
+    assert f"{folder}takes/balancing/figures/overlay.file.all-robust.blazepose-full.png" in message
+    others = {name for name in message if not name.startswith(folder)}
     figures = {f"results/figures/archive.{kind}" for kind in ("csv", "pdf", "png")}
     of_all = {"results/report.html", "results/figures/study.csv", "results/figures/ways.csv"}
     assert others <= of_all | figures
@@ -271,9 +273,9 @@ def test_a_package_of_the_lock_reruns_what_imports_it(kept):
     with edited(lock, f"\nezc3d=={metadata.version('ezc3d')} ", "\nezc3d==99 "):
         writing_c3d = {"export_take": 3, "export_motion": 5, "export_device": 1}
         assert planned(root=kept) == writing_c3d
-        told = by_file(verify(kept))
+        message = by_file(verify(kept))
     recorded = list((kept / RESULTS / "run" / "provenance").rglob("*.json"))
-    assert sum("environment.lock changed" in line for line in told) == len(recorded) > 100
+    assert sum("environment.lock changed" in line for line in message) == len(recorded) > 100
 
 
 def add_session(root, name, like, **change):

@@ -33,7 +33,7 @@ DOWNSTREAM_OF_FILTER = {
     "measure_kinematics": 7,  # all cameras in three takes, and the four others of the drawn take
     "find_contacts": 3,
     "evaluate_contacts": 2,
-    **{name: 2 for name in ("find_strokes", "evaluate_strokes", "draw_rally", "draw_strokes")},
+    **dict.fromkeys(("find_strokes", "evaluate_strokes", "draw_rally", "draw_strokes"), 2),
     "evaluate_take": 2,
     "evaluate_angles": 2,
     "evaluate_reliability": 2,

@@ -38,8 +38,8 @@ def main(
     if np.isfinite(body.tpose_s).all():
         log.logger.info("%s: T-pose %.2f to %.2f s", motion.source, spell.start_s, spell.stop_s)
     else:
-        said = "%s: no T-pose: unit and axes are those of its model's rest pose; film a T-pose"
-        log.logger.warning(said, motion.source)
+        warning = "%s: no T-pose: unit and axes are those of its model's rest pose; film a T-pose"
+        log.logger.warning(warning, motion.source)
     log.logger.info("%s: unit %.4f m, %s", motion.source, body.unit_m, frame.residuals)
     body_motion.write(body_npz, body)
     write_json(frame_json, frame.as_dict())

@@ -24,8 +24,10 @@ def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, calibr
     xyz_in_sfm = sfm_alignment.reconstruct(record.sfm_cameras, marked)
     try:
         world_from_sfm, how = align(court, xyz_in_sfm, calibration)
-    except InputError as error:  # of a doubtful map nothing is said of clicks
-        raise InputError(quality.doubt(record.support) or record.fault or str(error)) from error
+    except InputError as error:  # a doubtful map says nothing about clicks
+        raise InputError(
+            quality.map_warning(record.support) or record.fault or str(error)
+        ) from error
     found = [world_from_sfm.camera(camera) for camera in record.sfm_cameras]
     report = {
         "calibration": calibration,
@@ -51,8 +53,8 @@ def align(court, xyz_in_sfm, calibration):
 
 def warnings_of(court, record, marked, **options):
     """Return warnings on map, clicks and court; the remaining bend of this model is no fault."""
-    if doubt := quality.doubt(record.support):
-        return [doubt]
+    if warning := quality.map_warning(record.support):
+        return [warning]
     try:
         if record.fault:
             raise InputError(record.fault)

@@ -19,12 +19,12 @@ def main(paths, page_html, *, session, take, takes, subjects, stated, target, sh
     shots = []
     for one in log.progress(seen, len(seen), "cameras"):
         shots += strips.pictures(one, one.video, found, columns, joints)
-    rows, told = [], [sightings.stated("seen", name, entry) for name, entry in stated]
+    rows, sighted = [], [sightings.stated("seen", name, entry) for name, entry in stated]
     if paths.people_csv:
         rows = sightings.of_other_takes(paths.people_csv, take, takes)
         cameras = [one.camera.name for one in seen]
-        told += sightings.read(paths.people_csv, take, subjects, cameras)
-    named = earlier(told, found, seen, subjects)
+        sighted += sightings.read(paths.people_csv, take, subjects, cameras)
+    named = earlier(sighted, found, seen, subjects)
     words = {"session": session, "take": take, "subjects": subjects, "target": target}
     lines = court.read(paths.court) if paths.court else None
     built = people_page.build(
@@ -34,10 +34,10 @@ def main(paths, page_html, *, session, take, takes, subjects, stated, target, sh
     log.logger.info("%s: %d persons, %d pictures", page_html, len(columns), len(shots))
 
 
-def earlier(told, found, seen, subjects):
+def earlier(sighted, found, seen, subjects):
     """Return the earlier names that still fit; the log names the others."""
     named = []
-    for one in told:
+    for one in sighted:
         try:
             mark = marks.locate(one, found, seen, subjects)
         except InputError as error:

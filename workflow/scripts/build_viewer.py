@@ -20,16 +20,16 @@ def main(paths, html, *, title, layers, notes=()):
     skeletons = [skeleton.read(path) for path in paths.skeletons]
     _, clocks = sync.read(paths.clocks) if paths.clocks else ("", {})
     made = []
-    for path, said in zip(paths.layers, layers, strict=True):
+    for path, layout in zip(paths.layers, layers, strict=True):
         layer = viewer_layers.read(
             path,
-            said["name"],
-            skeletons[said["skeleton"]],
-            person=said.get("person", ""),
-            clock=clocks.get(said.get("source")),
-            shown=said["shown"],
+            layout["name"],
+            skeletons[layout["skeleton"]],
+            person=layout.get("person", ""),
+            clock=clocks.get(layout.get("source")),
+            shown=layout["shown"],
         )
-        made.append(viewer_layers.placed(layer, made[0]) if said.get("placed") else layer)
+        made.append(viewer_layers.placed(layer, made[0]) if layout.get("placed") else layer)
     court = court_files.read(paths.court) if paths.court else None
     seen = camera.read_toml(paths.cameras) if paths.cameras else ()
     content = viewer.build(title, made, seen, court, notes)

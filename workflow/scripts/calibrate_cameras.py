@@ -50,7 +50,7 @@ def main(
 
 def calibrate(record, clicks_csv, court_yaml, **options):
     """Return the result of `solve`; a doubtful map gives no warnings on clicks, court or names."""
-    doubt = quality.doubt(record.support)
+    doubtful_map = quality.map_warning(record.support)
     if record.outcome:
         raise InputError(record.outcome)
     try:
@@ -58,9 +58,9 @@ def calibrate(record, clicks_csv, court_yaml, **options):
             raise InputError(record.fault)
         found, checked = solve(record, clicks_csv, court_yaml, **options)
     except InputError as error:
-        raise InputError(doubt or str(error)) from error
-    if doubt:
-        checked["warnings"] = [doubt] if court_yaml else [*checked["warnings"], doubt]
+        raise InputError(doubtful_map or str(error)) from error
+    if doubtful_map:
+        checked["warnings"] = [doubtful_map] if court_yaml else [*checked["warnings"], doubtful_map]
     return found, checked
 
 

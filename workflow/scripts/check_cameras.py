@@ -25,16 +25,16 @@ def main(paths, check_json, check_csv, *, names, override, takes, unit=None):
     views = in_calibrated(found, shown, people.xy) if people else []
     joints = residuals.of_people(views) if views else None
     seen = verdict.Seen(static, joints)
-    said = verdict.judge(found, seen, residuals.height_px(views))
-    for line in said.warnings:
+    judged = verdict.judge(found, seen, residuals.height_px(views))
+    for line in judged.warnings:
         log.logger.warning("%s", line)
     rows = verdict.by_camera(found, seen)
     tables.write(check_csv, rows, float_format="%.3f")
     content = {
-        "warnings": said.warnings,
-        "faults": [{"what": one.what, "advice": one.advice} for one in said.faults],
-        "disagree_px": said.px,
-        "without_faults_px": said.mended_px,
+        "warnings": judged.warnings,
+        "faults": [{"what": one.what, "advice": one.advice} for one in judged.faults],
+        "disagree_px": judged.px,
+        "without_faults_px": judged.mended_px,
     }
     write_json(check_json, content)
 

@@ -12,10 +12,10 @@ from courtside.study.execution.script import run
 def main(errors_csv, quality_json, pdf, png, csv):
     warnings = {}
     for path in map(Path, quality_json):  # results/{session}/calibration/{calibration}/quality.json
-        said = json.loads(path.read_text(encoding="utf-8"))["warnings"]
-        warnings.setdefault(path.parts[-4], []).extend(said)
+        found = json.loads(path.read_text(encoding="utf-8"))["warnings"]
+        warnings.setdefault(path.parts[-4], []).extend(found)
     rows = calibration.read(errors_csv)
-    numbers = worlds.table(rows, {name: len(said) for name, said in warnings.items()})
+    numbers = worlds.table(rows, {name: len(found) for name, found in warnings.items()})
     style.save(worlds.draw(numbers), numbers, pdf, png, csv)
 
 

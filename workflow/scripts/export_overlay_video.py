@@ -26,8 +26,8 @@ def main(paths, mp4, *, camera, blur_faces, trim_s, crf, effort, keep_background
     drawn = overlay_video.pictures(
         frames, track, colours=COLOURS, hide_faces=blur_faces, keep_background=keep_background
     )
-    said = log.progress(drawn, len(track.own_s), f"{camera}: frames")
-    writer.write_video(mp4, said, rate_hz, crf=crf, effort=effort)
+    pictures = log.progress(drawn, len(track.own_s), f"{camera}: frames")
+    writer.write_video(mp4, pictures, rate_hz, crf=crf, effort=effort)
 
 
 if __name__ == "__main__":

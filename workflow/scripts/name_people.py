@@ -10,16 +10,16 @@ from courtside.study.execution.script import run
 
 def main(paths, people_npz, *, persons, stated, take, page, file):
     seen = footage.read(paths.cameras, paths.pose2d, None, paths.sync)
-    found, said = people.read(paths.found), naming.Wording(take, " ".join(page), file)
-    told = [
-        sightings.stated(f"{said.file}: subjects.{name}.seen", name, entry)
+    found, wording = people.read(paths.found), naming.Wording(take, " ".join(page), file)
+    sighted = [
+        sightings.stated(f"{wording.file}: subjects.{name}.seen", name, entry)
         for name, entry in stated
     ]
     if paths.people_csv:
         cameras = [one.camera.name for one in seen]
-        told += sightings.read(paths.people_csv, take.split("/")[-1], persons, cameras)
+        sighted += sightings.read(paths.people_csv, take.split("/")[-1], persons, cameras)
     lines = court.read(paths.court) if paths.court else None
-    named = naming.name(found, seen, told, persons, said, lines)
+    named = naming.name(found, seen, sighted, persons, wording, lines)
     for line in naming.lines(named):
         log.logger.info("%s", line)
     if left := naming.others(found, named):

@@ -280,7 +280,7 @@ def test_files_of_other_programs_are_named_with_what_to_do(tmp_path):
         storage.write(key, K)
     storage.release()
     in_px = re.sub(r"<fov_video[^>]*>", "", QUALISYS.replace("122879.0", "1919"))
-    for path, said in (
+    for path, message in (
         (
             tmp_path / "stereo.yml",
             r"a stereo pair \(M1, D1, M2, D2 \.\.\.\); give each camera with its",
@@ -289,7 +289,7 @@ def test_files_of_other_programs_are_named_with_what_to_do(tmp_path):
         (write(tmp_path / "take.csv", "Format Version,1.23,Take Name,x\n"), r"Motive \(\.csv\)"),
         (write(tmp_path / "hall.cal", "x"), r"older Motive \(\.cal\).*makes an \.mcal"),
     ):
-        with pytest.raises(InputError, match=said) as caught:
+        with pytest.raises(InputError, match=message) as caught:
             file_formats.read(path)
         assert "\n" not in str(caught.value)
 

@@ -307,10 +307,10 @@ FAULTS = [
 ]
 
 
-@pytest.mark.parametrize(("old", "new", "told"), FAULTS)
-def test_a_fault_is_one_line(tmp_path, old, new, told):
+@pytest.mark.parametrize(("old", "new", "message"), FAULTS)
+def test_a_fault_is_one_line(tmp_path, old, new, message):
     assert old in ARM
-    with pytest.raises(InputError, match=told) as caught:
+    with pytest.raises(InputError, match=message) as caught:
         read(tmp_path, ARM.replace(old, new, 1))
     assert "take.bvh: " in str(caught.value)
     assert "\n" not in str(caught.value)
@@ -376,7 +376,7 @@ def test_rows_are_numbers_whatever_their_padding():
 
 
 @pytest.mark.parametrize(
-    ("rows", "line", "told"),
+    ("rows", "line", "message"),
     [
         ("1 2 3\n4 5\n", 3, "expected 3 numbers, one for each channel, found 2"),
         ("1 2 3 4\n1 2 3 4\n", 2, "found 4"),
@@ -392,8 +392,8 @@ def test_rows_are_numbers_whatever_their_padding():
         ("1 2 3\n" + "5 " * 5000 + "\n", 3, "a line of 10000 characters"),
     ],
 )
-def test_a_bad_row_is_named(rows, line, told):
-    with pytest.raises(InputError, match=told) as caught:
+def test_a_bad_row_is_named(rows, line, message):
+    with pytest.raises(InputError, match=message) as caught:
         bvh.read_rows("a.bvh", "head\n" + rows, 5, 2, 3)
     assert str(caught.value).startswith(f"a.bvh: line {line}: ")
     assert "\n" not in str(caught.value)

@@ -7,7 +7,7 @@ from courtside.study.errors import InputError
 
 
 @pytest.mark.parametrize(
-    ("numbers", "first", "said"),
+    ("numbers", "first", "message"),
     [
         (range(100), 0, ""),
         (range(1, 101), 1, ""),
@@ -21,16 +21,16 @@ from courtside.study.errors import InputError
         (range(5), 0, "5 files for 100 frames; taken as frames 0 to 4"),
     ],
 )
-def test_files_are_matched_with_frames(numbers, first, said):
+def test_files_are_matched_with_frames(numbers, first, message):
     found, remark = frame_numbers.matched("j", numbers, 100)
     assert found == first
-    assert said in remark
-    assert bool(said) == bool(remark)
+    assert message in remark
+    assert bool(message) == bool(remark)
     assert "\n" not in remark
 
 
 @pytest.mark.parametrize(
-    ("numbers", "said"),
+    ("numbers", "message"),
     [
         (range(102), "at most 100 frames, as many as the video has, found 102 files numbered 0"),
         (
@@ -41,8 +41,8 @@ def test_files_are_matched_with_frames(numbers, first, said):
         (range(60, 110), "from 0 to 99 or a file for each, found 50 files numbered 60 to 109"),
     ],
 )
-def test_numbers_that_do_not_say_the_frame_are_refused(numbers, said):
-    with pytest.raises(InputError, match=said):
+def test_numbers_that_do_not_say_the_frame_are_refused(numbers, message):
+    with pytest.raises(InputError, match=message):
         frame_numbers.matched("j", numbers, 100)
 
 
@@ -67,6 +67,6 @@ def test_without_videos_all_cameras_count_together(tmp_path):
 
 def test_cameras_that_count_otherwise_are_refused(tmp_path):
     given = folders(tmp_path, a=range(4), b=[1_700_000_000, 1_700_000_001])
-    said = r"found 0 to 3 \(a\), 1700000000 to 1700000001 \(b\); number them alike"
-    with pytest.raises(InputError, match=said):
+    message = r"found 0 to 3 \(a\), 1700000000 to 1700000001 \(b\); number them alike"
+    with pytest.raises(InputError, match=message):
         frame_numbers.common(given)

@@ -150,9 +150,9 @@ def test_other_joints_are_named_in_one_line(tmp_path):
     names = MOCOPI.device_names()
     names[5], names[20] = "spine", "shin"
     recorded(tmp_path / "a.bvh", names=names)
-    told = r"a\.bvh: expected the 27 joints of mocopi27, found 27: "
+    message = r"a\.bvh: expected the 27 joints of mocopi27, found 27: "
     with pytest.raises(
-        InputError, match=told + "missing: torso_5, l_low_leg; unknown: spine, shin;"
+        InputError, match=message + "missing: torso_5, l_low_leg; unknown: spine, shin;"
     ):
         mocopi.read(tmp_path / "a.bvh", MOCOPI)
     text = (tmp_path / "a.bvh").read_text()
@@ -195,8 +195,10 @@ def test_angles_in_radians_are_named_and_read_with_their_key(tmp_path):
 @pytest.mark.parametrize("period_s", [20.0, 0.5, 1e-4])
 def test_a_frame_time_in_another_unit_is_named(tmp_path, period_s):
     recorded(tmp_path / "a.bvh", period_s=period_s)
-    told = f"5 to 500 frames a second, found a frame every {period_s:g} s; correct .*`Frame Time`"
-    with pytest.raises(InputError, match=told):
+    message = (
+        f"5 to 500 frames a second, found a frame every {period_s:g} s; correct .*`Frame Time`"
+    )
+    with pytest.raises(InputError, match=message):
         mocopi.read(tmp_path / "a.bvh", MOCOPI)
 
 

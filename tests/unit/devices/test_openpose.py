@@ -104,7 +104,7 @@ def test_numbers_that_reach_over_the_whole_video_may_begin_anywhere(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("numbers", "said"),
+    ("numbers", "message"),
     [
         (range(20), "20 numbered 0 to 19, as of every second frame; number the files"),
         (range(1, 15), "14 numbered 1 to 14, as of every third frame; number the files"),
@@ -112,9 +112,9 @@ def test_numbers_that_reach_over_the_whole_video_may_begin_anywhere(tmp_path):
         (range(42), "at most 40 frames.* found 42 files numbered 0 to 41;"),
     ],
 )
-def test_numbers_that_do_not_say_the_frame_are_refused(tmp_path, numbers, said):
+def test_numbers_that_do_not_say_the_frame_are_refused(tmp_path, numbers, message):
     write_numbers(tmp_path / "j", numbers)
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(InputError, match=message):
         read(tmp_path / "j", n_frames=40)
 
 
@@ -193,7 +193,7 @@ def test_scores_above_one_are_one(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("{", "expected OpenPose's JSON"),
         ("[]", "expected OpenPose's JSON"),
@@ -206,13 +206,13 @@ def test_scores_above_one_are_one(tmp_path):
         ('{"people": [{"pose_keypoints_2d": [[1, 2, 3]]}]}', "17 points of skeleton coco17"),
     ],
 )
-def test_a_damaged_file_is_named(tmp_path, text, said):
+def test_a_damaged_file_is_named(tmp_path, text, message):
     write(tmp_path / "j", "0.json", keypoints())
     (tmp_path / "j" / "1.json").write_text(text)
-    with pytest.raises(InputError, match=said) as told:
+    with pytest.raises(InputError, match=message) as caught:
         read(tmp_path / "j")
-    assert str(told.value).startswith(f"{tmp_path}/j/1.json: ")
-    assert "\n" not in str(told.value)
+    assert str(caught.value).startswith(f"{tmp_path}/j/1.json: ")
+    assert "\n" not in str(caught.value)
 
 
 def test_other_folders_are_refused(tmp_path):

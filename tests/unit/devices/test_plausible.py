@@ -22,10 +22,10 @@ STEPS = np.arange(100) / 30
 def test_the_unit_that_fits_is_named(found, unit, likely):
     with pytest.raises(InputError) as caught:
         plausible.check_length("a.bvh", "a body", found, unit, (0.85, 2.3))
-    told = str(caught.value)
-    assert told.startswith("a.bvh: expected a body of 0.85 to 2.3 m, found")
-    assert likely in told
-    assert "\n" not in told
+    message = str(caught.value)
+    assert message.startswith("a.bvh: expected a body of 0.85 to 2.3 m, found")
+    assert likely in message
+    assert "\n" not in message
 
 
 def test_lengths_and_rates_of_people_pass():

@@ -149,8 +149,8 @@ def test_what_bvh_cannot_hold_is_one_line(tmp_path):
             hierarchy=replace(shape, joints=("a", "b", "c", "b", "d"))
         ),
     }
-    for told, posed in faults.items():
-        with pytest.raises(InputError, match=told) as caught:
+    for fault, posed in faults.items():
+        with pytest.raises(InputError, match=fault) as caught:
             bvh.write(path, posed)
         assert "\n" not in str(caught.value)
     with pytest.raises(ValueError, match="one root"):

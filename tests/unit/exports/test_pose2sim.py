@@ -86,13 +86,13 @@ def test_3d_keypoints_come_back_from_the_folder(project):
 
 def test_settings_name_the_skeleton(project, tmp_path):
     folder, found, views, points = project
-    told = tomllib.loads((folder / "Config.toml").read_text())
-    assert told["project"] == {"multi_person": True, "frame_rate": 50, "frame_range": "all"}
-    assert told["pose"] == {"pose_model": "BLAZEPOSE"}
-    assert told["triangulation"]["undistort_points"] is True
+    content = tomllib.loads((folder / "Config.toml").read_text())
+    assert content["project"] == {"multi_person": True, "frame_rate": 50, "frame_range": "all"}
+    assert content["pose"] == {"pose_model": "BLAZEPOSE"}
+    assert content["triangulation"]["undistort_points"] is True
     pose2sim.write_project(tmp_path / "own", found, views, points, skeleton="rig")
-    told = tomllib.loads((tmp_path / "own" / "Config.toml").read_text())["pose"]
-    children = told[told["pose_model"]]["children"]
+    content = tomllib.loads((tmp_path / "own" / "Config.toml").read_text())["pose"]
+    children = content[content["pose_model"]]["children"]
     assert [child["id"] for child in children] == list(range(33))
     assert [child["name"] for child in children] == markers.names(list(points.joints))
 

@@ -36,10 +36,10 @@ def test_cut_out_scaled_and_turned_are_told_apart(calibrated, video, kind, keys)
     kept = found.crop_px[2:] if found.crop_px else calibrated
     if kind != "turned":
         assert picture_size.scaled_size(kept, found.scale or 1) == video
-    said = picture_size.advice(calibrated, video)
+    message = picture_size.advice(calibrated, video)
     if kind in ("scaled", "cut out and scaled"):
-        assert found.keys in said
-    assert kind == "same" or ("crop_px" in said) == (kind != "turned")
+        assert found.keys in message
+    assert kind == "same" or ("crop_px" in message) == (kind != "turned")
 
 
 def test_a_half_size_video_is_never_taken_for_a_cut_out():

@@ -73,10 +73,10 @@ def test_points_are_where_they_are_defined():
 
 
 @pytest.mark.parametrize("memory_s", [0.0, 0.08])
-@pytest.mark.parametrize("told", [True, False], ids=["told", "found"])
-def test_sigmas_hold_ninety_percent(memory_s, told):
+@pytest.mark.parametrize("noise_known", [True, False], ids=["noise_known", "found"])
+def test_sigmas_hold_ninety_percent(memory_s, noise_known):
     time_s, xyz = circling(rate_hz=30.0, seconds=20.0)
-    how = measures.Filter(CUTOFFS_HZ, noise=Noise(memory_s) if told else None)
+    how = measures.Filter(CUTOFFS_HZ, noise=Noise(memory_s) if noise_known else None)
     clean = measured(footwork.record(xyz, time_s, TINY_M, 0.0, np.random.default_rng(9)), how)
     inside = {"speed": [], "acceleration": [], "position": [], "angle": []}
     for seed in range(4):

@@ -31,8 +31,8 @@ class Elements(HTMLParser):
 
     def all(self, tag, **attributes):
         return [
-            (has, said)
-            for name, has, said in self.found
+            (has, text)
+            for name, has, text in self.found
             if name == tag and attributes.items() <= has.items()
         ]
 
@@ -49,14 +49,14 @@ def test_data_is_json_that_cannot_end_early():
     numbers = np.array([[1.5, np.nan], [np.inf, -2]])
     given = {"rogue": ROGUE, "numbers": numbers, "one": np.int64(3), 4: ("\u2028", np.float32(0.5))}
     read = Elements(page.build("t", "", data={"all": given}))
-    ((_, said),) = read.all("script", id="data-all")
-    assert json.loads(said) == {
+    ((_, text),) = read.all("script", id="data-all")
+    assert json.loads(text) == {
         "rogue": ROGUE,
         "numbers": [[1.5, None], [None, -2]],
         "one": 3,
         "4": ["\u2028", 0.5],
     }
-    assert "<" not in said and "\u2028" not in said
+    assert "<" not in text and "\u2028" not in text
 
 
 def test_pictures_go_where_they_are_shown():
@@ -79,7 +79,7 @@ def test_scripts_and_styles_stay_in_their_elements(tmp_path):
     read = Elements(page.build("t", "<i>end</i>", js=[script], css=[style]))
     assert len(read.all("script")) == 3
     assert read.all("b") == []
-    assert [said.strip() for _, said in read.all("script")][-1].endswith('!--";')
+    assert [text.strip() for _, text in read.all("script")][-1].endswith('!--";')
 
 
 def test_a_policy_forbids_all_addresses_outside():
@@ -111,8 +111,8 @@ def test_a_page_is_written_whole_as_utf_8(tmp_path):
 def test_templates_escape_text_between_tags_and_in_attributes():
     template = page.TEMPLATES.from_string('<p title="{{ text }}">{{ text }}</p>')
     read = Elements(template.render(text=ROGUE))
-    ((has, said),) = read.all("p")
-    assert has["title"] == said == ROGUE
+    ((has, text),) = read.all("p")
+    assert has["title"] == text == ROGUE
     assert Elements(template.render(text=3)).all("p") == [({"title": "3"}, "3")]
 
 

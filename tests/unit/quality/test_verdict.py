@@ -60,8 +60,8 @@ def test_a_take_in_which_nobody_was_found_failed(n_cameras):
     rows, _ = wholes(judged.footage(n_cameras=n_cameras, hidden=dict.fromkeys(range(4), 1.0)))
     assert {row.verdict for row in rows.values()} == {FAILED}
     assert rows[ALL, ALL].cause == causes.DETECTION
-    said = rows[ALL, ALL].sentence
-    assert said.count("found nobody in 100% of the frames") == 1 and "Cameras c0, c1" in said
+    message = rows[ALL, ALL].sentence
+    assert message.count("found nobody in 100% of the frames") == 1 and "Cameras c0, c1" in message
 
 
 def test_cameras_that_follow_different_people_fail_the_take():

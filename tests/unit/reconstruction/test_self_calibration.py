@@ -156,6 +156,6 @@ def test_a_camera_that_filmed_in_two_sizes_is_named_with_the_take():
     walk, views, clocks = filmed()
     half = replace(views[1], size=np.array([960, 540]))
     takes = [(walk, views, clocks), ("later", [views[0], half], clocks)]
-    said = r"take later: camera c1: expected pictures of .* as in .* found 960 x 540 px; name"
-    with pytest.raises(InputError, match=said):
+    message = r"take later: camera c1: expected pictures of .* as in .* found 960 x 540 px; name"
+    with pytest.raises(InputError, match=message):
         self_calibration.guess(NAMES, {}, takes, [[1.6, 1.8]] * 2)

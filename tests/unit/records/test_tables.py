@@ -45,6 +45,6 @@ def test_what_is_no_such_table_is_named_in_one_line(tmp_path, content):
         path.write_bytes(content)
     with pytest.raises(
         InputError, match=r"rows.csv: expected a table of rows, .*; delete it"
-    ) as said:
+    ) as caught:
         tables.read(path, "a table of rows", lambda table: "found one row only")
-    assert "\n" not in str(said.value)
+    assert "\n" not in str(caught.value)

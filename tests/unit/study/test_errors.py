@@ -79,9 +79,9 @@ def test_what_is_no_damage_passes():
 
 
 def test_an_error_without_words_is_named():
-    assert errors.said(MemoryError()) == "MemoryError"
-    assert errors.said(ValueError("two\n lines")) == "two lines"
-    assert len(errors.said(ValueError("x" * 9999))) == errors.SHORT
+    assert errors.message(MemoryError()) == "MemoryError"
+    assert errors.message(ValueError("two\n lines")) == "two lines"
+    assert len(errors.message(ValueError("x" * 9999))) == errors.SHORT
 
 
 def test_too_little_memory_for_a_whole_file_is_told_as_that():

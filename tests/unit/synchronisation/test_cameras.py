@@ -58,8 +58,8 @@ def test_clocks_of_a_take_are_one_or_found_or_stated():
     known = {camera.name: camera for camera in CAMERAS}
     together = camera_sync.of_take(views, known, synchronised=True, stated={})
     assert [clock.offset_s for clock in together.values()] == [0, 0, 0]
-    said = {"c2": {"offset_s": -3.0}}
-    found = camera_sync.of_take(views, known, synchronised=False, stated=said, min_score=0.3)
+    offsets = {"c2": {"offset_s": -3.0}}
+    found = camera_sync.of_take(views, known, synchronised=False, stated=offsets, min_score=0.3)
     assert found["c1"].offset_s == pytest.approx(CLOCKS[1].offset_s, abs=0.008)
     assert found["c2"] == Clock(-3.0, note="stated by the session")
 

@@ -93,12 +93,12 @@ def test_sources_of_one_device_have_one_clock_and_known_clocks_stay():
         rng, take, source="d415-depth", kind="rgbd", clock=true, noise_m=(0.004,) * 3
     )
     mocopi = device_takes.mocopi(rng, take)
-    said = Clock(0.25, 0.0, 0.001, 0.0, "assumed", "said")
+    stated = Clock(0.25, 0.0, 0.001, 0.0, "assumed", "stated")
     devices = {"d415-rgb": "d415", "d415-depth": "d415"}
-    found = solve(reference, rgb, depth, mocopi, devices=devices, known={"mocopi": said})
+    found = solve(reference, rgb, depth, mocopi, devices=devices, known={"mocopi": stated})
     assert found["d415-rgb"].clock == found["d415-depth"].clock
     assert found["d415-rgb"].clock.offset_s == pytest.approx(1.5, abs=0.008)
-    assert found["mocopi"].clock is said
+    assert found["mocopi"].clock is stated
     shared = solve(depth, rgb, devices=devices)
     assert shared["d415-rgb"].clock.offset_s == 0 and shared["d415-rgb"].clock.usable
 

@@ -58,9 +58,9 @@ def test_a_cut_file_is_told(tmp_path, faststart):
     with cut.open("r+b") as stream:
         stream.truncate(cut.stat().st_size * 6 // 10)
     what = r"last good frame is \d+ at|no frame" if faststart else "no video or was cut short"
-    with pytest.raises(InputError, match=what) as told:
+    with pytest.raises(InputError, match=what) as caught:
         quick.glance(cut)
-    assert str(told.value).startswith(str(cut))
+    assert str(caught.value).startswith(str(cut))
     if faststart:  # a take that is trimmed to end before the cut may use it
         assert quick.glance(cut, stop_s=0.2).size == (160, 120)
 

@@ -48,16 +48,16 @@ def test_one_picture_is_not_checked():
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "reason"),
     [
         (((3.0, 0.0),), "shifted by 3.0 px"),
         (((0.0, 0.0), 1.01), r"zoomed by \+(0.9[89]|1.0[012]) %"),
         (((0.0, 0.0), 1.0, 1.0), r"turned by \+(0.99|1.0[01]) deg"),
     ],
 )
-def test_a_camera_that_moves_meanwhile_is_named(change, said):
+def test_a_camera_that_moves_meanwhile_is_named(change, reason):
     frames = [texture(0)] * 4 + [moved(texture(0), *change)] * 5
-    with pytest.raises(InputError, match=said) as caught:
+    with pytest.raises(InputError, match=reason) as caught:
         static_picture.static_picture("left", "left.mp4", frames, **LIMITS)
     message = str(caught.value)
     assert message.startswith("camera left: ") and "last third of left.mp4" in message
@@ -73,14 +73,14 @@ def test_small_movements_pass():
 
 
 @pytest.mark.parametrize(
-    ("other", "said"),
+    ("other", "message"),
     [
         (texture(1), "found only .* background points that agree"),
         (texture(0, (320, 180)), "found 640x360 and 320x180 pixels"),
     ],
 )
-def test_views_that_cannot_be_compared_are_said(other, said):
-    with pytest.raises(InputError, match=said):
+def test_views_that_cannot_be_compared_are_said(other, message):
+    with pytest.raises(InputError, match=message):
         static_picture.check_still("left", texture(0), other, **LIMITS)
 
 

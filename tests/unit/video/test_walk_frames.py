@@ -144,15 +144,15 @@ def test_an_end_inside_a_thumbnail_is_not_the_end(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("name", "said"),
+    ("name", "message"),
     [
         ("a.HEIC", r"a\.HEIC: .* convert all to \.jpg"),
         ("a.txt", "expected photos as .* found none"),
     ],
 )
-def test_folders_without_readable_photos_are_said(tmp_path, name, said):
+def test_folders_without_readable_photos_are_said(tmp_path, name, message):
     (tmp_path / name).write_bytes(b"x")
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(InputError, match=message):
         list(walk_frames.frames(tmp_path))
 
 

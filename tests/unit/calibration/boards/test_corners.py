@@ -81,10 +81,10 @@ def test_frames_of_real_videos_show_what_the_table_says():
                       "dictionary": "DICT_4X4_1000", "inverted": True})  # fmt: skip
     videos = {f"cam_{k}": XY.parent / f"cam_{k}.mp4" for k in (0, 1)}
     found = corners.of_videos(videos, board, every_s=1.5)
-    told = corners.of_table(XY, {name: name for name in videos}, board)
+    table = corners.of_table(XY, {name: name for name in videos}, board)
     assert found.sizes == dict.fromkeys(videos, (1280, 720))
     for c in (0, 1):
-        theirs = told.xy[told.camera == c]
+        theirs = table.xy[table.camera == c]
         # A few corners are found by one program only.
         near = [np.abs(theirs - xy).max(axis=1).min() < 1.5 for xy in found.xy[found.camera == c]]
         assert np.mean(near) > 0.8

@@ -104,7 +104,7 @@ def test_points_that_are_not_in_the_set_do_not_count():
 
 
 @pytest.mark.parametrize(
-    ("reason", "said"),
+    ("reason", "start"),
     [
         (
             "camera back: the points lie in one plane; click more",
@@ -116,12 +116,12 @@ def test_points_that_are_not_in_the_set_do_not_count():
         ),
     ],
 )
-def test_a_matrix_that_is_no_camera_is_said_in_one_line(reason, said):
+def test_a_matrix_that_is_no_camera_is_named_in_one_line(reason, start):
     none = resection.Linear(np.eye(3, 4), None, 1.0, 10.0, bool(reason), reason)
     with pytest.raises(InputError) as caught:
         known_points.cameras({"back": none})
     message = str(caught.value)
-    assert message.startswith(said) and "\n" not in message and ". ;" not in message
+    assert message.startswith(start) and "\n" not in message and ". ;" not in message
     assert message.count("camera back") == 1
 
 
@@ -146,7 +146,7 @@ def test_mirrored_points_are_named_or_put_the_camera_below_the_floor():
         "side", size, [[421, 0, 240], [0, 421, 135], [0, 0, 1]], [0] * 5, pose
     )
     drawn = {"n_draws": 60, "seed": 1, "preset": "plain", "session": "mirrored"}
-    way, said = known_points.method("known18", COURT), 0
+    way, n_named = known_points.method("known18", COURT), 0
     for marked in clicking.clicks_of_persons([camera], COURT, COURT.xyz, **drawn):
         clicks = {"side": marked["side"][other]}
         try:
@@ -156,10 +156,10 @@ def test_mirrored_points_are_named_or_put_the_camera_below_the_floor():
         except InputError as error:
             assert "camera side: " in str(error)
             assert "the points are mirrored; exchange the names of the left" in str(error)
-            said += 1
+            n_named += 1
         else:
             assert found["side"].camera.centre_in_world[2] < 0
-    assert said > 0
+    assert n_named > 0
 
 
 @pytest.mark.parametrize(("place", "f_px"), [((-17.7, 6.7, 1.9), 414), ((3.0, -14.9, 2.2), 435)])

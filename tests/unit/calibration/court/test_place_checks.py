@@ -57,18 +57,18 @@ def test_right_places_are_left_alone():
 
 
 @pytest.mark.parametrize(
-    ("moved", "said"),
+    ("moved", "message"),
     [
         ((0, -0.5, 0), "y_m is 0.50 m too small"),
         ((0.4, 0, 0), "x_m is 0.40 m too large"),
         ((0.3, 0.6, 0), "x_m is 0.30 m too large, y_m is 0.60 m too large"),
     ],
 )
-def test_a_camera_whose_places_are_all_off_is_named_with_the_way(moved, said):
+def test_a_camera_whose_places_are_all_off_is_named_with_the_way(moved, message):
     (found,) = place_checks.shifts(placed({"b": moved}))
     assert found.camera == "b"
     np.testing.assert_allclose(found.by_m, -np.array(moved), atol=1e-9)
-    assert f"camera b: expected its {len(PLACES)} points" in str(found) and said in str(found)
+    assert f"camera b: expected its {len(PLACES)} points" in str(found) and message in str(found)
 
 
 def test_rounded_places_hide_nothing():

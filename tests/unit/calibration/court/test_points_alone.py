@@ -124,7 +124,7 @@ def test_free_places_are_a_court_without_lines():
         for of in (places, replace(moved, sigma_m=places.sigma_m))
     )
     np.testing.assert_allclose(one.solution.covariance, other.solution.covariance)
-    said = points_alone.summary(one)
-    assert said["n_points"]["east"] == np.isfinite(clicks["east"][:, 0]).sum()
-    assert 0.5 < said["rms_px"]["east"] < 1.5
-    assert said["f_sigma_px"]["east"] > 0
+    message = points_alone.summary(one)
+    assert message["n_points"]["east"] == np.isfinite(clicks["east"][:, 0]).sum()
+    assert 0.5 < message["rms_px"]["east"] < 1.5
+    assert message["f_sigma_px"]["east"] > 0

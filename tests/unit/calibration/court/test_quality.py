@@ -114,8 +114,8 @@ def test_without_a_court_maps_that_disagree_are_a_warning():
 def test_a_map_that_contradicts_a_pair_is_doubtful(above):
     pair = "static/side.png", "frames/walk/000003.png"
     support = Support(0.8, pair[1], 0.6, pair, quality.SUPPORTED + above)
-    assert quality.doubt(support) == ""
-    warning = quality.doubt(support._replace(pair_share=0.244))
+    assert quality.map_warning(support) == ""
+    warning = quality.map_warning(support._replace(pair_share=0.244))
     assert warning.startswith("map doubtful: expected 30 % or more of the matches of static/side")
     assert "000003.png" in warning and warning.endswith("found 24 %; take more bridging images")
 

@@ -55,11 +55,13 @@ def test_four_quarter_turns_change_nothing():
 
 def test_simple_faults_name_every_camera_and_pair():
     seen_by = hall.four_cameras()
-    said = [one.what for one in faults.simple(seen_by)]
-    assert sum("mirrored" in line for line in said) == 8
-    assert sum("turned by" in line for line in said) == 12
-    assert sum("picture size" in line for line in said) == 4 * len(faults.SCALES)
-    assert next(line for line in said if "exchanged" in line) == "cameras c0 and c1 are exchanged"
+    message = [one.what for one in faults.simple(seen_by)]
+    assert sum("mirrored" in line for line in message) == 8
+    assert sum("turned by" in line for line in message) == 12
+    assert sum("picture size" in line for line in message) == 4 * len(faults.SCALES)
+    assert (
+        next(line for line in message if "exchanged" in line) == "cameras c0 and c1 are exchanged"
+    )
     assert all(one.n_free == 0 for one in faults.simple(seen_by))
 
 

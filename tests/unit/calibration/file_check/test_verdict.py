@@ -33,9 +33,9 @@ def test_good_cameras_are_good(seed):
     seen_by = hall.four_cameras()
     static, people = seen(seen_by, seed)
     for data in ((static, None), (None, people), (static, people)):
-        said = verdict.judge(seen_by, verdict.Seen(*data), person_px=300.0)
-        assert said.warnings == [] and said.faults == []
-        assert all(px < 4 for px in said.px.values())
+        message = verdict.judge(seen_by, verdict.Seen(*data), person_px=300.0)
+        assert message.warnings == [] and message.faults == []
+        assert all(px < 4 for px in message.px.values())
 
 
 def scaled_focal(camera):
@@ -60,18 +60,18 @@ def test_a_spoilt_camera_and_what_is_wrong_are_named(spoil, what, by):
     true = hall.four_cameras()
     static, people = seen(true)
     data = verdict.Seen(static, None) if by == "static" else verdict.Seen(None, people)
-    said = verdict.judge([true[0], spoil(true[1]), *true[2:]], data, person_px=300.0)
-    assert len(said.warnings) == 1 and "\n" not in said.warnings[0]
-    assert what in said.warnings[0]
-    assert len(said.faults) == 1
-    assert said.mended_px[by] < 0.7 * said.px[by]
+    message = verdict.judge([true[0], spoil(true[1]), *true[2:]], data, person_px=300.0)
+    assert len(message.warnings) == 1 and "\n" not in message.warnings[0]
+    assert what in message.warnings[0]
+    assert len(message.faults) == 1
+    assert message.mended_px[by] < 0.7 * message.px[by]
 
 
 def test_exchanged_cameras_are_named():
     true = hall.four_cameras()
     exchanged = [true[0], replace(true[2], name="c1"), replace(true[1], name="c2"), true[3]]
-    said = verdict.judge(exchanged, verdict.Seen(*seen(true)))
-    assert [one.what for one in said.faults] == ["cameras c1 and c2 are exchanged"]
+    message = verdict.judge(exchanged, verdict.Seen(*seen(true)))
+    assert [one.what for one in message.faults] == ["cameras c1 and c2 are exchanged"]
 
 
 def test_several_mirrored_points_are_found_together():
@@ -79,8 +79,8 @@ def test_several_mirrored_points_are_found_together():
     spoilt = [
         faults.mirrored_point(one, axis) for one, axis in zip(true, (0, 1, 1, 1), strict=True)
     ]
-    said = verdict.judge(spoilt, verdict.Seen(*seen(true)))
-    assert [one.what[-22:] for one in said.faults] == [
+    message = verdict.judge(spoilt, verdict.Seen(*seen(true)))
+    assert [one.what[-22:] for one in message.faults] == [
         f"camera c{at} is mirrored in {letter}"[-22:] for at, letter in enumerate("xyyy")
     ]
 
@@ -88,15 +88,15 @@ def test_several_mirrored_points_are_found_together():
 def test_what_no_single_fault_explains_is_said_with_the_worst_camera():
     true = hall.four_cameras()
     spoilt = [cameras.turned(c, v) for c, v in zip(true, TURNS, strict=True)]
-    said = verdict.judge(spoilt, verdict.Seen(seen(true)[0], None))
-    assert said.faults == []
-    assert "no single fault of it explains this, most of all camera c" in said.warnings[0]
+    message = verdict.judge(spoilt, verdict.Seen(seen(true)[0], None))
+    assert message.faults == []
+    assert "no single fault of it explains this, most of all camera c" in message.warnings[0]
 
 
 def test_without_views_nothing_is_said():
     few = hall.seen_points(hall.four_cameras(), 3, 0.5, seed=0)
-    said = verdict.judge(hall.four_cameras(), verdict.Seen(few, few))
-    assert said == verdict.Verdict([], [], {}, {})
+    message = verdict.judge(hall.four_cameras(), verdict.Seen(few, few))
+    assert message == verdict.Verdict([], [], {}, {})
 
 
 def test_two_cameras_are_judged_by_what_they_share():
@@ -127,17 +127,17 @@ def walk_cameras(principal_point_px):
 def test_the_mirrored_points_of_a_real_file_are_found_by_points_at_rest():
     as_is, mended = walk_cameras({}), walk_cameras(SESSION["calibration"]["principal_point_px"])
     _, static = clicks.read_static(POINTS_CSV, [camera.name for camera in as_is])
-    said = verdict.judge(as_is, verdict.Seen(static, None))
-    assert [one.what for one in said.faults] == [
+    message = verdict.judge(as_is, verdict.Seen(static, None))
+    assert [one.what for one in message.faults] == [
         "the principal point of camera cam01 is mirrored in x",
         "the principal point of camera cam02 is mirrored in y",
         "the principal point of camera cam03 is mirrored in y",
         "the principal point of camera cam04 is mirrored in y",
     ]
-    assert said.px["static"] > 7
+    assert message.px["static"] > 7
     good = verdict.judge(mended, verdict.Seen(static, None))
     assert good.warnings == [] and good.px["static"] <= 2.2
-    assert good.px["static"] == pytest.approx(said.mended_px["static"], abs=0.01)
+    assert good.px["static"] == pytest.approx(message.mended_px["static"], abs=0.01)
 
 
 @needs_real

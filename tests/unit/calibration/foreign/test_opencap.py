@@ -66,8 +66,8 @@ def test_a_pickle_that_would_run_something_does_not(tmp_path, protocol):
     [
         ([1, 2], "list in place of imageSize"),
         ({"rotation": 1}, r"\['rotation'\] in place of imageSize"),
-        ({key: 1.0 for key in ("imageSize", "intrinsicMat", "distortion", "rotation",
-                               "translation")}, "camera bad: expected imageSize"),
+        (dict.fromkeys(("imageSize", "intrinsicMat", "distortion", "rotation", "translation"), 1.0),
+         "camera bad: expected imageSize"),
     ],
 )  # fmt: skip
 def test_other_contents_are_one_line(tmp_path, content, message):

@@ -1,6 +1,7 @@
 """All numbers together: documents are written and checked against other results."""
 
-from pathlib import Path
+import shutil
+from pathlib import Path, PurePosixPath
 
 import pytest
 
@@ -8,6 +9,8 @@ from courtside.evaluation.numbers import register, study
 from courtside.study.errors import InputError
 
 ROOT = Path(__file__).parents[4]
+NET = "blazepose-heavy-flip"
+TAKES, CLAPS = "players-b/evaluation/takes", "single-view/evaluation/takes/claps"
 
 
 @pytest.fixture
@@ -15,9 +18,7 @@ def repository(tmp_path):
     """Return a repository with the tables by hand, and documents with one table each."""
     folder = tmp_path / "docs" / "numbers"
     folder.mkdir(parents=True)
-    (tmp_path / "config" / "published").mkdir(parents=True)
-    theirs = Path("config/published/badminton_tab01.csv")
-    (tmp_path / theirs).write_text((ROOT / theirs).read_text())
+    shutil.copytree(ROOT / "config", tmp_path / "config")
     for path in (ROOT / "docs" / "numbers").glob("*.csv"):
         (folder / path.name).write_text(path.read_text())
     for name, table in (("README.md", "racket"), ("docs/measured.md", "angles")):
@@ -52,3 +53,44 @@ def test_results_without_a_table_are_refused_by_its_name(repository, tmp_path):
         study.numbers(tmp_path / "nowhere", repository)
     with pytest.raises(InputError, match=r"figures/calibration\.csv"):
         study.numbers(tmp_path, repository)
+
+
+def test_the_summary_repeats_numbers_of_other_tables(source, repository):
+    found = study.numbers(source.folder, repository)
+    shown = {n.row: n for n in found if n.table == study.SUMMARY}
+    assert list(shown) == list(study.SUMMED_UP)
+    printed = {n.name: n.printed for n in found}
+    knee = shown["knee flexion of the same virtual players: RMS error"]
+    assert knee.printed == f"{printed['angles/corrected_rmse/knee flexion, `players-b`']} degrees"
+    joints = shown["joints of virtual players, four cameras, corrected: median / 95 %"]
+    assert joints.printed == "29 / 58 mm in the median take, 34 / 68 mm in the worst"
+    with pytest.raises(InputError, match=r"expected corrected_rmse in the row .*knee flexion"):
+        study.summary([n for n in found if n.table != "angles"])
+
+
+LEFTOVERS = (  # a table that the default configuration does not make, and one to copy it from
+    ("plain-b/evaluation/global-n40-o2.csv", "plain-a/evaluation/global-n40-o0.csv"),
+    (f"{TAKES}/footwork/errors/sfm-n40.{NET}.csv",) * 2,
+    (f"{TAKES}/footwork/kinematics/sfm-n40/all-robust/{NET}.csv",) * 2,
+    (f"{TAKES}/shot/round_trip/sfm-n40.{NET}.csv",) * 2,
+    ("figures/capture_height.csv", "figures/capture_baseline.csv"),
+    (f"{CLAPS}/sources/net.errors.csv", f"{CLAPS}/sources/{NET}.errors.csv"),
+)
+
+
+@pytest.mark.parametrize(("old", "whole"), LEFTOVERS, ids=[old for old, _ in LEFTOVERS])
+def test_leftover_tables_of_older_configurations_are_not_read(
+    source, repository, tmp_path, old, whole
+):
+    results = shutil.copytree(source.folder, tmp_path / "results")
+    before = list(map(repr, study.numbers(results, repository)))  # NaN is not itself
+    (results / old).parent.mkdir(parents=True, exist_ok=True)
+    shutil.copy(results / whole.replace("sfm-n40", "sfm-n40-lines"), results / old)
+    assert list(map(repr, study.numbers(results, repository))) == before
+
+
+def test_every_source_of_the_register_is_made_by_the_default_configuration():
+    made = [PurePosixPath("/", path) for path in study.made(ROOT)]  # matched from their start
+    kept = {n.source for n in register.read(ROOT / study.REGISTER) if n.origin == register.STUDY}
+    assert [one for one in kept if not any(path.match(f"/{one}") for path in made)] == []
+    assert len(kept) > 50

@@ -49,8 +49,8 @@ def test_failures_are_counted_and_written(numbers):
     lost = at(numbers, paper, 4, False)
     assert (lost["n"], lost["n_failed"]) == (0, 2)
     drawing = conditions.draw(numbers, "speed_kmh", "stabiliser")
-    said = [text.get_text() for axis in drawing.axes for text in axis.texts]
-    assert said == ["2 of 2 failed"] * 2  # what finds no cameras fails both ways
+    texts = [text.get_text() for axis in drawing.axes for text in axis.texts]
+    assert texts == ["2 of 2 failed"] * 2  # what finds no cameras fails both ways
 
 
 def test_every_second_setting_has_a_line(numbers):

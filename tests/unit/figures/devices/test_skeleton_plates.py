@@ -60,11 +60,11 @@ def test_without_a_tpose_a_frame_of_the_take_is_drawn_and_named(rows):
     at = int(apart.argmax())
     wrist = found[0].xyz[found[0].skeleton.index("left_wrist")]
     np.testing.assert_allclose(wrist, body.following[at, 2])
-    said = f"no T-pose; frame at {body.time_s[at]:.2f} s"
+    pose = f"no T-pose; frame at {body.time_s[at]:.2f} s"
     table = skeleton_plates.table(found, rows)
-    assert set(table["pose"]) == {said, "schematic"}
+    assert set(table["pose"]) == {pose, "schematic"}
     drawing = skeleton_plates.draw(found, rows)
-    assert drawing.subfigs[0].axes[0].get_title().endswith(said)
+    assert drawing.subfigs[0].axes[0].get_title().endswith(pose)
     nobody = replace(body, following=np.full_like(body.following, np.nan))
     found = skeleton_plates.plates([nobody], SKELETONS, OF)
     assert np.isnan(found[0].xyz).all()

@@ -88,8 +88,8 @@ def test_parts_are_stacked_in_order_and_fill_the_bar(drawing):
     bars = [patch for patch in axis.patches if abs(patch.get_y() + 0.33) < 1e-6]
     np.testing.assert_allclose([bar.get_width() for bar in bars], list(SHARES.values()))
     np.testing.assert_allclose([bar.get_x() for bar in bars], [0, 10, 30, 55, 60])
-    said = axis.texts[0].get_text()
-    assert said == "100 mm rms; shift 12 mm, scale 1.050\nturn 3.0°, time −20 ms"
+    label = axis.texts[0].get_text()
+    assert label == "100 mm rms; shift 12 mm, scale 1.050\nturn 3.0°, time −20 ms"
 
 
 def test_a_source_without_common_frames_has_no_bar():

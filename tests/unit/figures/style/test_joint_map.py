@@ -40,9 +40,9 @@ def test_derived_joints_are_sums_of_numbers(common, name, words):
 
 
 def test_a_definition_that_differs_is_marked():
-    told = ROWS.groupby("common")["same"].all()
-    assert told["pelvis_thorax"] and told["mid_hip"]
-    assert not told["head_centre"] and not told["neck"]
+    alike = ROWS.groupby("common")["same"].all()
+    assert alike["pelvis_thorax"] and alike["mid_hip"]
+    assert not alike["head_centre"] and not alike["neck"]
     pair = joint_map.rows(SKELETONS[:2], TABLE).groupby("common")["same"].all()
     assert pair["neck"]  # mocopi's and BlazePose's is one
 

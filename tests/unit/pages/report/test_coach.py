@@ -49,8 +49,8 @@ def test_a_take_says_distance_speeds_and_angles():
         "left_out": {"p1": (6, 100, {})},
         "seconds": 24.03,
     }
-    said = {"id": "take-x", "name": "smash", "links": [("a/viewer.html", "3D viewer")]}
-    html = coach.take(said, facts, [Warned(LOOK, "Camera left moved.")])
+    take = {"id": "take-x", "name": "smash", "links": [("a/viewer.html", "3D viewer")]}
+    html = coach.take(take, facts, [Warned(LOOK, "Camera left moved.")])
     for words in ("29.33 &plusmn; 0.38 m", "in 24.0 s", "from 94 of 100 frames", "left knee, bend"):
         assert words in html
     assert 'href="a/viewer.html"' in html and "Camera left moved." in html
@@ -65,9 +65,9 @@ def test_a_take_says_what_the_feet_did():
         "stance_time": (0.4325, 0.0082, "s", False),
         "swing_time": (math.nan, math.nan, "s", False),
     }
-    said = {"id": "take-x", "name": "drill", "links": []}
+    take = {"id": "take-x", "name": "drill", "links": []}
     facts = FACTS | {"persons": {"p1": {}, "p2": {}}, "footwork": {"p1": feet}}
-    html = coach.take(said, facts, [])
+    html = coach.take(take, facts, [])
     for words in (
         "landings of a foot",
         "<b>66</b> (lunges: 5, split steps: 2)",
@@ -107,7 +107,7 @@ def test_warnings_for_information_only_are_folded_away():
 def test_text_of_users_is_escaped():
     measures = {"neck_distance": (1.0, 0.1, ROGUE, True)}
     facts = FACTS | {"persons": {ROGUE: measures}, "devices": [{"source": ROGUE}]}
-    said = {"id": "t", "name": ROGUE, "links": [(ROGUE, ROGUE)]}
-    html = coach.take(said, facts, [Warned(LOOK, ROGUE)], ROGUE)
-    html += coach.take(said, facts | {"persons": {}}, [])
+    take = {"id": "t", "name": ROGUE, "links": [(ROGUE, ROGUE)]}
+    html = coach.take(take, facts, [Warned(LOOK, ROGUE)], ROGUE)
+    html += coach.take(take, facts | {"persons": {}}, [])
     assert "<img" not in html and "</script>" not in html

@@ -28,8 +28,8 @@ def test_plans_have_headings_of_their_own():
 
 
 def test_a_figure_has_its_caption_and_its_numbers(tmp_path):
-    said = report_made.study(tmp_path)["figures"][0]
-    html, png = report_figures.figure(said, "figure-3")
+    figure = report_made.study(tmp_path)["figures"][0]
+    html, png = report_figures.figure(figure, "figure-3")
     assert 'src="image:figure-3"' in html and 'width="1200" height="400"' in html
     assert "Take smash: <em>n</em> is 17." in html
     assert 'href="hall/figures/overlay.csv"' in html
@@ -37,9 +37,9 @@ def test_a_figure_has_its_caption_and_its_numbers(tmp_path):
 
 
 def test_a_picture_that_is_missing_is_named(tmp_path):
-    said = report_made.study(tmp_path)["figures"][0] | {"png": str(tmp_path / "none.png")}
+    figure = report_made.study(tmp_path)["figures"][0] | {"png": str(tmp_path / "none.png")}
     with pytest.raises(InputError, match=r"none\.png: expected a PNG"):
-        report_figures.figure(said, "f")
+        report_figures.figure(figure, "f")
 
 
 def test_figures_stand_by_session_and_take():

@@ -112,9 +112,9 @@ def test_pictures_that_were_not_registered_are_counted(lost, expected):
 
 
 def verdict(word, camera="c1", person="all", measure="whole"):
-    said = "Camera c1: its clock is off."
+    warning = "Camera c1: its clock is off."
     row = {"camera": camera, "person": person, "measure": measure, "verdict": word}
-    return row | {"cause": "clock", "sentence": said}
+    return row | {"cause": "clock", "sentence": warning}
 
 
 def test_a_camera_that_is_not_good_is_told_with_its_cause():
@@ -188,9 +188,9 @@ def test_an_uncertain_clock_of_a_device_gives_a_warning(row, expected):
 
 
 def test_a_device_without_a_tpose_gives_a_warning():
-    said = warned.no_tpose({"source": "mocopi", "n_tposes": 0})
-    assert said.level == warned.LOOK
-    assert said.text.startswith("mocopi: it shows no T-pose")
+    warning = warned.no_tpose({"source": "mocopi", "n_tposes": 0})
+    assert warning.level == warned.LOOK
+    assert warning.text.startswith("mocopi: it shows no T-pose")
     assert warned.no_tpose({"source": "mocopi", "n_tposes": 1}) is None
 
 

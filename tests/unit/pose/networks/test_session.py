@@ -59,14 +59,14 @@ def test_open_sizes_fit_every_input(tmp_path, shape):
 def test_another_input_is_one_line(tmp_path, shape, kind):
     graph = onnx_files.Graph(list(shape), kind)
     graph.output(graph.add("Cast", "image", to=TensorProto.FLOAT), "same")
-    said = line(session.Network, graph.write(tmp_path / "n.onnx"), SHAPE)
-    assert "tensor(float) of shape [1, 3, 8, 8], found" in said
-    assert "correct its entry in config/models.yaml" in said
+    message = line(session.Network, graph.write(tmp_path / "n.onnx"), SHAPE)
+    assert "tensor(float) of shape [1, 3, 8, 8], found" in message
+    assert "correct its entry in config/models.yaml" in message
 
 
 def test_outputs_that_are_not_there_are_named(tmp_path):
-    said = line(session.Network, doubled(tmp_path / "n.onnx"), SHAPE, outputs=["once", "twice"])
-    assert "expected the outputs ['once'], found ['twice']" in said
+    message = line(session.Network, doubled(tmp_path / "n.onnx"), SHAPE, outputs=["once", "twice"])
+    assert "expected the outputs ['once'], found ['twice']" in message
 
 
 def test_a_foreign_operator_is_one_line(tmp_path):
@@ -75,25 +75,25 @@ def test_a_foreign_operator_is_one_line(tmp_path):
     path = tmp_path / "n.onnx"
     onnx.save_model(graph.model(["mmdeploy"]), path)
     session.check_file(path, files.sha256(path))
-    said = line(session.open_session, path)
-    assert str(path) in said
-    assert "TRTBatchedNMS" in said
-    assert "export it again" in said
+    message = line(session.open_session, path)
+    assert str(path) in message
+    assert "TRTBatchedNMS" in message
+    assert "export it again" in message
 
 
 @pytest.mark.parametrize("content", [b"", b"\x08", b"no network", bytes(range(256)) * 9])
 def test_what_is_no_network_is_one_line(tmp_path, content):
     path = tmp_path / "n.onnx"
     path.write_bytes(content)
-    said = line(session.open_session, path)
-    assert said.startswith(f"{path}: expected")
+    message = line(session.open_session, path)
+    assert message.startswith(f"{path}: expected")
 
 
 def test_a_checksum_that_differs_is_one_line(tmp_path):
     path = doubled(tmp_path / "n.onnx")
     assert session.check_file(path, files.sha256(path)) is None
-    said = line(session.check_file, path, "0" * 64)
-    assert f"expected sha256 {'0' * 64}, found {files.sha256(path)}" in said
+    message = line(session.check_file, path, "0" * 64)
+    assert f"expected sha256 {'0' * 64}, found {files.sha256(path)}" in message
     assert "expected an ONNX file" in line(session.check_file, tmp_path / "none.onnx", "0" * 64)
 
 
@@ -103,8 +103,8 @@ EXTERNAL = {"save_as_external_data": True, "location": "weights.bin", "size_thre
 def test_data_in_another_file_is_refused(tmp_path):
     path = doubled(tmp_path / "n.onnx", **EXTERNAL)
     assert (tmp_path / "weights.bin").stat().st_size >= 8 * 8 * 3 * 4
-    said = line(session.check_file, path, files.sha256(path))
-    assert "expected all its data inside, found 1 tensors in ['weights.bin']" in said
+    message = line(session.check_file, path, files.sha256(path))
+    assert "expected all its data inside, found 1 tensors in ['weights.bin']" in message
     elsewhere = tmp_path / "elsewhere" / "n.onnx"  # a checked copy would not find it either
     elsewhere.parent.mkdir()
     shutil.copyfile(path, elsewhere)
@@ -148,9 +148,9 @@ def test_data_in_another_file_is_found_wherever_it_is_named(tmp_path, place):
 )
 def test_a_missing_provider_names_its_package(tmp_path, monkeypatch, name, package):
     monkeypatch.setattr(onnxruntime, "get_available_providers", lambda: ["CPUExecutionProvider"])
-    said = line(session.check_providers, ["cpu", name])
-    assert f"execution provider {name}, found ['cpu']" in said
-    assert f"install {package} in place of onnxruntime" in said
+    message = line(session.check_providers, ["cpu", name])
+    assert f"execution provider {name}, found ['cpu']" in message
+    assert f"install {package} in place of onnxruntime" in message
     path = doubled(tmp_path / "n.onnx")
     assert package in line(session.open_session, path, [name])
 
@@ -165,10 +165,10 @@ def test_a_provider_that_does_not_open_is_no_silent_fall_back(tmp_path, monkeypa
         return plain(path, options, providers=["CPUExecutionProvider"])
 
     monkeypatch.setattr(onnxruntime, "InferenceSession", without_driver)
-    said = line(session.open_session, path, ["cuda", "cpu"])
+    message = line(session.open_session, path, ["cuda", "cpu"])
     assert asked == [["CUDAExecutionProvider", "CPUExecutionProvider"]]
-    assert "expected to run it by cuda" in said
-    assert "or leave out cuda" in said
+    assert "expected to run it by cuda" in message
+    assert "or leave out cuda" in message
     assert session.open_session(path, ["cpu"])
 
 

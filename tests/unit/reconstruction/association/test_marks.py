@@ -89,8 +89,8 @@ def test_one_mark_names_the_whole_track():
 
 
 def test_two_who_were_exchanged_are_put_right_where_they_met():
-    told = [mark(0, 0, 1.0), mark(1, 1, 1.0), mark(1, 0, 5.0), mark(0, 1, 5.0)]
-    owner, used = marks.timelines(crossing(), told, 2)
+    marked = [mark(0, 0, 1.0), mark(1, 1, 1.0), mark(1, 0, 5.0), mark(0, 1, 5.0)]
+    owner, used = marks.timelines(crossing(), marked, 2)
     for rows in (owner, used):
         for row, values in zip(rows, ([0, 1], [1, 0]), strict=True):
             assert changes(row) == (values, [pytest.approx(3.0)])
@@ -104,8 +104,8 @@ def test_pieces_of_one_person_are_joined():
 
 
 def test_stated_bounds_split_where_nothing_else_does():
-    told = [mark(0, 0, 1.0, to_s=2.0), mark(1, 0, 5.0, from_s=4.0)]
-    owner, used = marks.timelines(named_takes.take().found, told, 2)
+    marked = [mark(0, 0, 1.0, to_s=2.0), mark(1, 0, 5.0, from_s=4.0)]
+    owner, used = marks.timelines(named_takes.take().found, marked, 2)
     assert changes(owner[0]) == ([0, -1, 1], [pytest.approx(2.0), pytest.approx(3.9)])
     assert (used == 0).all()
 

@@ -22,8 +22,8 @@ def sighting(subject, person, time_s=1.0):
     return Sighting(subject, "c0", time_s, named_takes.place_px(person), "line 2")
 
 
-def name(take, told=(), subjects=("p1",), court=None, words=WORDS):
-    return naming.name(take.found, take.seen, told, subjects, words, court)
+def name(take, sightings=(), subjects=("p1",), court=None, words=WORDS):
+    return naming.name(take.found, take.seen, sightings, subjects, words, court)
 
 
 def test_one_subject_and_one_person_need_no_name():

@@ -39,8 +39,8 @@ def test_people_of_their_size_pass():
 @pytest.mark.parametrize("unit", [name for name in METRES if name != "m"])
 @pytest.mark.parametrize("places", [((0.4, 0.2),), ((-1.0, 0.5), (1.0, -0.6))])
 def test_another_unit_is_named(unit, places):
-    told = rf"cameras c0, c1, c2: expected people with trunks .*likely in {unit} \(0\.[45]"
-    with pytest.raises(InputError, match=told) as caught:
+    message = rf"cameras c0, c1, c2: expected people with trunks .*likely in {unit} \(0\.[45]"
+    with pytest.raises(InputError, match=message) as caught:
         scale.check(in_unit(METRES[unit]), seen(places=places), stick_figures.NAMES)
     assert f"`unit: {unit}`" in str(caught.value)
     assert "\n" not in str(caught.value)

@@ -45,7 +45,7 @@ def test_photos_have_no_times_and_all_may_be_kept(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "reason"),
     [
         ("", "No columns"),
         ("frame_idx,time_s,name\n0,0,a\n", "no column sharpness, kept, reason"),
@@ -60,10 +60,10 @@ def test_photos_have_no_times_and_all_may_be_kept(tmp_path):
         (HEADER + "0,0,a,sharp,1,\n", "a number"),
     ],
 )
-def test_faults_are_one_line(tmp_path, text, said):
+def test_faults_are_one_line(tmp_path, text, reason):
     path = tmp_path / "walk1.csv"
     path.write_text(text)
-    with pytest.raises(InputError, match=said) as caught:
+    with pytest.raises(InputError, match=reason) as caught:
         frame_table.read(path)
     message = str(caught.value)
     assert message.startswith(f"{path}: expected a frame table") and "\n" not in message

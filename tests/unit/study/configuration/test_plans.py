@@ -42,7 +42,7 @@ def test_what_is_left_out_has_a_default(tmp_path, content):
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "message"),
     [
         (
             lambda c: c["cameras"]["side"].pop("focal_px"),
@@ -65,8 +65,8 @@ def test_what_is_left_out_has_a_default(tmp_path, content):
         (lambda c: c.update(targt_cm=1), "did you mean 'target_cm'"),
     ],
 )  # fmt: skip
-def test_a_plan_that_cannot_be(tmp_path, content, change, said):
+def test_a_plan_that_cannot_be(tmp_path, content, change, message):
     change(content)
-    with pytest.raises(InputError, match=said) as told:
+    with pytest.raises(InputError, match=message) as caught:
         plans.read(written(tmp_path, content))
-    assert all(line.startswith(str(tmp_path)) for line in str(told.value).splitlines())
+    assert all(line.startswith(str(tmp_path)) for line in str(caught.value).splitlines())

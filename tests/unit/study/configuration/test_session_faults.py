@@ -410,7 +410,7 @@ def test_keypoints_need_no_videos(root):
 
 
 @pytest.mark.parametrize(
-    ("changes", "said"),
+    ("changes", "message"),
     [
         ({"takes": {"t": OTHERS}}, "takes.t.rate_hz: expected the frame rate of the keypoints"),
         ({"override": {}}, "t: expected skeletons of its pose2d alone in override.models, for"),
@@ -435,9 +435,9 @@ def test_keypoints_need_no_videos(root):
         ),
     ],
 )
-def test_keypoints_without_videos_say_what_videos_would(root, changes, said):
+def test_keypoints_without_videos_say_what_videos_would(root, changes, message):
     (line,) = unfilmed(root, **changes)
-    assert said in line
+    assert message in line
 
 
 def test_keypoints_without_videos_need_a_calibration_file_and_cannot_be_steadied(root):

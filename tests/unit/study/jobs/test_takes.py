@@ -28,8 +28,8 @@ def test_a_file_of_every_take_of_a_session(job):
 def test_clocks_that_a_take_states_are_told_by_name(job, study):
     session = study.sessions["players-tiny"]
     stated = {"back": {"offset_s": 1.0}, "phone": {"offset_s": 2.0}}
-    told = replace(session, takes={"shot": replace(session.takes["shot"], clocks=stated)})
-    one = job(replace(study, sessions={"players-tiny": told}), **SHOT)
+    changed = replace(session, takes={"shot": replace(session.takes["shot"], clocks=stated)})
+    one = job(replace(study, sessions={"players-tiny": changed}), **SHOT)
     assert takes.clocks(one, one.take.videos) == {"back": {"offset_s": 1.0}}
 
 
@@ -137,8 +137,8 @@ def test_sightings_are_those_of_the_take(job, study, tmp_path):
     seen = ({"take": "rally", "camera": "back"}, {"camera": "front"})
     subjects = {**session.subjects, "p1": replace(session.subjects["p1"], seen=seen)}
     csv = tmp_path / "people.csv"
-    told = replace(session, subjects=subjects, people=str(csv))
-    of = replace(study, sessions={"players-tiny": told})
+    changed = replace(session, subjects=subjects, people=str(csv))
+    of = replace(study, sessions={"players-tiny": changed})
     assert takes.sightings(job(of, **RALLY)) == [
         ("p1", {"camera": "back"}),
         ("p1", {"camera": "front"}),

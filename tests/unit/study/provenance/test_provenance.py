@@ -194,7 +194,7 @@ def test_nothing_but_records_is_written(folder):
     record(folder, study())
     after = {path: path.stat().st_mtime_ns for path in Path().rglob("*") if path.is_file()}
     assert {p: t for p, t in after.items() if not p.is_relative_to(folder)} == before
-    assert not [path for path in folder.rglob(".*")]
+    assert not list(folder.rglob(".*"))
 
 
 def test_upstream_of_a_ladder_of_many_jobs():

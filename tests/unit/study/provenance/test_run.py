@@ -187,9 +187,9 @@ def test_takes_of_this_run_are_told_with_their_verdicts(tmp_path, monkeypatch):
         row = f"file,all-robust,net,all,all,whole,,,,{word},clock,Camera c1 is {word}."
         (tmp_path / path).write_text(f"{head}\n{row}\n", encoding="utf-8")
     judged = [made_up("judge_take", path) for path in files]
-    (told, n_failed), other = run.verdicts(workflow(judged)), made_up("draw", "x/quality.csv")
-    assert n_failed == 1 and told[0] == "Verdicts on takes: 1 good, 1 failed."
-    assert told[1].startswith("  failed: hall/b")
+    (message, n_failed), other = run.verdicts(workflow(judged)), made_up("draw", "x/quality.csv")
+    assert n_failed == 1 and message[0] == "Verdicts on takes: 1 good, 1 failed."
+    assert message[1].startswith("  failed: hall/b")
     assert run.verdicts(workflow([judged[0], other])) == (["Verdicts on takes: 1 good."], 0)
     words = run.ending(workflow(judged, judged, failed=[]), 3.0, [], 1)
     assert words.startswith("Courtside: 2 files made in 3 s, but 1 take failed")

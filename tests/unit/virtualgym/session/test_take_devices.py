@@ -42,8 +42,8 @@ def test_a_take_of_devices_only_has_their_files_and_truth(recorded):
     assert {path.name for path in folder.iterdir()} == {"d415.bag", "racket.csv", "truth.npz"}
     assert list(worn) == ["suit"]
     assert (truth.offset_s, truth.shaken) == ({}, {})
-    told = {n: (d.kind, d.person, d.offset_s, d.drift_ppm) for n, d in truth.devices.items()}
-    assert told == {
+    device = {n: (d.kind, d.person, d.offset_s, d.drift_ppm) for n, d in truth.devices.items()}
+    assert device == {
         "d415": ("rgbd", "p1", 0.0, 0.0),
         "suit": ("inertial", "p1", -0.3, 500.0),
     }
@@ -92,13 +92,13 @@ def _assert_below_skin(found, colour, names, joints, steps):
 
 def test_the_suit_shows_the_truth_at_its_own_time(recorded):
     _, worn, truth = recorded
-    posed, told = worn["suit"], truth.devices["suit"]
+    posed, device = worn["suit"], truth.devices["suit"]
     xyz = forward(posed)[0][:, posed.hierarchy.joints.index("l_hand")]
     true = truth.xyz[0, :, list(skinned_body.JOINTS).index("left_wrist")]
     own_s = np.arange(1, 10) / 50
     at_s = (own_s + 0.3) / (1 + 500e-6)
     np.testing.assert_allclose(posed.time_s[1:], own_s)
-    moved = true @ told.from_world[:, :3].T + told.from_world[:, 3]
+    moved = true @ device.from_world[:, :3].T + device.from_world[:, 3]
     expected = CubicSpline(truth.time_s, moved)(at_s)
     np.testing.assert_allclose(xyz[1:], expected, atol=1e-3)
     assert np.ptp(xyz[1:], axis=0).max() > 0.05, "it moves meanwhile"

@@ -89,10 +89,10 @@ def _check_joints(path: StrPath, name: str, found: Sequence[str], wanted: Collec
     twice = [joint for joint, count in Counter(found).items() if count > 1]
     if missing or unknown or twice:
         faults = {"missing": missing, "unknown": unknown, "twice": twice}
-        told = "; ".join(f"{fault}: {', '.join(js)}" for fault, js in faults.items() if js)
+        unmatched = "; ".join(f"{fault}: {', '.join(js)}" for fault, js in faults.items() if js)
         raise InputError(
-            f"{path}: expected the {len(wanted)} joints of {name}, found {len(found)}: {told}; "
-            "give the file that the app exported, or add the names to the skeleton's file"
+            f"{path}: expected the {len(wanted)} joints of {name}, found {len(found)}: {unmatched}"
+            "; give the file that the app exported, or add the names to the skeleton's file"
         )
 
 

@@ -25,12 +25,12 @@ class Relation:
     @property
     def keys(self) -> str:
         """The keys of a camera that say so, as YAML; empty where none can."""
-        said = []
+        keys = []
         if self.crop_px:
-            said.append(f"crop_px: {list(self.crop_px)}")
+            keys.append(f"crop_px: {list(self.crop_px)}")
         if self.scale:
-            said.append(f"scale: {self.scale:g}")
-        return ", ".join(said)
+            keys.append(f"scale: {self.scale:g}")
+        return ", ".join(keys)
 
 
 def relation(calibrated: Sequence[int], video: Sequence[int]) -> Relation:

@@ -41,18 +41,18 @@ def lines(rows: Sequence[Mapping[str, str]]) -> list[Line]:
     for row in rows:
         if row["measure"] == WHOLE and row["person"] == ALL:
             found.setdefault(row["camera"], []).append(row)
-    return [_line(camera, told) for camera, told in found.items() if told]
+    return [_line(camera, verdicts) for camera, verdicts in found.items() if verdicts]
 
 
-def _line(camera: str, told: Sequence[Mapping[str, str]]) -> Line:
-    first, *rest = told
-    said = first["sentence"].removeprefix(f"Camera {camera}: ")
+def _line(camera: str, verdicts: Sequence[Mapping[str, str]]) -> Line:
+    first, *rest = verdicts
+    sentence = first["sentence"].removeprefix(f"Camera {camera}: ")
     others = [
         f"{row['verdict']} by {' '.join(row[key] for key in WAY)}"
         for row in rest
         if row["verdict"] != first["verdict"]
     ]
-    return Line(camera, first["verdict"], said[:1].upper() + said[1:], tuple(others))
+    return Line(camera, first["verdict"], sentence[:1].upper() + sentence[1:], tuple(others))
 
 
 def thumbnail(view: Keypoints2D, people: People, video: StrPath, skeleton: Skeleton) -> bytes:

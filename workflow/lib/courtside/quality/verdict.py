@@ -112,8 +112,8 @@ def _uncertain(judged: dict[int, list[dict]]) -> dict[int, list[dict]]:
         whole, *rows = judged[at]
         poor = whole["cause"] == causes.DETECTION
         cause = causes.UNKNOWN if poor else whole["cause"]
-        said = whole["sentence"].removesuffix(".")
-        found[at] = [{**whole, "cause": cause, "sentence": f"{said}; {ANY}."}, *rows]
+        sentence = whole["sentence"].removesuffix(".")
+        found[at] = [{**whole, "cause": cause, "sentence": f"{sentence}; {ANY}."}, *rows]
     return found
 
 
@@ -196,8 +196,8 @@ def _person(seen: Seen, at: int) -> list[dict]:
     judged = _judged(found, OF_PERSON, ALL, name)
     verdict = worst([row["verdict"] for row in judged])
     bad = [row["sentence"] for row in judged if row["verdict"] == verdict != GOOD]
-    said = bad[0] if bad else "The cameras agree."
-    whole = _whole(ALL, name, verdict, "", f"{name}: {said[:1].lower()}{said[1:]}")
+    sentence = bad[0] if bad else "The cameras agree."
+    whole = _whole(ALL, name, verdict, "", f"{name}: {sentence[:1].lower()}{sentence[1:]}")
     return [whole, *judged]
 
 
@@ -205,10 +205,11 @@ def _together(rows: list[dict]) -> list[str]:
     """Return the sentences on cameras, each once, with the cameras that share it."""
     names: dict[str, list[str]] = {}
     for row in rows:
-        said = row["sentence"].removeprefix(f"Camera {row['camera']}: ")
-        names.setdefault(said, []).append(row["camera"])
+        sentence = row["sentence"].removeprefix(f"Camera {row['camera']}: ")
+        names.setdefault(sentence, []).append(row["camera"])
     return [
-        f"Camera{'s' if len(of) > 1 else ''} {', '.join(of)}: {said}" for said, of in names.items()
+        f"Camera{'s' if len(of) > 1 else ''} {', '.join(of)}: {sentence}"
+        for sentence, of in names.items()
     ]
 
 

@@ -58,7 +58,7 @@ def _shortened(text: str) -> str:
     return f"{text[: LONGEST // 2]} ... {text[-LONGEST // 3 :]}"
 
 
-def said(error: BaseException) -> str:
+def message(error: BaseException) -> str:
     """Return the message of a library's error, or else the error's name, as one short line."""
     try:
         text = " ".join(str(getattr(error, "strerror", None) or error).split())
@@ -93,7 +93,7 @@ def reading(
         if isinstance(error, MemoryError):
             # The file asks for too much, or the machine has too little.
             advice = f"{advice}; or, if the file is whole, {SPARE_MEMORY}"
-        found = said(error)
+        found = message(error)
         if isinstance(error, OSError) and error.filename and str(error.filename) != str(path):
             found = f"{found}: {error.filename}"  # a file of the folder that was read
         raise InputError(f"{path}: expected {what}, found: {found}; {advice}") from error

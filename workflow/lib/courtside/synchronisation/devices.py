@@ -76,11 +76,11 @@ def synchronise(
         if motion.source in known:
             found[motion.source] = Found(known[motion.source], [])
         elif _device(devices, motion) == _device(devices, reference):
-            said = Clock(note="one device with the reference: one clock")
-            found[motion.source] = Found(said, [])
+            clock = Clock(note="one device with the reference: one clock")
+            found[motion.source] = Found(clock, [])
         elif not happened[motion.source].claps:
-            said = Clock(status="unknown", note="no clap of its own", uncertainty_s=np.inf)
-            found[motion.source] = Found(said, [])
+            clock = Clock(status="unknown", note="no clap of its own", uncertainty_s=np.inf)
+            found[motion.source] = Found(clock, [])
         else:
             found[motion.source] = _against(reference, motion, happened)
     shared = _shared(found, [m for m in others if m.source not in known], devices)

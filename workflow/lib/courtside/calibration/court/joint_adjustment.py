@@ -205,8 +205,8 @@ def _ties_of(network, sigma_px, loss_scale, thinning) -> Network:
 
 
 def _condensed(parts, names, sizes) -> Ties:
-    said = [selection.marginalise(part.network, part.fixed) for part in parts]
-    return Ties(names, tuple(sizes[name] for name in names), solver.mean(said))
+    constraints = [selection.marginalise(part.network, part.fixed) for part in parts]
+    return Ties(names, tuple(sizes[name] for name in names), solver.mean(constraints))
 
 
 def _in_free_frame(network: Network, fixed: Sequence[int]) -> Network:

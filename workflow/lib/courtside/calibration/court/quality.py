@@ -107,7 +107,7 @@ def adjust_and_check(
         adjust=adjust,
         causes_m=field(solved.network, solved.covariance)(court.xyz),
     )
-    return solved, quality | {"variance_factors": _said(solved)}
+    return solved, quality | {"variance_factors": _variance_factors(solved)}
 
 
 def _inwards(court, ties, clicks, factors, **weights) -> tuple[float, float]:
@@ -125,7 +125,7 @@ def _inwards(court, ties, clicks, factors, **weights) -> tuple[float, float]:
     return click_checks.inward_shift(ties, clicks, court, factors=solved.factors, **weights)
 
 
-def _said(solved: joint_adjustment.Solution) -> dict[str, Any]:
+def _variance_factors(solved: joint_adjustment.Solution) -> dict[str, Any]:
     """Return variance factors for JSON, with the redundancy that they rest on."""
     factors = solved.factors
     each = zip(solved.cameras, factors.clicks, factors.clicks_redundancy, strict=True)
@@ -149,7 +149,7 @@ def check_maps(n_agreeing: int, n_maps: int) -> dict[str, Any]:
     return {"warnings": warnings}
 
 
-def doubt(support: Support) -> str:
+def map_warning(support: Support) -> str:
     """Return in one line why a map is doubtful, empty if it is not.
 
     A doubtful map says nothing about clicks, court or names of cameras.

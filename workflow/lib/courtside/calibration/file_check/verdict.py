@@ -162,12 +162,12 @@ def _mirrored(start: _Explained, seen: Seen) -> _Explained:
         return start
     found = [start]
     for chosen in product((False, True), repeat=len(coordinates)):
-        told, cameras = [], start.cameras
+        mirrored, cameras = [], start.cameras
         for (at, axis), wanted in zip(coordinates, chosen, strict=True):
             for one in faults.mirrored(cameras, at, axis) if wanted else ():
-                told.append(one)
+                mirrored.append(one)
                 cameras = one.cameras
-        found.append(_Explained(cameras, seen.cost(cameras) + PRICE[0] * len(told), told))
+        found.append(_Explained(cameras, seen.cost(cameras) + PRICE[0] * len(mirrored), mirrored))
     return min(found, key=lambda one: one.score)
 
 

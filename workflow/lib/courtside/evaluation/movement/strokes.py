@@ -53,13 +53,13 @@ def _words(stroke: pd.Series) -> dict[str, object]:
 
 def _errors(stroke: pd.Series, true_s: float, found: signals.Signals) -> dict[str, object]:
     error_s = stroke.time_s - true_s
-    said = cues.times(found, stroke.hand, stroke.time_s)
+    cue_times_s = cues.times(found, stroke.hand, stroke.time_s)
     return {
         **_words(stroke),
         "error_ms": 1000 * error_s,
         "sigma_ms": 1000 * stroke.sigma_s,
         "within_90_percent": bool(abs(error_s) <= WITHIN_90 * stroke.sigma_s),
-        **{f"{cue}_ms": 1000 * (time_s - true_s) for cue, time_s in said.items()},
+        **{f"{cue}_ms": 1000 * (time_s - true_s) for cue, time_s in cue_times_s.items()},
     }
 
 

@@ -3,7 +3,7 @@
 register: `Number`, `Source`, `listed`, `read`, `write`, `stale`: the register, and what it rests on
 markers: `View`, `render`, `fill`: tables of documents, filled from the register
 views: `VIEWS`: the columns of each table; those of stated numbers stand in `stated`
-study: `numbers`, `write`, `filled`, `report`: all of them
+study: `numbers`, `summary`, `write`, `filled`, `report`: all of them
 intervals: `bootstrap`: intervals over halls
 calibration: `calibrations`, `ways`, `growth`, `strengths`, `capture`
 players: `sessions`, `takes`, `angles`, `measures`, `held`

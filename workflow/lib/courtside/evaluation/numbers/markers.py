@@ -48,12 +48,13 @@ def render(view: View, numbers: Sequence[Number]) -> str:
                 raise InputError(f"register: expected {part} in the table {view.table}, found none")
     lines = ["| " + " | ".join(view.columns) + " |", "|" + " --- |" * len(view.columns)]
     for label, parts in rows.items():
-        cells = (_cell(pattern, label, parts) for pattern in view.columns.values())
+        cells = (cell(pattern, label, parts) for pattern in view.columns.values())
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(line.replace("|  |", "| |").replace("|  |", "| |") for line in lines) + "\n"
 
 
-def _cell(pattern: str, label: str, parts: Mapping[str, Number]) -> str:
+def cell(pattern: str, label: str, parts: Mapping[str, Number]) -> str:
+    """Return a pattern filled with the label and the parts of a row; see `View`."""
     asked = [name for name, _ in FIELD.findall(pattern)]
     if asked and "row" not in asked and not any(name in parts for name in asked):
         return ""

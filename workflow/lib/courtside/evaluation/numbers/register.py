@@ -3,7 +3,7 @@
 import csv
 import hashlib
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cache
 from pathlib import Path
@@ -93,17 +93,19 @@ def _number(row: dict[str, str]) -> Number:
 class Source:
     """A folder whose tables numbers are taken from; each is read once.
 
-    A file that is missing is an `InputError` that names it.
+    `made` are the files of the folder that count, by default all: others are of an older run. A
+    file that is missing is an `InputError` that names it.
     """
 
-    def __init__(self, folder: StrPath) -> None:
+    def __init__(self, folder: StrPath, made: Collection[str] | None = None) -> None:
         self.folder = Path(folder)
+        self.made = made
         self.table = cache(self._table)
         self.sha256 = cache(self._sha256)
 
     def _sha256(self, pattern: str) -> str:
         """Return the first digits of the checksum of a file, or of all that fit a pattern."""
-        each = [files.sha256(path) for path in sorted(self.folder.glob(pattern))]
+        each = [files.sha256(self.folder / name) for name in self._matching(pattern)]
         whole = each[0] if len(each) == 1 else hashlib.sha256("".join(each).encode()).hexdigest()
         return whole[:DIGITS]
 
@@ -113,7 +115,7 @@ class Source:
 
     def _table(self, name: str, **how: Any) -> pd.DataFrame:
         path = self.folder / name
-        if not path.is_file():
+        if not path.is_file() or not self._counts(name):
             raise InputError(
                 f"{path}: expected this table of a full default run, found none; run snakemake"
             )
@@ -124,13 +126,20 @@ class Source:
 
     def names(self, pattern: str) -> list[str]:
         """Return the files that fit a pattern, sorted; an `InputError` where none does."""
-        found = sorted(p.relative_to(self.folder).as_posix() for p in self.folder.glob(pattern))
+        found = self._matching(pattern)
         if not found:
             raise InputError(
                 f"{self.folder / pattern}: expected tables of a full default run, found none; run "
                 "snakemake"
             )
         return found
+
+    def _matching(self, pattern: str) -> list[str]:
+        there = sorted(p.relative_to(self.folder).as_posix() for p in self.folder.glob(pattern))
+        return [name for name in there if self._counts(name)]
+
+    def _counts(self, name: str) -> bool:
+        return self.made is None or name in self.made
 
 
 @dataclass(frozen=True)

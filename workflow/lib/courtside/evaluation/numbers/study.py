@@ -1,5 +1,9 @@
 """All numbers of the documents: one function for each table of the register."""
 
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from courtside.evaluation.numbers import (
@@ -15,10 +19,46 @@ from courtside.evaluation.numbers import (
 )
 from courtside.evaluation.numbers.register import Number, Source
 from courtside.evaluation.numbers.views import VIEWS
+from courtside.study import paths, targets
+from courtside.study.configuration import configuration, yaml_files
 from courtside.study.errors import InputError, StrPath
 
 REGISTER = "docs/numbers.csv"
 DOCUMENTS = ("README.md", "docs/measured.md")
+SUMMARY = "summary"  # the first table of the README
+SUMMED_UP = {  # what was measured: table, regular expression of its row, what is shown of it
+    "cameras from a walk and 18 clicks, six virtual halls: RMS error over the court": (
+        "halls",
+        "^all ",
+        "{walk18} cm in the median hall, {walk18_worst} cm in the worst",
+    ),
+    "the same with the court's painted lines: median hall, worst hall, cm; in 90 % ellipsoids": (
+        "walk-lines",
+        "^the six halls",
+        "{both}",
+    ),
+    "joints of virtual players, four cameras, corrected: median / 95 %": (
+        "players-sessions",
+        "^`players-b`",
+        "{corrected_median} / {corrected_p95} mm in the median take, "
+        "{corrected_median_worst} / {corrected_p95_worst} mm in the worst",
+    ),
+    "joints of one real player against a marker system, corrected: median / 90 %": (
+        "footage",
+        "^real, .* marker system's joints; cameras of the source",
+        "{corrected_median} / {corrected_p90} mm",
+    ),
+    "knee flexion of the same virtual players: RMS error": (
+        "angles",
+        "^knee flexion, `players-b`$",
+        "{corrected_rmse} degrees",
+    ),
+    "elbow flexion of the same virtual players: RMS error": (
+        "angles",
+        "^elbow flexion, `players-b`$",
+        "{corrected_rmse} degrees",
+    ),
+}
 MEASURED = (  # of the results of a default run
     calibration.calibrations,
     calibration.ways,
@@ -42,32 +82,67 @@ MEASURED = (  # of the results of a default run
 )
 
 
+def made(repository: StrPath) -> frozenset[str]:
+    """Return the tables below the results that the repository's default configuration makes."""
+    folder = Path(repository) / "config"
+    file = folder / "config.yaml"
+    content = yaml_files.read(file)
+    study = configuration.load(content, str(file), folder, root=repository)
+    return frozenset(
+        path.removeprefix(f"{paths.RESULTS}/") for path in targets.numbers.every_table(study)
+    )
+
+
 def numbers(results: StrPath, repository: StrPath) -> list[Number]:
     """Return all numbers, of the results of a full default run and of the repository's tables.
 
-    An `InputError` names the first file that the results lack.
+    Tables that the repository's default configuration does not make are not read. An `InputError`
+    names the first one that is missing.
     """
-    source, documents = Source(results), Source(repository)
+    source, documents = Source(results, made(repository)), Source(repository)
     if not source.folder.is_dir():
         raise InputError(f"{results}: expected a folder of results, found none; run snakemake")
     found = [number for table in MEASURED for number in table(source)]
-    return [*found, *published.table_1(documents), *stated.numbers(documents)]
+    found += [*published.table_1(documents), *stated.numbers(documents)]
+    return [*found, *summary(found)]
 
 
 def kept(repository: StrPath) -> list[Number]:
-    """Return all numbers as the repository keeps them: those of the register, then stated ones."""
-    return [*register.read(Path(repository) / REGISTER), *stated.numbers(Source(repository))]
+    """Return all numbers as the repository keeps them: register, stated ones, and the summary."""
+    found = [*register.read(Path(repository) / REGISTER), *stated.numbers(Source(repository))]
+    return [*found, *summary(found)]
+
+
+def summary(others: Sequence[Number]) -> list[Number]:
+    """Return the numbers of the summary; an `InputError` where the other tables lack one.
+
+    Each joins the parts of one row as text; its source and selector are those of the first part.
+    """
+    found = []
+    for label, (table, row, pattern) in SUMMED_UP.items():
+        parts = {n.part: n for n in others if n.table == table and re.search(row, n.row)}
+        named = [part for part, _ in markers.FIELD.findall(pattern)]
+        if missing := [part for part in named if part not in parts]:
+            raise InputError(
+                f"register: expected {missing[0]} in the row {row!r} of the table {table}, found "
+                "none; run docs/make_tables.py"
+            )
+        text, first = markers.cell(pattern, label, parts), parts[named[0]]
+        shown = replace(first, table=SUMMARY, row=label, part="error", printed=text)
+        found.append(replace(shown, value=math.nan, unit=""))
+    return found
 
 
 def write(numbers_: list[Number], repository: StrPath) -> list[str]:
     """Write the register and the tables of the documents; return the files that changed.
 
-    The register keeps what is not stated: each number stands in one file.
+    The register keeps what is neither stated nor in the summary: each number stands in one file.
     """
     changed = []
     path = Path(repository) / REGISTER
     before = path.read_text(encoding="utf-8") if path.is_file() else ""
-    register.write(path, [one for one in numbers_ if not one.source.startswith(stated.FOLDER)])
+    measured = [one for one in numbers_ if one.table != SUMMARY]
+    register.write(path, [one for one in measured if not one.source.startswith(stated.FOLDER)])
     changed += [REGISTER] if path.read_text(encoding="utf-8") != before else []
     for name, text in filled(kept(repository), repository).items():
         document = Path(repository) / name

@@ -60,6 +60,7 @@ ANGLES = {
 }
 
 VIEWS = {
+    "summary": View("summary", {"what was measured": "{row}", "error": "{error}"}),
     "calibration": View(
         "calibration",
         {

@@ -160,8 +160,8 @@ def _draw_plate(axis: Axes, plate: Plate, numbered: Sequence[int]) -> None:
         axis.annotate(f"{number}", (x, y), **look)
     axis.set_aspect("equal")
     size = f"{plate.skeleton.name}, {len(plate.skeleton.joints)} joints"
-    said = "" if plate.pose in (TPOSE, SCHEMATIC) else f"; {plate.pose}"
-    axis.set_title(f"{plate.source or 'no recording, schematic'}: {size}{said}", pad=2)
+    pose = "" if plate.pose in (TPOSE, SCHEMATIC) else f"; {plate.pose}"
+    axis.set_title(f"{plate.source or 'no recording, schematic'}: {size}{pose}", pad=2)
 
 
 def _draw_map(axis: Axes, rows: pd.DataFrame) -> None:

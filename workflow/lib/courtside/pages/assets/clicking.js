@@ -252,8 +252,8 @@
 
   // ---- showing ----
   function say(words, bad = false) {
-    byId("said").textContent = words;
-    byId("said").classList.toggle("bad", bad);
+    byId("message").textContent = words;
+    byId("message").classList.toggle("bad", bad);
   }
 
   function button(parent, words, action, properties = {}) {

@@ -20,12 +20,12 @@
 
   // Parts of a person by the names given before.
   function earlier(index) {
-    const told = given.named.filter((one) => one.person === index).sort((a, b) => a.time_s - b.time_s);
-    const found = [{ from: given.start_s, subject: told.length ? told[0].subject : "" }];
-    for (const [at, one] of told.entries()) {
+    const names = given.named.filter((one) => one.person === index).sort((a, b) => a.time_s - b.time_s);
+    const found = [{ from: given.start_s, subject: names.length ? names[0].subject : "" }];
+    for (const [at, one] of names.entries()) {
       const last = found[found.length - 1];
       if (one.subject === last.subject) continue;
-      found.push({ from: one.from_s ?? (told[at - 1].time_s + one.time_s) / 2, subject: one.subject });
+      found.push({ from: one.from_s ?? (names[at - 1].time_s + one.time_s) / 2, subject: one.subject });
     }
     return found;
   }
@@ -71,8 +71,8 @@
 
   // ---- showing ----
   function say(words, bad = false) {
-    byId("said").textContent = words;
-    byId("said").classList.toggle("bad", bad);
+    byId("message").textContent = words;
+    byId("message").classList.toggle("bad", bad);
   }
 
   function element(parent, kind, properties = {}) {

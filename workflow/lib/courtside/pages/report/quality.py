@@ -87,7 +87,9 @@ def _used(name: str | None, known: dict[str, dict]) -> dict | None:
 
 def limits() -> Markup:
     """Return how the marks are set, as an HTML table."""
-    rows = [(words, f"{look:g}", f"{doubt:g}") for look, doubt, words in warned.LIMITS.values()]
+    rows = [
+        (words, f"{look:g}", f"{doubtful:g}") for look, doubtful, words in warned.LIMITS.values()
+    ]
     table = page.macro("report_parts.html", "table")
     return table(("what", "Look from", "Doubt from"), rows, "limits of the lights")
 

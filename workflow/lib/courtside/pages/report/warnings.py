@@ -40,8 +40,8 @@ def _level_of(quantity: str, value: float | None) -> int:
     """Return the level of a quantity of `LIMITS`; `LOOK` if its value is unknown."""
     if value is None or math.isnan(value):
         return LOOK
-    look, doubt, _ = LIMITS[quantity]
-    return DOUBT if value >= doubt else LOOK if value >= look else GOOD
+    look, doubtful, _ = LIMITS[quantity]
+    return DOUBT if value >= doubtful else LOOK if value >= look else GOOD
 
 
 def worst(warned: Sequence[Warned]) -> int:

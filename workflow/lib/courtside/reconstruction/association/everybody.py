@@ -53,9 +53,9 @@ def find(seen: Sequence[Footage], joints: Skeleton, court: Court | None) -> tupl
         for view, rows, frame_s in zip(views, found.index, frames_s, strict=True)
     }
     ids = np.array([f"person-{at + 1}" for at in range(len(found.placed))])
-    sure = identity.confidence(found.doubts, len(ids))
+    confidence = identity.confidence(found.doubts, len(ids))
     kept = {key: getattr(found, key) for key in ("placed", "time_s", "path", "doubts")}
-    return People(views[0].model, ids, index=index, confidence=sure, **kept), found.line()
+    return People(views[0].model, ids, index=index, confidence=confidence, **kept), found.line()
 
 
 def _hidden(limbs: Sequence[Keypoints2D]) -> str:

@@ -53,7 +53,7 @@ def name(
     if open_ and not marks and len(subjects) == 1 and not free:
         free = [int(np.argmax(found.placed))]
     if len(open_) > 1 or (open_ and len(free) > 1):
-        raise InputError(_not_told(found, seen, [subjects[s] for s in open_], free, words))
+        raise InputError(_ambiguous(found, seen, [subjects[s] for s in open_], free, words))
     for subject, person in zip(open_, free, strict=False):
         owner[person], used[subject] = subject, person
     return _named(found, seen, subjects, owner, used, marks)
@@ -79,13 +79,13 @@ def _line(named: People, at: int) -> str:
     if not named.placed[at]:
         return f"{named.person_id[at]}: not found"
     gaps = [f"{a:.1f} to {b:.1f} s" for a, b in gaps_s(named.time_s, named.path[at])]
-    meant = [row for row in named.doubts if row[0] == at and row[4] < 0.9]
+    exchanges = [row for row in named.doubts if row[0] == at and row[4] < 0.9]
     parts = [f"placed from two views or more in {named.placed[at]:.0%} of the take"]
     parts += [f"one person throughout with probability {named.confidence[at]:.2f}"]
     parts += [f"not placed from {', '.join(gaps)}"] if gaps else []
     parts += [
         f"may be somebody else after {stop:.1f} s ({kept:.2f} that not): look at the page"
-        for _, _, stop, _, kept in meant
+        for _, _, stop, _, kept in exchanges
     ]
     return f"{named.person_id[at]}: {'; '.join(parts)}"
 
@@ -111,7 +111,7 @@ def _beside(path: NDArray, court: Court | None) -> bool:
     return bool((middle < -BESIDE_M).any() or (middle > court.size_m + BESIDE_M).any())
 
 
-def _not_told(
+def _ambiguous(
     found: People, seen: Sequence[Footage], open_: list[str], free: list[int], words: Wording
 ) -> str:
     """Return the error line that asks who the ambiguous subjects are."""
@@ -189,8 +189,8 @@ def _doubts(found: People, owner: NDArray, used: NDArray, marks: Sequence[Mark])
         subject = int(owner[person, at])
         if subject < 0 or used[subject, at] != person:
             continue
-        told = [m.time_s for m in marks if m.person == person]
-        if any(t <= start_s for t in told) and any(t >= stop_s for t in told):
+        sighted_s = [m.time_s for m in marks if m.person == person]
+        if any(t <= start_s for t in sighted_s) and any(t >= stop_s for t in sighted_s):
             continue
         kept.append([subject, start_s, stop_s, -1.0, row[4]])
     return np.array(kept, float).reshape(-1, 5)

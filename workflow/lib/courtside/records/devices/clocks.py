@@ -58,8 +58,8 @@ class Clock:
 def one_clock(cameras: Iterable[str]) -> dict[str, Clock]:
     """Return the clocks of cameras known to share one; the first is the reference."""
     first, *others = cameras
-    said = Clock(note="the session says that the cameras share a clock")
-    return {first: Clock(status="reference"), **dict.fromkeys(others, said)}
+    shared = Clock(note="the session says that the cameras share a clock")
+    return {first: Clock(status="reference"), **dict.fromkeys(others, shared)}
 
 
 def stated(numbers: Mapping[str, Mapping[str, Any]]) -> dict[str, Clock]:

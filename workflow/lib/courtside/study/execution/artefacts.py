@@ -94,18 +94,18 @@ def _download(artefact: Artefact, folder: Path, npm_lock: StrPath) -> Path:
         )
     if artefact.package:
         wanted = f"{artefact.package} from the npm registry"
-        found, said = registries.npm_package(artefact.package, folder, npm_lock)
+        found, reason = registries.npm_package(artefact.package, folder, npm_lock)
         advice = "install npm or go online"
     else:
         wanted = f"{artefact.requirement} from the package registry"
-        found, said = registries.wheel(str(artefact.requirement), artefact.sha256, folder)
+        found, reason = registries.wheel(str(artefact.requirement), artefact.sha256, folder)
         advice = "go online"
     if found is None:
         file = _single_file(artefact) or "the wheel"
         raise InputError(
-            f"artefact {artefact.name}: expected {wanted}, found: {said}; {advice}, or put {file} "
-            f"with sha256 {artefact.sha256} into the folder that `mirror_folder` of config.yaml "
-            "names"
+            f"artefact {artefact.name}: expected {wanted}, found: {reason}; {advice}, or put "
+            f"{file} with sha256 {artefact.sha256} into the folder that `mirror_folder` of "
+            "config.yaml names"
         )
     return found
 

@@ -40,9 +40,9 @@ def npm_package(package: str, folder: Path, npm_lock: StrPath) -> tuple[Path | N
     It uses the npm on the PATH or, without one, the npm of the wheel that `npm_lock` pins, with a
     checksum for each platform.
     """
-    npm, said = _npm(folder, npm_lock)
+    npm, reason = _npm(folder, npm_lock)
     if not npm:
-        return None, said
+        return None, reason
     # In the folder, where no other project has npm settings.
     failure = _run([*npm, "pack", package, *NPM_OPTIONS], folder)
     found = folder / package_file(package)
@@ -64,9 +64,9 @@ def _npm(folder: Path, npm_lock: StrPath) -> tuple[list[str], str]:
     """Return the command that starts npm, or none and why not."""
     if own := shutil.which("npm"):
         return [own], ""
-    downloaded, said = _locked_wheel(npm_lock, folder, [])
+    downloaded, reason = _locked_wheel(npm_lock, folder, [])
     if downloaded is None:
-        return [], f"no npm on the PATH, and no wheel that contains it: {said}"
+        return [], f"no npm on the PATH, and no wheel that contains it: {reason}"
     with zipfile.ZipFile(downloaded) as archive:  # its checksum is the lock's
         names = [name for name in archive.namelist() if name in NODE or NPM.fullmatch(name)]
         for name in names:

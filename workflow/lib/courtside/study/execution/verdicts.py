@@ -69,5 +69,5 @@ def summary(files: Iterable[str]) -> tuple[list[str], int]:
         return [], 0
     verdicts = list(worst.values())
     counts = [f"{verdicts.count(word)} {word}" for word in ORDER if word in verdicts]
-    said = [line for _, line in sorted(lines, key=lambda pair: pair[0])]
-    return [f"Verdicts on takes: {', '.join(counts)}.", *said], verdicts.count(FAILED)
+    sentences = [line for _, line in sorted(lines, key=lambda pair: pair[0])]
+    return [f"Verdicts on takes: {', '.join(counts)}.", *sentences], verdicts.count(FAILED)

@@ -198,7 +198,9 @@ def _way(study: Study, session: Session, way: str) -> dict[str, Any]:
     used = way in session.take_calibrations()
     filmed = [name for name, take in session.takes.items() if take.cameras and used]
     return {
-        **{"session": session.name, "calibration": way, "base": Calibration.parse(way).base or ""},
+        "session": session.name,
+        "calibration": way,
+        "base": Calibration.parse(way).base or "",
         "cameras": job.fill(paths.CAMERAS),
         "quality": job.fill(paths.CALIBRATION_QUALITY),
         "truth": job.true_file(paths.TRUTH),

@@ -76,16 +76,16 @@ def content(study: Study, rules: Iterable[Any], captions: str) -> dict[str, Any]
     }
 
 
-def files(told: Any) -> list[str]:
+def files(part: Any) -> list[str]:
     """Return every file and every caption that the content of the report names."""
-    if isinstance(told, dict):
-        told = [value for key, value in told.items() if key not in ("links", "link", "params")]
-    if isinstance(told, list | tuple):
-        return sorted({path for item in told for path in files(item)})
-    named = isinstance(told, str) and (
-        told.startswith(f"{paths.RESULTS}/") or told.endswith(".rst")
+    if isinstance(part, dict):
+        part = [value for key, value in part.items() if key not in ("links", "link", "params")]
+    if isinstance(part, list | tuple):
+        return sorted({path for item in part for path in files(item)})
+    named = isinstance(part, str) and (
+        part.startswith(f"{paths.RESULTS}/") or part.endswith(".rst")
     )
-    return [told] if named else []
+    return [part] if named else []
 
 
 def pictures(study: Study) -> list[str]:

@@ -121,9 +121,11 @@ def _hashes(checksums: Iterable[str]) -> list[dict[str, str]]:
     return [{"alg": "SHA-256", "content": checksum} for checksum in checksums]
 
 
-def _licences(said: str | None) -> dict[str, Any]:
-    if not said:
+def _licences(stated: str | None) -> dict[str, Any]:
+    if not stated:
         return {}
     return {
-        "licenses": [{"expression": said} if SPDX.fullmatch(said) else {"license": {"name": said}}]
+        "licenses": [
+            {"expression": stated} if SPDX.fullmatch(stated) else {"license": {"name": stated}}
+        ]
     }

@@ -120,9 +120,9 @@ def planned(run: dict[str, Any], repository: StrPath) -> set[str]:
     words = [sys.executable, "-m", *_words(run), "--summary"]
     done = subprocess.run(words, cwd=repository, capture_output=True, text=True, check=False)
     if done.returncode:
-        said = [line for line in (done.stdout + done.stderr).splitlines() if "Error" in line]
+        failures = [line for line in (done.stdout + done.stderr).splitlines() if "Error" in line]
         raise InputError(
-            f"{run['command']}: {said[0] if said else 'Snakemake failed'}; correct this"
+            f"{run['command']}: {failures[0] if failures else 'Snakemake failed'}; correct this"
         )
     rows = [line.split("\t") for line in done.stdout.splitlines() if line.count("\t") == 5]
     return {Path(row[0]).as_posix() for row in rows if row[5] == "update pending"}
