@@ -15,14 +15,22 @@ TRUTH = SimpleNamespace(
     person_id=np.array(["a", "b"]),
     events={
         "a": {
-            **{"hit_1": 2.0, "hit_2": 5.0},
-            **{"split_1_start": 0.9, "split_1_stop": 1.0, "first_step_1": 1.2},  # a shuttle is fed
-            **{"split_2_start": 3.5, "split_2_stop": 3.6, "first_step_2": 3.8},
+            "hit_1": 2.0,
+            "hit_2": 5.0,
+            "split_1_start": 0.9,
+            "split_1_stop": 1.0,
+            "first_step_1": 1.2,  # a shuttle is fed
+            "split_2_start": 3.5,
+            "split_2_stop": 3.6,
+            "first_step_2": 3.8,
         },
         "b": {
-            **{"hit_1": 3.5, "hit_2": 6.5},
-            **{"split_1_start": 2.0, "split_1_stop": 2.15, "first_step_1": 2.35},
-            **{"first_step_2": 5.4},  # without a split step
+            "hit_1": 3.5,
+            "hit_2": 6.5,
+            "split_1_start": 2.0,
+            "split_1_stop": 2.15,
+            "first_step_1": 2.35,
+            "first_step_2": 5.4,  # without a split step
         },
     },
 )
@@ -60,8 +68,10 @@ def test_what_is_measured_as_it_was_has_no_error():
     rows = compared(TRUE_HITS, events(*TRUE_FEET))
     assert (rows.result == "found").all()
     assert rows.what.value_counts().to_dict() == {
-        **{"split_step": 3, "to_step": 3},
-        **{"to_split": 2, "split_to_step": 2},
+        "split_step": 3,
+        "to_step": 3,
+        "to_split": 2,
+        "split_to_step": 2,
     }
     np.testing.assert_allclose(rows.error_ms, 0, atol=1e-9)
     assert rows.within_90_percent.all()
