@@ -13,11 +13,12 @@ sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
 from courtside.evaluation.numbers import study
 from courtside.study.errors import InputError
+from courtside.study.targets import numbers as tables
 
 
 def main(results, documents_only):
     """Return the lines to print."""
-    found = study.kept(ROOT) if documents_only else study.numbers(results, ROOT)
+    found = study.kept(ROOT) if documents_only else study.numbers(results, ROOT, tables.made(ROOT))
     changed = study.write(found, ROOT)
     return [f"{len(found)} numbers; changed: {', '.join(changed) or 'nothing'}"]
 

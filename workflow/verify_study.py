@@ -29,6 +29,7 @@ sys.path.insert(0, str(REPOSITORY / "workflow" / "lib"))
 from courtside.evaluation.numbers import study as numbers
 from courtside.study.errors import InputError
 from courtside.study.provenance import comparison, stage_checksums, verification
+from courtside.study.targets import numbers as tables
 
 RESULTS = Path("results")
 
@@ -67,7 +68,7 @@ def numbers_in_short():
     They are no fault of the results: the documents are of another run.
     """
     try:
-        n_stale = len(numbers.report(RESULTS, REPOSITORY))
+        n_stale = len(numbers.report(RESULTS, REPOSITORY, tables.made(REPOSITORY)))
     except (InputError, OSError) as error:
         return f"{numbers.REGISTER}: not checked, for it is of a full default run: {error}"
     return f"{numbers.REGISTER}: {n_stale} numbers would be otherwise" + (
@@ -78,7 +79,7 @@ def numbers_in_short():
 def stale_numbers():
     """Return (a line for each stale number, their number)."""
     check_results()
-    lines = numbers.report(RESULTS, REPOSITORY)
+    lines = numbers.report(RESULTS, REPOSITORY, tables.made(REPOSITORY))
     return lines or [f"{numbers.REGISTER}: all numbers are those of these results"], len(lines)
 
 

@@ -202,13 +202,11 @@ rule evaluate_joint_offsets:
     output:
         offsets_csv=paths.JOINT_OFFSETS,
     log:
-        f"{paths.NETWORKS}logs/evaluate_joint_offsets/{{model}}.log",
+        "results/networks/logs/evaluate_joint_offsets/{model}.log",
     params:
         code=code("evaluate_joint_offsets.py"),
         takes=lambda w: evaluation.fitted_takes(STUDY, w.model),
-        about=lambda w, output: evaluation.estimated_by(
-            STUDY.sessions, w.model, output.offsets_csv
-        ),
+        about=lambda w, output: evaluation.estimated_by(STUDY.sessions, w.model, output.offsets_csv),
         step=STUDY.parameters["triangulate"],
     script:
         "../scripts/evaluate_joint_offsets.py"
@@ -221,13 +219,11 @@ rule evaluate_joint_errors:
     output:
         errors_csv=paths.JOINT_ERRORS,
     log:
-        f"{paths.NETWORKS}logs/evaluate_joint_errors/{{model}}.log",
+        "results/networks/logs/evaluate_joint_errors/{model}.log",
     params:
         code=code("evaluate_joint_errors.py"),
         takes=lambda w: evaluation.fitted_takes(STUDY, w.model),
-        about=lambda w, output: evaluation.estimated_by(
-            STUDY.sessions, w.model, output.errors_csv
-        ),
+        about=lambda w, output: evaluation.estimated_by(STUDY.sessions, w.model, output.errors_csv),
         step=STUDY.parameters["triangulate"],
     script:
         "../scripts/evaluate_joint_errors.py"
@@ -243,9 +239,7 @@ rule evaluate_skin_depths:
         "results/{session}/logs/evaluate_skin_depths/{device}.{model}.log",
     params:
         code=code("evaluate_skin_depths.py"),
-        about=lambda w, output: evaluation.estimated_by(
-            [w.session], w.model, output.depths_csv
-        ),
+        about=lambda w, output: evaluation.estimated_by([w.session], w.model, output.depths_csv),
         step=step("lift_depth"),
     script:
         "../scripts/evaluate_skin_depths.py"

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,8 +19,6 @@ from courtside.evaluation.numbers import (
 )
 from courtside.evaluation.numbers.register import Number, Source
 from courtside.evaluation.numbers.views import VIEWS
-from courtside.study import paths, targets
-from courtside.study.configuration import configuration, yaml_files
 from courtside.study.errors import InputError, StrPath
 
 REGISTER = "docs/numbers.csv"
@@ -82,24 +80,13 @@ MEASURED = (  # of the results of a default run
 )
 
 
-def made(repository: StrPath) -> frozenset[str]:
-    """Return the tables below the results that the repository's default configuration makes."""
-    folder = Path(repository) / "config"
-    file = folder / "config.yaml"
-    content = yaml_files.read(file)
-    study = configuration.load(content, str(file), folder, root=repository)
-    return frozenset(
-        path.removeprefix(f"{paths.RESULTS}/") for path in targets.numbers.every_table(study)
-    )
-
-
-def numbers(results: StrPath, repository: StrPath) -> list[Number]:
+def numbers(results: StrPath, repository: StrPath, made: Collection[str]) -> list[Number]:
     """Return all numbers, of the results of a full default run and of the repository's tables.
 
-    Tables that the repository's default configuration does not make are not read. An `InputError`
-    names the first one that is missing.
+    Only the tables `made` by the default configuration are read (`study.targets.numbers.made`). An
+    `InputError` names the first one that is missing.
     """
-    source, documents = Source(results, made(repository)), Source(repository)
+    source, documents = Source(results, made), Source(repository)
     if not source.folder.is_dir():
         raise InputError(f"{results}: expected a folder of results, found none; run snakemake")
     found = [number for table in MEASURED for number in table(source)]
@@ -158,6 +145,6 @@ def filled(numbers_: list[Number], repository: StrPath) -> dict[str, str]:
     return {name: markers.fill(text, VIEWS, numbers_) for name, text in texts.items()}
 
 
-def report(results: StrPath, repository: StrPath) -> list[str]:
+def report(results: StrPath, repository: StrPath, made: Collection[str]) -> list[str]:
     """Return a line for every number of the register that these results do not give any more."""
-    return register.stale(kept(repository), numbers(results, repository))
+    return register.stale(kept(repository), numbers(results, repository, made))

@@ -3,9 +3,21 @@
 A folder of results may hold files of an earlier configuration; Snakemake leaves them there.
 """
 
+from pathlib import Path
+
 from courtside.study import paths
+from courtside.study.configuration import configuration, yaml_files
 from courtside.study.configuration.sessions import Study
+from courtside.study.errors import StrPath
 from courtside.study.targets import calibration, devices, takes, together
+
+
+def made(repository: StrPath) -> frozenset[str]:
+    """Return the tables below the results that the repository's default configuration makes."""
+    folder = Path(repository) / "config"
+    file = folder / "config.yaml"
+    study = configuration.load(yaml_files.read(file), str(file), folder, root=Path(repository))
+    return frozenset(path.removeprefix(f"{paths.RESULTS}/") for path in every_table(study))
 
 
 def every_table(study: Study) -> list[str]:
