@@ -64,3 +64,23 @@ def test_straight_pieces_are_as_drawn():
 def test_a_plain_picture_has_none():
     found = ridges.find(np.full((120, 160, 3), 90, np.uint8), "light")
     assert not found.on.any() and ridges.segments(found).shape == (0, 4)
+
+
+def test_faint_lines_show_when_they_are_added_up():
+    image = np.random.default_rng(3).normal(100, 4, (200, 300, 3))
+    image[80, 20:280] += 5
+    image = np.clip(np.round(image), 0, 255).astype(np.uint8)
+    columns, tops = np.arange(40, 260), np.full(220, 80)
+    faint = ridges.find_faint(image, "light")
+    assert near(faint, np.column_stack([columns, tops])).mean() > 0.8
+    assert near(ridges.find_faint(image, "dark"), np.column_stack([columns, tops])).mean() < 0.3
+    assert near(ridges.find(image, "light"), np.column_stack([columns, tops])).mean() < 0.6
+
+
+def test_contrast_does_not_depend_on_brightness_or_strong_things():
+    image = np.random.default_rng(3).normal(100, 4, (200, 300, 3))
+    plain = ridges.contrast(image.astype(np.uint8), "light")
+    assert np.sqrt(np.mean(plain**2)) == pytest.approx(1, rel=1e-4)
+    image[50:53, 50:250] = 250
+    strong = ridges.contrast(image.astype(np.uint8), "light")
+    assert strong.max() < 1.2 * plain.max()

@@ -1,11 +1,13 @@
 """Calibration of a camera from the painted lines of a court in its picture, without a click.
 
-ridges: find, segments: thin bright or dark lines of a picture, and straight pieces of them
+ridges: find, find_faint, segments: thin bright or dark lines of a picture, straight pieces of them
 floor_frames: find: directions of the floor and focal lengths that straight pieces agree on
 views: Views, Samples: many cameras at once, and points along a court's lines
 evidence: fields, score, Evidence: the share of a court's lines that the picture shows
 placements: find: camera positions that project lines of the court onto lines of the picture
 refinement: refine, uncertainty: a camera adjusted until the lines fit, and its uncertainty
+painting: match, of_lines: the paint of the whole court as a camera expects it, against a picture
+fitting: fit, fit_again: a camera adjusted until this paint matches the picture, pixel by pixel
 search: find, Candidate: the cameras that explain a picture best
 edges: measure, Edges: painted lines measured in a picture, stretch by stretch
 walk_and_lines: of_pictures, LineConstraints: cameras of a walk adjusted together with lines

@@ -13,6 +13,9 @@ AROUND_PX = 61
 LEAST_PX = 10  # extent of connected pixels of a ridge
 PIECE_PX, PIECE_RMS_PX = 14, 0.8  # length of a straight piece, and how straight it is
 DIRECTIONS = 12  # in which straight pieces are looked for
+# Faint lines: length and width of filters, standard deviations; how many; contrast and extent.
+FAINT_PX, FAINT_DIRECTIONS, FAINT_CONTRAST, FAINT_LEAST_PX = (7.0, 1.0), 48, 1.8, 24
+FLOOR_PX, CLIP = 4.0, 1.5  # blur that removes lines; clipped, in deviations of the noise
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,9 +47,59 @@ def find(image: NDArray, lines: str) -> Ridges:
             )
             angle = np.where(relative > best, along, angle)
             best = np.maximum(relative, best)
-    keep = _thin(best, angle) & (best > CONTRAST)
+    return _long(_thin(best, angle) & (best > CONTRAST), angle, LEAST_PX)
+
+
+def find_faint(image: NDArray, lines: str) -> Ridges:
+    """Find the ridges of a picture (H, W, 3) uint8 that are too faint for `find`.
+
+    Long filters of many directions add up the brightness along a line. They find lines much thinner
+    than a pixel, but no curved ones. `lines` is "light" or "dark".
+    """
+    fine = contrast(image, lines)
+    best, angle = np.zeros(fine.shape, np.float32), np.zeros(fine.shape, np.float32)
+    for direction in np.arange(FAINT_DIRECTIONS) * np.pi / FAINT_DIRECTIONS:
+        response = cv2.filter2D(fine, cv2.CV_32F, _filter(direction), borderType=cv2.BORDER_REFLECT)
+        angle = np.where(response > best, np.float32(direction), angle)
+        best = np.maximum(response, best)
+    around = cv2.blur(best, (AROUND_PX, AROUND_PX)) + 0.25 * np.median(best) + 0.15
+    relative = best / around
+    return _long(_thin(relative, angle) & (relative > FAINT_CONTRAST), angle, FAINT_LEAST_PX)
+
+
+def contrast(image: NDArray, lines: str) -> NDArray:
+    """Return thin structures of a picture (H, W, 3) uint8, with a root mean square of 1.
+
+    Light lines are positive with `lines` "light", dark ones with "dark". Values are clipped at
+    little more than the noise, so that a net's tape counts no more than a faint line of its size.
+    """
+    # White paint raises every channel; dark paint lowers their mean.
+    grey = -image.mean(axis=2) if lines == "dark" else image.min(axis=2)
+    fine = grey.astype(np.float32)
+    fine -= cv2.GaussianBlur(fine, (0, 0), FLOOR_PX)
+    noise = max(1.4826 * float(np.median(np.abs(fine))), 0.25)
+    fine = np.clip(fine / noise, -CLIP, CLIP)
+    return fine / max(float(np.sqrt(np.mean(fine**2))), 1e-6)
+
+
+def _filter(direction: float) -> NDArray:
+    """Return a filter for lines of one direction (rad), of unit norm and without mean."""
+    long, wide = FAINT_PX
+    reach = int(np.ceil(2.5 * long))
+    y, x = np.mgrid[-reach : reach + 1, -reach : reach + 1].astype(float)
+    along = x * np.cos(direction) + y * np.sin(direction)
+    across = y * np.cos(direction) - x * np.sin(direction)
+    piece = np.exp(-0.5 * (along / long) ** 2)
+    line = piece * (1 - (across / wide) ** 2) * np.exp(-0.5 * (across / wide) ** 2)
+    floor = piece * np.exp(-0.5 * (across / (2 * wide)) ** 2)
+    line -= floor * line.sum() / floor.sum()
+    return (line / np.linalg.norm(line)).astype(np.float32)
+
+
+def _long(keep: NDArray, angle: NDArray, least_px: float) -> Ridges:
+    """Return the connected ridges of at least some extent."""
     _, label, stats, _ = cv2.connectedComponentsWithStats(keep.astype(np.uint8), connectivity=8)
-    long = np.hypot(stats[:, cv2.CC_STAT_WIDTH], stats[:, cv2.CC_STAT_HEIGHT]) >= LEAST_PX
+    long = np.hypot(stats[:, cv2.CC_STAT_WIDTH], stats[:, cv2.CC_STAT_HEIGHT]) >= least_px
     long[0] = False
     return Ridges(long[label], np.mod(angle, np.pi))
 
