@@ -35,7 +35,7 @@ from courtside.calibration.boards import corners
 from courtside.calibration.boards.board import Board
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court import joint_adjustment, points_alone
-from courtside.calibration.court_lines import search, verdict
+from courtside.calibration.court_lines import verdict
 from courtside.calibration.file_check import residuals
 from courtside.calibration.people import adjustment, held_out, prior, refinement
 from courtside.calibration.people import views as people_views
@@ -113,8 +113,7 @@ def of_lines(one):
     half_turn = np.linalg.norm(court.xyz[:, None] - turned, axis=2).argmin(axis=0)
     for camera in one.real.cameras:
         image = cv2.imread(str(one.results / one.name / "static" / f"{camera.name}.png"))
-        best = search.find(image, court, step["lines"])
-        said = verdict.judge(best, court, camera.name, camera.size, step["lines"])
+        said = verdict.find(image, court, camera.name, step["lines"])
         if said.outcome != verdict.FOUND:
             found[camera.name] = None
             continue

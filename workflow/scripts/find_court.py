@@ -1,7 +1,7 @@
 """Find a court by its painted lines: static pictures, court -> points to be confirmed, verdicts."""
 
 from courtside.calibration.court import court as court_files
-from courtside.calibration.court_lines import search, verdict
+from courtside.calibration.court_lines import verdict
 from courtside.records.cameras import click_proposals
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json
@@ -14,8 +14,7 @@ def main(pictures, court_yaml, proposals_csv, found_json, *, names, search_share
     given = zip(names, pictures, strict=True)
     for name, path in log.progress(given, len(names), "court lines: cameras"):
         image = images.read(path)
-        found = search.find(image, court, lines)
-        judged = verdict.judge(found, court, name, image.shape[1::-1], lines)
+        judged = verdict.find(image, court, name, lines)
         reach = {"search_px": search_share * image.shape[1]}
         one = verdict.proposed(judged, image, court, lines=lines, **reach, **options)
         proposed[name], said[name] = one, verdict.report(judged, one)

@@ -91,6 +91,37 @@ def test_like_courts_are_told_apart_by_their_colour(court, colour, outcome, monk
         np.testing.assert_allclose(said.camera.centre_in_world, CAMERA.centre_in_world)
 
 
+def test_a_court_without_some_of_its_lines_is_refused(court):
+    lines = np.array([1.0, 0.9, 1.1, 0.1, 1.0, 0.1, 1.0, -0.1, 1.0, 0.2, 1.0, np.nan])
+    found = made(court_pictures.draw(CAMERA, court), court, (0.0,))
+    (best,) = found.candidates
+    for row, outcome in ((lines, "not found"), (np.ones(12), "found")):
+        fitted = replace(best, score=3 * verdict.LEAST_MATCH, lines=row)
+        one = replace(found, candidates=[fitted], painted=True)
+        said = verdict.judge(one, court, "one", CAMERA.size, "light")
+        assert said.outcome == outcome
+        assert ("7 of 11 lines" in said.reason) == (outcome == "not found")
+
+
+@pytest.mark.parametrize(("ridges_say", "paint_says"), [(300, 0), (0, 200), (0, 0)])
+def test_paint_is_asked_only_where_ridges_find_nothing(court, ridges_say, paint_says, monkeypatch):
+    image = court_pictures.draw(CAMERA, court)
+    found = made(image, court, (0.0,))
+    (best,) = found.candidates
+
+    def says(score, painted):
+        one = replace(best, score=score, lines=np.ones(12))
+        return lambda *_: replace(found, candidates=[one], painted=painted)
+
+    monkeypatch.setattr(search, "find", says(ridges_say, False))
+    monkeypatch.setattr(search, "find_by_paint", says(paint_says, True))
+    said = verdict.find(image, court, "one", "light")
+    expected = verdict.FOUND if ridges_say or paint_says else verdict.NOT_FOUND
+    assert (said.outcome, said.score) == (expected, max(ridges_say, paint_says))
+    other = verdict.find(image, court, "one", "any")
+    assert other.score == ridges_say
+
+
 def test_a_near_rival_makes_a_place_ambiguous(court):
     image = court_pictures.draw(CAMERA, court)
     found = made(image, court, (0.0,))

@@ -8,8 +8,8 @@ placements: find: camera positions that project lines of the court onto lines of
 refinement: refine, uncertainty: a camera adjusted until the lines fit, and its uncertainty
 painting: match, of_lines: the paint of the whole court as a camera expects it, against a picture
 fitting: fit, fit_again: a camera adjusted until this paint matches the picture, pixel by pixel
-search: find, Candidate: the cameras that explain a picture best
+search: find, find_by_paint, Candidate: the cameras that explain a picture best
 edges: measure, Edges: painted lines measured in a picture, stretch by stretch
 walk_and_lines: of_pictures, LineConstraints: cameras of a walk adjusted together with lines
-verdict: judge, Verdict: found, ambiguous or not found, and why; ends of symmetric courts
+verdict: find, judge, Verdict: found, ambiguous or not found, and why; ends of symmetric courts
 """

@@ -61,21 +61,30 @@ def fields(ridges: Ridges) -> Fields:
     return Fields(ridges, distance)
 
 
-def score(seen: Fields, views: Views, along: Samples, tolerance_px: float) -> Evidence:
+def score(
+    seen: Fields,
+    views: Views,
+    along: Samples,
+    tolerance_px: float,
+    least_widths: float = LEAST_WIDTHS,
+) -> Evidence:
     """Score cameras by ridges at most `tolerance_px` from the court's lines, of their direction.
 
     The score is the log likelihood ratio of lines against chance. It compares the share of the
     lines in view that are close to ridges with the share of ridges of these directions anywhere.
+    Cameras that see less line than `least_widths` of the picture's width get -1.
     """
     parts = [
-        _score(seen, views[at : at + AT_ONCE], along, tolerance_px)
+        _score(seen, views[at : at + AT_ONCE], along, tolerance_px, least_widths)
         for at in range(0, len(views), AT_ONCE)
     ]
     rows = ("score", "share", "weight", "close")
     return Evidence(*(np.concatenate([getattr(part, row) for part in parts]) for row in rows))
 
 
-def _score(seen: Fields, views: Views, along: Samples, tolerance_px: float) -> Evidence:
+def _score(
+    seen: Fields, views: Views, along: Samples, tolerance_px: float, least_widths: float
+) -> Evidence:
     size = np.array(seen.distance.shape[:0:-1])
     place = views.project(along.place)
     tangent = views.project(along.place + along.half) - views.project(along.place - along.half)
@@ -100,5 +109,5 @@ def _score(seen: Fields, views: Views, along: Samples, tolerance_px: float) -> E
     by_chance = np.clip(by_chance / np.maximum(total, 1e-9), 0.004, 0.9)
     ratio = share * np.log(share / by_chance) + (1 - share) * np.log((1 - share) / (1 - by_chance))
     ratio *= total / OWN_PX * 1280 / size[0]
-    good = (total > LEAST_WIDTHS * size[0]) & (share > by_chance)
+    good = (total > least_widths * size[0]) & (share > by_chance)
     return Evidence(np.where(good, ratio, -1.0), share, weight, close)

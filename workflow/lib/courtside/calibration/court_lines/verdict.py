@@ -23,6 +23,7 @@ LEAST_SCORE = 100.0  # log likelihood ratio; lines of other things reached 70 to
 LEAST_LINE, LEAST_LINES = 0.3, 0.7  # share of a line, and share of the lines in view seen so
 FEWEST_LINES = 3  # along each axis
 MOST_RIVAL, LEAST_MARGIN = 0.92, 30.0  # of the next best: share of the score, and difference
+LEAST_MATCH, MOST_RIVAL_MATCH = 40.0, 0.85  # the same where the paint was fitted
 POSE = np.eye(4)[:3]  # of a camera that was not found
 LIKE_SCORE, WHITER, LEAST_WHITE = 0.4, 1.3, 0.3  # score and whiteness of like courts
 
@@ -41,6 +42,19 @@ class Verdict:
     rival: float  # the next best one's score; 0 without
     uncertainty: Uncertainty | None
     symmetric: bool  # half a turn of the court gives the same lines: which end is not said
+
+
+def find(image: NDArray, court: Court, name: str, lines: str) -> Verdict:
+    """Find the camera of a picture (H, W, 3) uint8 by a court's ridges, otherwise by its paint.
+
+    What ridges decide stays, so that paint only adds cameras.
+    """
+    size = image.shape[1], image.shape[0]
+    by_ridges = judge(search.find(image, court, lines), court, name, size, lines)
+    if by_ridges.outcome == FOUND or lines == "any":
+        return by_ridges
+    by_paint = judge(search.find_by_paint(image, court, lines), court, name, size, lines)
+    return by_paint if by_paint.outcome == FOUND else by_ridges
 
 
 def judge(found: Found, court: Court, name: str, size: tuple[int, int], lines: str) -> Verdict:
@@ -63,16 +77,16 @@ def judge(found: Found, court: Court, name: str, size: tuple[int, int], lines: s
     best = found.candidates[first]
     rival = np.delete(value, first).max(initial=0.0) / paint[first]
     outcome, reason = FOUND, ""
-    if fault := _fault(best, court):
+    if fault := _fault(best, court, found.painted):
         outcome, reason = NOT_FOUND, fault
     elif lines == "light" and paint[first] < LEAST_WHITE:
         outcome, reason = AMBIGUOUS, "the lines that fit the court are not white"
-    elif _has_like(found.candidates, best, paint, court):
+    elif _has_like(found, best, paint, court):
         outcome, reason = (
             AMBIGUOUS,
             "a similar court beside it fits as well: it is ambiguous which one is meant",
         )
-    elif rival > MOST_RIVAL * best.score or best.score - rival < LEAST_MARGIN:
+    elif _is_near(best.score, rival, found.painted):
         outcome, reason = AMBIGUOUS, "another place of the camera explains the lines nearly as well"
     camera = views.to_camera(best.view, name, size, found.scale)
     along = views.samples(court, search.FINE_M)
@@ -80,10 +94,18 @@ def judge(found: Found, court: Court, name: str, size: tuple[int, int], lines: s
     return Verdict(outcome, reason, camera, best.score, rival, sure, symmetric)
 
 
-def _fault(best: Candidate, court: Court) -> str:
+def _is_near(score: float, rival: float, painted: bool) -> bool:
+    """Return whether the next best camera explains nearly as much as the best one."""
+    if painted:
+        return rival > MOST_RIVAL_MATCH * score
+    return rival > MOST_RIVAL * score or score - rival < LEAST_MARGIN
+
+
+def _fault(best: Candidate, court: Court, painted: bool) -> str:
     """Return why a candidate is rejected, empty if it is accepted."""
-    if best.score < LEAST_SCORE:
-        return f"the best camera explains too little (score {best.score:.0f} of {LEAST_SCORE:.0f})"
+    least = LEAST_MATCH if painted else LEAST_SCORE
+    if best.score < least:
+        return f"the best camera explains too little (score {best.score:.0f} of {least:.0f})"
     low, high = court.line_corners()
     axis = np.argmin(high - low, axis=1)
     shown = np.isfinite(best.lines)
@@ -97,15 +119,15 @@ def _fault(best: Candidate, court: Court) -> str:
     return ""
 
 
-def _has_like(candidates: list[Candidate], best: Candidate, paint: NDArray, court: Court) -> bool:
+def _has_like(found: Found, best: Candidate, paint: NDArray, court: Court) -> bool:
     """Return whether a court beside the best one fits too, with lines nearly as white."""
-    own = paint[candidates.index(best)]
+    own = paint[found.candidates.index(best)]
     return any(
         one.score > LIKE_SCORE * best.score
         and white * WHITER > own
         and _is_beside(one, best, court)
-        and not _fault(one, court)
-        for one, white in zip(candidates, paint, strict=True)
+        and not _fault(one, court, found.painted)
+        for one, white in zip(found.candidates, paint, strict=True)
     )
 
 
