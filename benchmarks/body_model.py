@@ -61,6 +61,7 @@ def fitted(results, session, way, folder):
     base, config = results / session / "takes" / name, ROOT / "config"
     paths = SimpleNamespace(
         raw=base / f"pose3d/{file}.npz",
+        cameras=results / session / "calibration" / calibration / "cameras.toml",
         corrected=base / f"pose3d_corrected/{file}.npz",
         cutoffs=base / f"kinematics/{file}.cutoffs.csv",
         skeleton=config / "skeletons/blazepose33.yaml",
