@@ -16,7 +16,7 @@ from courtside.exports import pose2sim, trc
 from courtside.geometry import camera as cameras
 from courtside.reconstruction import error_signs, joint_correction, joint_errors
 from courtside.records.cameras import click_proposals, clicks
-from fixtures.cameras import foreign_files
+from fixtures.cameras import foreign_files, scene
 from fixtures.people import walker
 from fixtures.recordings.real_data import REAL
 from fuzz.format import Format, require
@@ -251,7 +251,8 @@ def read_proposals(path):
 
 def read_offsets(path):
     """Read joint offsets and subtract them."""
-    return joint_correction.correct(walker.points(6), joint_correction.read(path))
+    table, cameras = joint_correction.read(path), scene.ring(3)
+    return joint_correction.correct(walker.points(6), table, cameras=cameras)
 
 
 def read_errors(path):
