@@ -87,7 +87,7 @@ def test_a_device_may_call_joints_otherwise(tmp_path):
         ("bones:", "names: {left_hip: neck}\nbones:", "names.*'neck'"),
         ("bones:", "names: {left_hip: hip, right_hip: hip}\nbones:", "names.*'hip'"),
         ("bones:", "names: {left_hip: 7}\nbones:", "names.*found 7"),
-        ("bones:", "names: [left_hip]\nbones:", "names.*type object"),
+        ("bones:", "names: [left_hip]\nbones:", "names: expected keys and values"),
         (
             "[neck, left_hip, right_hip]\n",
             "[neck, left_hip, right_hip, neck]\n",

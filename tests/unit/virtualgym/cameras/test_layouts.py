@@ -14,6 +14,8 @@ FOLDER = Path(__file__).parents[4] / "config" / "courts"
 COURT = court_files.read(FOLDER / "badminton.yaml")
 CENTRE = np.array([3.05, 6.7, 0.0])
 PLAIN = presets.PRESETS["plain"]
+# Layouts aimed at players, not at the whole court; heights of their cameras, m.
+OF_PLAYERS = {"stands": (5.5, 8.0), "near": (1.1, 3.2)}
 
 
 def cameras(layout="a", court=COURT, size=(1280, 720), seed=0, preset=PLAIN, **options):
@@ -70,7 +72,7 @@ def test_four_corners_are_two_and_their_images_behind_the_other_half():
 
 
 @pytest.mark.parametrize("court", ["badminton", "tennis", "rectangle-10x5"])
-@pytest.mark.parametrize("layout", layouts.LAYOUTS)
+@pytest.mark.parametrize("layout", [name for name in layouts.LAYOUTS if name not in OF_PLAYERS])
 @pytest.mark.parametrize("size", [(480, 270), (3840, 2160)])
 def test_every_camera_sees_the_whole_court(layout, court, size):
     known = court_files.read(FOLDER / f"{court}.yaml")
@@ -79,6 +81,17 @@ def test_every_camera_sees_the_whole_court(layout, court, size):
             xy = scene.opencv_projection(camera, known.xyz)
             assert (xy > 0.02 * np.array(size)).all(), camera.name
             assert (xy < 0.98 * np.array(size)).all(), camera.name
+
+
+@pytest.mark.parametrize(("layout", "height_m"), OF_PLAYERS.items())
+def test_cameras_on_stands_and_near_see_the_middle_of_the_near_half(layout, height_m):
+    known = court_files.read(FOLDER / "badminton.yaml")
+    beside = np.array(np.meshgrid([-1.0, 1.0], [-1.0, 1.0], [0.0, 2.1])).reshape(3, -1).T
+    place = [known.size_m[0] / 2, known.size_m[1] / 4, 0]
+    for camera in cameras(layout, known, (1920, 1080), 0):
+        assert height_m[0] <= camera.centre_in_world[2].round(9) <= height_m[1]
+        xy = scene.opencv_projection(camera, place + beside)
+        assert (xy > 0).all() and (xy < [1920, 1080]).all(), camera.name
 
 
 def test_lenses_differ_from_unit_to_unit_as_the_preset_says():
