@@ -36,12 +36,11 @@ def draw(strokes: pd.DataFrame, events: pd.DataFrame, points: Keypoints3D) -> Fi
     rows = drawing.subplots(len(people), 1, sharex=True, squeeze=False)[:, 0]
     for at, (axis, person) in enumerate(zip(rows, people, strict=True)):
         own = strokes[strokes.person == person]
+        counted = "1 stroke" if len(own) == 1 else f"{len(own)} strokes"
         _draw_person(axis, own, signals.of_person(points, at))
         _draw_steps(axis, events[events.person == person])
         hands = ", ".join(f"{hand} hand ({source})" for hand, source in _hands(own))
-        axis.set_title(
-            f"{person}: {len(own)} strokes{', ' if hands else ''}{hands}", loc="left", pad=11
-        )
+        axis.set_title(f"{person}: {counted}{', ' if hands else ''}{hands}", loc="left", pad=11)
     rows[-1].set_xlabel("time (s)")
     named = {
         label: handle
