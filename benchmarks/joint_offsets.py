@@ -22,9 +22,10 @@ from courtside.evaluation import error_fit, joints
 from courtside.evaluation.numbers import stated
 from courtside.evaluation.numbers.players import NETWORK
 from courtside.reconstruction import joint_correction
-from courtside.reconstruction.joint_correction import Clip
 from courtside.records.keypoints import skeleton
-from courtside.study.configuration import yaml_files
+from courtside.study import paths
+from courtside.study.configuration import configuration, yaml_files
+from courtside.study.jobs import evaluation
 
 SESSIONS = {
     "players-dev": "18 to 27 m away, 2 m high, badminton",
@@ -33,51 +34,48 @@ SESSIONS = {
 }
 WAYS = {"far": (("players-dev",), False), "posture": (SESSIONS, False), "view": (SESSIONS, True)}
 SHAPE = skeleton.read(ROOT / "config" / "skeletons" / "blazepose33.yaml")
-CALIBRATION = "known18"
 COMMAND = "`python benchmarks/joint_offsets.py results`"
 
 
-def takes_of(results, session):
-    """Yield the files of the takes of a session, as `error_fit.footage_with_truth` needs them."""
-    content = yaml_files.read(ROOT / "config" / "sessions" / f"{session}.yaml")
-    virtual, folder = results / "virtual" / session, results / session
-    for name, take in content["takes"].items():
-        own = folder / "takes" / name
-        yield {
-            "cameras": folder / "calibration" / CALIBRATION / "cameras.toml",
-            "session_truth": virtual / "truth.npz",
-            "pose2d": [own / "pose2d" / NETWORK / f"{camera}.npz" for camera in content["cameras"]],
-            "people": own / "people" / CALIBRATION / f"{NETWORK}.npz",
-            "sync": own / "sync" / CALIBRATION / f"cameras.{NETWORK}.json",
-            "truth": virtual / "takes" / name / "truth.npz",
-            "sex_of": {who: content["subjects"][who]["sex"] for who in take["subjects"]},
-        }
+def takes_of(results):
+    """Return, by session, the files of its takes, as `error_fit.footage_with_truth` needs them."""
+    folder = ROOT / "config"
+    content = yaml_files.read(folder / "config.yaml")
+    content |= {"sessions": list(SESSIONS), "variations": [], "plans": []}
+    study = configuration.load(content, str(folder / "config.yaml"), folder, root=ROOT)
+    found = {session: [] for session in SESSIONS}
+    for take in evaluation.fitted_takes(study, NETWORK):
+        files = {key: below(results, path) for key, path in take.items() if key != "sex_of"}
+        found[files["session_truth"].parent.name].append({**take, **files})
+    return found
 
 
-def clips_of(results, session):
-    """Return [(body, raw joints, Clip)] of a session, at most ten frames in a second."""
+def below(results, path):
+    """Return a file, or each of several, of the study's results in another folder of results."""
+    if isinstance(path, list):
+        return [below(results, one) for one in path]
+    return results / Path(path).relative_to(paths.RESULTS)
+
+
+def clips_of(takes):
+    """Return [(body, raw joints, Clip)] of takes of one person, and the names of true joints."""
     step, found = yaml_files.read(ROOT / "config" / "config.yaml")["triangulate"], []
-    for seen, sex_of, truth in error_fit.footage_with_truth(takes_of(results, session)):
+    for seen, sex_of, truth in error_fit.footage_with_truth(takes):
         raw = error_fit.triangulated(seen, SHAPE, list(sex_of), step)
-        every, cameras = error_fit.every(raw), [one.camera for one in seen]
-        (body, sex), true = *sex_of.items(), joints.true_places(raw, truth)[0, every]
-        thin = ("xyz", "accepted", "offset", "covariance_2d", "covariance_network", "n_views")
-        fields = {key: getattr(raw, key)[:, every] for key in thin}
-        points = replace(raw, time_s=raw.time_s[every], **fields)
-        clip = Clip(points.xyz[0], true, sex, cameras, points.accepted[0])
-        found.append((body, points, clip))
+        (clip,), (body,) = error_fit.clips(raw, seen, sex_of, truth), sex_of
+        found.append((body, raw.frames(error_fit.thin(raw)), clip))
     return found, truth.joints.tolist()
 
 
 def errors_m(points, clip, true_joints, table):
     """Return the errors (N,) m of limb joints, less the offsets of a table; raw without one."""
-    xyz = points.xyz
     if table is not None:
         sex_of = dict.fromkeys(map(str, points.person_id), clip.sex)
-        xyz = xyz - joint_correction.offsets(points, table, sex_of, clip.cameras)
-    own = [points.joints.tolist().index(joint) for joint in skeleton.JOINTS]
-    true = [true_joints.index(joint) for joint in skeleton.JOINTS]
-    apart = np.linalg.norm(xyz[0][:, own] - clip.true[:, true], axis=-1).ravel()
+        moved = joint_correction.offsets(points, table, sex_of, clip.cameras)
+        points = replace(points, xyz=points.xyz - moved)
+    names, error, _ = joints.errors(points, true_joints, clip.true[None])
+    limbs = [names.index(joint) for joint in skeleton.JOINTS]
+    apart = np.linalg.norm(error[0][:, limbs], axis=-1).ravel()
     return apart[np.isfinite(apart)]
 
 
@@ -98,8 +96,8 @@ def left_out(of_session, true_joints, session, way):
 def rows_of(results):
     """Yield the numbers of the table, and print them."""
     of_session = {}
-    for session in SESSIONS:
-        of_session[session], true_joints = clips_of(results, session)
+    for session, takes in takes_of(results).items():
+        of_session[session], true_joints = clips_of(takes)
     for session, words in SESSIONS.items():
         raw = [errors_m(p, clip, true_joints, None) for _, p, clip in of_session[session]]
         every = {"raw": np.concatenate(raw)}

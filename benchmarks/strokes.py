@@ -80,7 +80,7 @@ def filmed(results):
 def next_steps(results):
     """Return errors of the intervals from a hit to the player's own next step, and sigmas, ms.
 
-    No virtual take shows two players in a rally: the join of strokes and feet is tried on one.
+    Here the join of strokes and feet is tried on one player; `reactions.py` has rallies of two.
     """
     rows, shape = [], skeleton.read(ROOT / "config" / "skeletons" / "blazepose33.yaml")
     for session, take in STEPPING:

@@ -188,7 +188,7 @@ rule evaluate_body_frames:
         "../scripts/evaluate_body_frames.py"
 
 
-# Of every take of a development session. People were found with clicked cameras; what is fitted is
+# Of every virtual take of the study. People were found with clicked cameras; what is fitted is
 # fitted with the true ones.
 FITTED = {
     "files": lambda w: evaluation.fitted_files(STUDY, w.model),

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from courtside.evaluation import error_fit, joints
+from courtside.evaluation import error_fit
 from courtside.reconstruction import joint_correction
-from courtside.reconstruction.joint_correction import Clip
 from courtside.records import tables
 from courtside.records.keypoints import skeleton
 from courtside.study.execution import log
@@ -15,10 +14,7 @@ def main(paths, offsets_csv, *, takes, about, step):
     shape, clips = skeleton.read(paths.skeleton), []
     for seen, sex_of, truth in error_fit.footage_with_truth(takes):
         raw = error_fit.triangulated(seen, shape, list(sex_of), step)
-        every, cameras = error_fit.every(raw), [one.camera for one in seen]
-        each = zip(raw.xyz, joints.true_places(raw, truth), raw.accepted, strict=True)
-        for (xyz, true, accepted), sex in zip(each, sex_of.values(), strict=True):
-            clips.append(Clip(xyz[every], true[every], sex, cameras, accepted[every]))
+        clips += error_fit.clips(raw, seen, sex_of, truth)
     table = joint_correction.estimate(clips, raw.joints, truth.joints)
     log.logger.info("frames: %d", np.sum([len(clip.xyz) for clip in clips]))
     tables.write(offsets_csv, table, about=about)

@@ -24,11 +24,8 @@ def persons(n=6, seed=0):
 
 def every(xyz, joint, side, cameras, sex="m"):
     """Return all vectors of a joint, all views accepted."""
-    at = JOINTS.index(f"{side}_{joint}")
-    accepted = np.ones((len(xyz), len(cameras)), dtype=bool)
-    seen = offset_vectors.views(cameras, xyz[:, at], accepted)
-    found = offset_vectors.of_body(xyz, JOINTS, side, joint, sex)
-    return found | offset_vectors.of_views(xyz, JOINTS, side, joint, seen)
+    accepted = np.ones((*xyz.shape[:2], len(cameras)), dtype=bool)
+    return offset_vectors.every(xyz, JOINTS, side, joint, sex, cameras, accepted)
 
 
 def test_a_joint_moves_by_what_the_triangulation_makes_of_one_ray():

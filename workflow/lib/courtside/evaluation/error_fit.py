@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from courtside.evaluation import joints
 from courtside.evaluation.joints import Truth
 from courtside.reconstruction import error_signs, fusion, joint_correction, joint_errors
+from courtside.reconstruction.joint_correction import Clip
 from courtside.records.cameras import footage
 from courtside.records.cameras.footage import Footage
 from courtside.records.keypoints import skeleton as limbs
@@ -46,9 +47,21 @@ def footage_with_truth(
         yield own, take["sex_of"], take_truth.read(take["truth"])
 
 
-def every(points: Keypoints3D) -> slice:
+def thin(points: Keypoints3D) -> slice:
     """Return which frames of a take are used for a fit: at most `MOST_HZ` in a second."""
     return slice(None, None, max(1, round(points.rate_hz / MOST_HZ)))
+
+
+def clips(
+    raw: Keypoints3D, seen: Sequence[Footage], sex_of: Mapping[str, str | None], truth: Truth
+) -> list[Clip]:
+    """Return what `joint_correction.estimate` needs of a take, for each of its persons."""
+    points, cameras = raw.frames(thin(raw)), [one.camera for one in seen]
+    each = zip(points.xyz, joints.true_places(points, truth), points.accepted, strict=True)
+    return [
+        Clip(xyz, true, sex, cameras, accepted)
+        for (xyz, true, accepted), sex in zip(each, sex_of.values(), strict=True)
+    ]
 
 
 def triangulated(
@@ -77,11 +90,11 @@ def joints_of(
     raw = triangulated(seen, skeleton, list(sex_of), options)
     views, clocks = [one.view for one in seen], [one.clock for one in seen]
     xy, score = error_signs.keypoints_used(views, clocks, raw, skeleton)
-    signs = error_signs.of_points([one.camera for one in seen], raw, xy, score, skeleton)
+    cameras = [one.camera for one in seen]
+    signs = error_signs.of_points(cameras, raw, xy, score, skeleton)
     placed = raw
     if table is not None:
-        moved = joint_correction.offsets(raw, table, sex_of, [one.camera for one in seen])
-        placed = replace(raw, xyz=raw.xyz - moved)
+        placed = replace(raw, xyz=raw.xyz - joint_correction.offsets(raw, table, sex_of, cameras))
     names, error, _ = joints.errors(placed, truth.joints.tolist(), joints.true_places(raw, truth))
     error = error[:, :, [names.index(joint) for joint in limbs.JOINTS]]
     at = [raw.joints.tolist().index(joint) for joint in limbs.JOINTS]
@@ -90,7 +103,7 @@ def joints_of(
         joint_errors.design(signs, raw.joints.tolist()),
     )
     used = np.zeros(error.shape[:-1], dtype=bool)
-    used[:, every(raw)] = True
+    used[:, thin(raw)] = True
     known = used & np.isfinite(error).all(axis=-1) & np.isfinite(covariance).all(axis=(-2, -1))
     weight = np.full(int(known.sum()), WEIGHT.get(len(seen), 1.0))
     return columns[known], error[known], covariance[known], weight

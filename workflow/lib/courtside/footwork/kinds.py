@@ -35,7 +35,8 @@ def tables(
     events: list[tuple] = []
     for person, (feet, leg_m) in people.items():
         kinds: dict[tuple[str, int], str] = {}
-        looked, hops = (hopped or {}).get(person), (hopped or {}).get(person) or ()
+        looked = (hopped or {}).get(person)
+        hops = looked or ()
         flights = [
             one
             for one in _flights(feet)

@@ -9,7 +9,7 @@ left_right: `swapped_views`, `apply_swaps`: sides that a network confused
 fusion: `triangulate_take`, `merge`, `with_cameras`: half bodies, the cameras' covariance
 camera_shake: `steady`, `put_back`, `read_as_filmed`: shake removed from keypoints, and put back for
     pictures; `find`, `say`: knocks described
-offset_vectors: `of_body`, `of_views`, `views`, `names`: what a joint's offset may consist of
+offset_vectors: `every`, `of_body`, `of_views`, `views`, `names`: what joint offsets consist of
 joint_correction: `estimate`, `correct`: a network's joint offsets; `keep`: constant limb lengths;
     `correct_then_filter`, `offsets`
 error_signs: `keypoints_used`, `of_points`: what a method sees of wrong joints

@@ -55,14 +55,10 @@ def estimate(
     for joint in skeleton.LIMBS:
         columns_of, offset_of = [], []
         for clip, side in product(clips, SIDES):
-            name = f"{side}_{joint}"
-            at = joints.index(name)
-            basis = offset_vectors.of_body(clip.xyz, joints, side, joint, clip.sex)
-            if clip.accepted is not None:
-                seen = offset_vectors.views(clip.cameras, clip.xyz[:, at], clip.accepted[:, at])
-                basis |= offset_vectors.of_views(clip.xyz, joints, side, joint, seen)
+            name, person = f"{side}_{joint}", (clip.xyz, joints, side, joint)
+            basis = offset_vectors.every(*person, clip.sex, clip.cameras, clip.accepted)
             columns = np.stack(list(basis.values()), axis=-1)
-            difference = clip.xyz[:, at] - clip.true[:, true_joints.index(name)]
+            difference = clip.xyz[:, joints.index(name)] - clip.true[:, true_joints.index(name)]
             known = np.isfinite(difference).all(axis=-1) & np.isfinite(columns).all(axis=(-2, -1))
             columns_of.append(columns[known])
             offset_of.append(difference[known])
@@ -124,13 +120,10 @@ def offsets(
     used = _in_order(cameras, points.cameras) if by_view else []
     for joint, rows in table.groupby("joint"):
         for side, (person, sex) in product(SIDES, enumerate(sexes)):
-            xyz, at = points.xyz[person], joints.index(f"{side}_{joint}")
-            basis = offset_vectors.of_body(xyz, joints, side, joint, sex)
-            if used:
-                seen = offset_vectors.views(used, xyz[:, at], points.accepted[person][:, at])
-                basis |= offset_vectors.of_views(xyz, joints, side, joint, seen)
+            xyz, accepted = points.xyz[person], points.accepted[person]
+            basis = offset_vectors.every(xyz, joints, side, joint, sex, used, accepted)
             offset = sum(basis[row.vector] * row.share for row in rows.itertuples())
-            found[person, :, at] = offset
+            found[person, :, joints.index(f"{side}_{joint}")] = offset
     return found
 
 
@@ -138,7 +131,10 @@ def _in_order(cameras: Sequence[Camera], names: NDArray) -> list[Camera]:
     by_name = {camera.name: camera for camera in cameras}
     missing = [str(name) for name in names if name not in by_name]
     if missing:
-        raise ValueError(f"expected the cameras of the skeletons, missing {missing}")
+        raise ValueError(
+            f"expected the cameras of the skeletons, missing {missing}, found {sorted(by_name)}: "
+            "the skeletons are of another calibration; make them again"
+        )
     return [by_name[str(name)] for name in names]
 
 

@@ -73,6 +73,28 @@ def views(cameras: Sequence[Camera], xyz: NDArray, accepted: NDArray) -> Views:
     return Views(ways, np.linalg.solve(whole, flat))
 
 
+def every(
+    xyz: NDArray,
+    joints: Sequence[str],
+    side: str,
+    joint: str,
+    sex: str | None = None,
+    cameras: Sequence[Camera] = (),
+    accepted: NDArray | None = None,
+) -> dict[str, NDArray]:
+    """Return all vectors (T, 3) m of one person's joint, by name: `of_body`, and `of_views`.
+
+    `xyz` (T, J, 3) m; `accepted` (T, J, C) tells which views of the C `cameras` were used. Without
+    cameras there are none of the second kind.
+    """
+    found = of_body(xyz, joints, side, joint, sex)
+    if cameras and accepted is not None:
+        at = list(joints).index(f"{side}_{joint}")
+        seen = views(cameras, xyz[:, at], accepted[:, at])
+        found |= of_views(xyz, joints, side, joint, seen)
+    return found
+
+
 def of_body(
     xyz: NDArray, joints: Sequence[str], side: str, joint: str, sex: str | None = None
 ) -> dict[str, NDArray]:

@@ -376,16 +376,16 @@ def summary(found: Found, seen: Corners, board: Board, *, stated: bool) -> dict[
 
 def _worse_cameras(found: Found, rms_px: Sequence[float]) -> list[str]:
     """Return a line for each camera whose corners fit far worse than those of the others."""
-    said = []
+    lines = []
     for c, camera in enumerate(found.cameras):
         others = float(np.median([*rms_px[:c], *rms_px[c + 1 :]])) if len(rms_px) > 2 else np.inf
         if rms_px[c] > max(MUCH_WORSE * others, WORSE_PX):
-            said.append(
+            lines.append(
                 f"camera {camera.name}: its corners fit by {rms_px[c]:.1f} px, those of the other "
                 f"cameras by {others:.1f} px: its lens is probably wrong by more than stated; give "
                 "`lenses`, or film the board nearer to this camera, tilted and at rest"
             )
-    return said
+    return lines
 
 
 def neighbours_mm(found: Found, seen: Corners, board: Board) -> tuple[float, float, int]:

@@ -86,8 +86,8 @@ class Keypoints3D:
         """Return the frames from one time to another, both included."""
         return self.frames((self.time_s >= start_s) & (self.time_s <= stop_s))
 
-    def frames(self, at: NDArray) -> "Keypoints3D":
-        """Return some frames, by their indices or a mask (T,)."""
+    def frames(self, at: NDArray | slice) -> "Keypoints3D":
+        """Return some frames, by their indices, a mask (T,) or a slice."""
         spec = npz.spec_of(Keypoints3D)
         per_frame = [key for key, (_, shape) in spec.items() if shape[:2] == ("P", "T")]
         cut = {key: getattr(self, key)[:, at] for key in per_frame}
