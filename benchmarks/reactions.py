@@ -13,6 +13,7 @@ reported.
 """
 
 import argparse
+import shlex
 import sys
 from pathlib import Path
 from types import SimpleNamespace
@@ -20,18 +21,18 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 
+from strokes import made, skeletons
+
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.court import court
 from courtside.evaluation.movement import contacts, reactions, strokes
 from courtside.evaluation.numbers import stated
-from courtside.evaluation.numbers.players import NETWORK
 from courtside.footwork import feet
 from courtside.geometry import interpolation
 from courtside.kinematics import cutoffs, filtering
 from courtside.records.footwork import FEET
-from courtside.records.keypoints import keypoints, skeleton
-from courtside.records.truth import take_truth
+from courtside.records.keypoints import skeleton
 from courtside.strokes import detect, reaction
 from virtualgym.body.skinned_body import JOINTS
 from virtualgym.session import take as virtual
@@ -40,10 +41,11 @@ PARTS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
 LIMBS = [f"{side}_{part}" for part in PARTS for side in FEET]
 SOLES = [f"{side}_{part}" for part in ("heel", "foot_index") for side in FEET]
 USED = [*LIMBS, *SOLES]
+STATED = ("covariance_2d", "covariance_network")
 RATE_HZ, ORDER, SECONDS = 30.0, 4, 20.0
 SEEDS, FIRST, SESSION, LENDER = 12, 8000, "exchange", "players-b/footwork"
 BODIES = ("m4", "f4", "m3", "f3")
-MADE = "benchmark", f"`python benchmarks/reactions.py RESULTS {' '.join(sys.argv[2:])}`"
+MADE = "benchmark", f"`python benchmarks/reactions.py RESULTS {shlex.join(sys.argv[2:])}`"
 WORDS = {
     "split_step": "landing of the split step",
     "to_split": "hit to its landing",
@@ -52,18 +54,13 @@ WORDS = {
 }
 
 
-def made(results, name, what, suffix):
-    """Return a file that the default network and all cameras made of a take."""
+def film(results, name):
+    """Return the corrected skeletons of a take, the truth, and the cut-off of each joint."""
     session, take = name.split("/")
-    folder = Path(results, session, "takes", take, what)
-    (path,) = folder.glob(f"*/all-robust/{NETWORK}.{suffix}")
-    return path
-
-
-def truth_of(results, name):
-    """Return the truth of a take."""
-    session, take = name.split("/")
-    return take_truth.read(Path(results, "virtual", session, "takes", take, "truth.npz"))
+    points, truth = skeletons(results, session, take)
+    chosen, _ = cutoffs.read(made(results, session, take, "kinematics", "cutoffs.csv"))
+    shape = skeleton.read(ROOT / "config" / "skeletons" / "blazepose33.yaml")
+    return points, truth, shape.by_group(chosen)
 
 
 def soled(xyz, names, offsets):
@@ -95,12 +92,13 @@ def filtered(xyz, cutoff_hz):
 
 
 def lent(results, name):
-    """Return errors (T, J, 3), covariances (T, J, 3, 3), cut-offs and sole offsets of a lender."""
-    points = keypoints.read_3d(made(results, name, "pose3d_corrected", "npz"))
-    truth, names = truth_of(results, name), points.joints.tolist()
-    chosen, _ = cutoffs.read(made(results, name, "kinematics", "cutoffs.csv"))
-    shape = skeleton.read(ROOT / "config" / "skeletons" / "blazepose33.yaml")
-    cutoff_hz = [shape.by_group(chosen)[names.index(joint)] for joint in USED]
+    """Return errors (T, J, 3), stated errors, cut-offs and sole offsets of a lender.
+
+    Stated are the covariances (T, J, 3, 3) of keypoints and network, by their names in the record.
+    """
+    points, truth, per_joint = film(results, name)
+    names = points.joints.tolist()
+    cutoff_hz = [per_joint[names.index(joint)] for joint in USED]
     rows = [names.index(joint) for joint in USED]
     known = np.isfinite(points.xyz[0][:, rows]).all(axis=(1, 2))
     known &= (points.time_s >= truth.time_s[0]) & (points.time_s <= truth.time_s[-1])
@@ -112,7 +110,8 @@ def lent(results, name):
         away = measured[:, USED.index(joint)] - xyz[:, rig.index(f"{side}_ankle")]
         offsets.append(np.einsum("tij,ti->tj", _foot(xyz, rig, side), away).mean(axis=0))
     errors = measured - filtered(soled(xyz, rig, offsets), cutoff_hz)
-    return errors, points.covariance_2d[0][known][:, rows], cutoff_hz, offsets
+    stated_m2 = {key: getattr(points, key)[0][known][:, rows] for key in STATED}
+    return errors, stated_m2, cutoff_hz, offsets
 
 
 def performed(results, seed, bodies):
@@ -127,24 +126,25 @@ def performed(results, seed, bodies):
 
 def played(results, loan, seed, bodies):
     """Return skeletons and truth of a new rally, as evaluation reads them."""
-    errors, covariance, cutoff_hz, offsets = loan
+    errors, stated_m2, cutoff_hz, offsets = loan
     players = performed(results, seed, bodies)
     time_s = np.arange(round(SECONDS * RATE_HZ)) / RATE_HZ
     true = np.array([[player.joints(t) for t in time_s] for player in players.values()])
     to_and_fro = np.r_[np.arange(len(errors)), np.arange(len(errors))[::-1]]
-    xyz, spread = [], []
+    xyz, spread = [], {key: [] for key in STATED}
     for at, one in enumerate(true):
         start = int(np.random.default_rng([seed, at]).integers(len(to_and_fro)))
         taken = np.take(to_and_fro, np.arange(start, start + len(time_s)), mode="wrap")
         xyz.append(filtered(soled(one, list(JOINTS), offsets), cutoff_hz) + errors[taken])
-        spread.append(covariance[taken])
+        for key in STATED:
+            spread[key].append(stated_m2[key][taken])
     points = SimpleNamespace(
         joints=np.array(USED),
         person_id=np.array(list(players)),
         time_s=time_s,
         rate_hz=RATE_HZ,
         xyz=np.array(xyz),
-        covariance_2d=np.array(spread),
+        **{key: np.array(each) for key, each in spread.items()},
         reason=np.zeros(np.shape(xyz)[:3], np.uint8),
     )
     events = {person: dict(player.motion.events) for person, player in players.items()}
@@ -167,10 +167,8 @@ def judged(points, truth, cutoff_hz, name):
 
 def filmed(results, name):
     """Return the rows of a filmed take, from its skeletons."""
-    points = keypoints.read_3d(made(results, name, "pose3d_corrected", "npz"))
-    chosen, _ = cutoffs.read(made(results, name, "kinematics", "cutoffs.csv"))
-    shape = skeleton.read(ROOT / "config" / "skeletons" / "blazepose33.yaml")
-    return judged(points, truth_of(results, name), shape.by_group(chosen), name)
+    points, truth, cutoff_hz = film(results, name)
+    return judged(points, truth, cutoff_hz, name)
 
 
 def numbers(row, parts, sessions):
@@ -219,9 +217,9 @@ def main():
     given = parser.parse_args()
     written = []
     if given.session:
-        film = filmed(given.results, f"{given.session}/rally")
+        parts = filmed(given.results, f"{given.session}/rally")
         row = f"filmed rally `{given.session}/rally`"
-        written += numbers(row, film, given.session)
+        written += numbers(row, parts, given.session)
     if given.seeds:
         loan = lent(given.results, given.lender)
         seeds = range(given.first, given.first + given.seeds)
