@@ -101,8 +101,8 @@ def steps(folder, given):
     filtering = parameters["filter_motion"]
     yield "filter_motion", (made["raw"], shape, made["filtered"], tables["cutoffs"]), filtering
     paths = Paths(
-        raw=made["raw"], filtered=made["filtered"], cutoffs=tables["cutoffs"],
-        skeleton=shape, offsets=offsets,
+        raw=made["raw"], filtered=made["filtered"], cameras=given.cameras,
+        cutoffs=tables["cutoffs"], skeleton=shape, offsets=offsets,
     )  # fmt: skip
     about = {"max_gap_s": filtering["max_gap_s"], "sex_of": {}}
     yield "correct_joints", (paths, made["last"]), about
