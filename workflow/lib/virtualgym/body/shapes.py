@@ -71,9 +71,9 @@ BODIES = {
     "m5": Shape("m", "asian", 1.68, 66.0, 0.65, 0.0, 9),
     "f5": Shape("f", "asian", 1.57, 50.0, 0.55, -0.1, 10),
     "m6": Shape("m", "african", 1.90, 80.0, 0.80, 0.3, 11),
-    "f6": Shape("f", "asian", 1.56, 52.0, 0.60, -0.4, 12),
+    "f6": Shape("f", "asian", 1.56, 52.0, 0.60, -0.35, 12),
     "m7": Shape("m", "caucasian", 1.80, 79.0, 0.55, 0.4, 13),
-    "f7": Shape("f", "african", 1.77, 68.0, 0.75, -0.2, 14),
+    "f7": Shape("f", "african", 1.77, 66.0, 0.75, 0.5, 14),
 }
 # Joint offsets are learned on these, and reported on others.
 DEVELOPMENT = ("m1", "f1", "m2", "f2", "m6", "f6", "m7", "f7")
