@@ -113,6 +113,7 @@ rule triangulate:
         step=step("triangulate"),
         sex_of=of_job(takes.sexes),
         fusion=of_job(takes.fusion),
+        recorded=of_job(takes.recorded),
     script:
         "../scripts/triangulate.py"
 

@@ -13,7 +13,7 @@ from courtside.study.execution import log
 from courtside.study.execution.script import run
 
 
-def main(paths, pose3d_npz, *, sex_of, fusion, **options):
+def main(paths, pose3d_npz, *, sex_of, fusion, recorded, **options):
     used, rule, joints = fusion["used"], fusion["rule"], skeleton.read(paths.skeleton)
     seen = footage.read(paths.cameras, paths.pose2d, paths.people, paths.sync, sure_clocks=True)
     seen = {one.camera.name: one for one in seen}
@@ -31,7 +31,8 @@ def main(paths, pose3d_npz, *, sex_of, fusion, **options):
         if rule == "robust" and paths.errors:
             xy, score = error_signs.keypoints_used(views, clocks, found, joints)
             signs = error_signs.of_points(cameras, found, xy, score, joints)
-            found = joint_errors.state(found, joint_errors.read(paths.errors), signs)
+            model = joint_errors.read(paths.errors)
+            found = joint_errors.state(found, model, signs, recorded=recorded)
         report(found)
         if shared:
             found = camera_error.with_cameras(found, cameras, shared.of(names).of_columns())

@@ -78,6 +78,22 @@ def test_limbs_joints_are_stated_and_others_stay_unknown():
     np.testing.assert_array_equal(found.xyz, record.xyz)
 
 
+def test_recorded_people_have_the_published_difference_of_two_systems_on_top():
+    record, model = walker.points(n_frames=8), fitted(4000)
+    signs = {name: np.zeros(record.xyz.shape[:-1]) for name in error_signs.NAMES}
+    virtual = joint_errors.state(record, model, signs)
+    real = joint_errors.state(record, model, signs, recorded=True)
+    more = real.covariance_network - virtual.covariance_network
+    for joint in JOINTS:
+        of_joint = more[:, :, list(record.joints).index(joint)]
+        distance_m = np.sqrt(np.trace(of_joint, axis1=-2, axis2=-1))
+        np.testing.assert_allclose(
+            distance_m[np.isfinite(distance_m)], 0.036 if "hip" in joint else 0.025
+        )
+    stated = np.isfinite(virtual.outlier)
+    assert stated.any() and (real.outlier[stated] > virtual.outlier[stated]).all()
+
+
 def test_the_probability_of_an_outlier_is_the_share_of_large_errors():
     n, model = 3000, fitted()
     columns, error, _, _ = drawn(12 * n, seed=5)

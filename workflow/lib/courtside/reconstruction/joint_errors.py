@@ -6,6 +6,13 @@ hidden limb). The keypoints' own covariance is added to both. The signs of
 `reconstruction.error_signs` determine the width of the first and the probability of the second.
 Their weights were fitted for each network on development players (`evaluate_joint_errors`). All
 views share these errors, and a filter does not remove them.
+
+The development players are virtual. Recorded people differ from them in body and clothes, and their
+true joint centres are known only as well as two measuring systems agree on them. `state` therefore
+adds a published variance for recorded people ([Kanko2021]_, see `RECORDED_M`).
+
+.. [Kanko2021] Kanko et al. (2021), Concurrent assessment of gait kinematics using marker-based and
+   markerless motion capture, Journal of Biomechanics 127, 110665.
 """
 
 from collections.abc import Mapping, Sequence
@@ -27,6 +34,10 @@ OUTLIER_M = 0.1  # an error above it is an outlier's: half the length of a forea
 # Chosen on development bodies, each left out of the fit, so that 90 % ellipsoids hold 60 % or more
 # of the errors above `OUTLIER_M` with two, three and four views (docs/measured.md).
 STATED_GOOD, STATED_OUTLIER = 0.5, 2.0
+# Standard deviation per axis of a recorded person's joints: the root mean square distance between
+# the joint centres of a markerless and a marker-based system [Kanko2021]_, 30 people who walk: 36
+# mm at the hip, less than 25 mm elsewhere. ASSUME: it is the same in other movements.
+RECORDED_M = {joint: (0.036 if joint == "hip" else 0.025) / np.sqrt(3) for joint in skeleton.LIMBS}
 GOOD_M = (0.001, 0.1)  # least and most standard deviation of a good place, per axis
 START_M, START_LOGIT, START_OUTLIER_M = 0.02, -2.0, 0.08  # where the fit begins
 RIDGE = 1e-3, 3e-4  # of weights of good places and of outliers, per squared weight and joint
@@ -67,21 +78,26 @@ def design(signs: Mapping[str, NDArray], joints: Sequence[str]) -> NDArray:
     return np.stack([*columns, *(signs[name][:, :, at] for name in error_signs.NAMES)], axis=-1)
 
 
-def state(points: Keypoints3D, model: Model, signs: Mapping[str, NDArray]) -> Keypoints3D:
+def state(
+    points: Keypoints3D, model: Model, signs: Mapping[str, NDArray], *, recorded: bool = False
+) -> Keypoints3D:
     """State the errors that residuals do not show: `outlier` and `covariance_network`.
 
-    `points` are raw, with their `signs`. Errors of joints other than those of limbs stay unknown,
-    because the fit has no truth for them.
+    `points` are raw, with their `signs`. People who are `recorded`, not virtual, have the square of
+    `RECORDED_M` more variance. Errors of joints other than those of limbs stay unknown, because the
+    fit has no truth for them.
     """
     at = [points.joints.tolist().index(joint) for joint in skeleton.JOINTS]
     good, share = model.of(design(signs, points.joints.tolist()))
     covariance = points.covariance_2d[:, :, at]
-    own = np.trace(covariance, axis1=-2, axis2=-1) / 3
+    bodies = np.array([RECORDED_M[joint.split("_")[1]] ** 2 for joint in skeleton.JOINTS])
+    bodies = bodies if recorded else np.zeros(len(bodies))
+    own = np.trace(covariance, axis1=-2, axis2=-1) / 3 + bodies
     beyond = [scipy.stats.chi2.sf(OUTLIER_M**2 / (own + v), 3) for v in (good, model.sigma_m**2)]
     known = np.isfinite(covariance).all(axis=(-2, -1))
     outlier, network = points.outlier.copy(), points.covariance_network.copy()
     outlier[:, :, at] = np.where(known, (1 - share) * beyond[0] + share * beyond[1], np.nan)
-    variance = STATED_GOOD * (1 - share) * good + STATED_OUTLIER * share * model.sigma_m**2
+    variance = STATED_GOOD * (1 - share) * good + STATED_OUTLIER * share * model.sigma_m**2 + bodies
     variance = np.where(known, variance, np.nan)
     network[:, :, at] = variance[..., None, None] * np.eye(3)
     return replace(points, outlier=outlier, covariance_network=network)

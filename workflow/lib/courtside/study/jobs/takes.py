@@ -95,6 +95,11 @@ def sexes(job: Job) -> dict[str, str | None]:
     return {name: known[name].sex if known[name].sex in ("m", "f") else None for name in people}
 
 
+def recorded(job: Job) -> bool:
+    """Return whether the people of a session are recorded, not virtual."""
+    return not job.session.virtual
+
+
 def hands(job: Job) -> dict[str, str | None]:
     """Return {person: playing hand} of a take; None unless stated."""
     return {name: job.session.subjects[name].hand for name in job.take.subjects}
