@@ -58,7 +58,7 @@ onsuccess:
         *run.waiting_for_clicks(STUDY),
         *run.left_out(STUDY),
         *asked(run.lost_pictures, STUDY),
-        *asked(run.doubtful_cameras, STUDY),
+        *asked(run.warnings, STUDY),
         *verdicts,
         sep="\n",
         file=sys.stderr,
@@ -69,7 +69,7 @@ onsuccess:
 
 onerror:
     files.delete_unfinished("results")
-    print(end_of_run(), *asked(run.doubtful_cameras, STUDY), sep="\n", file=sys.stderr)
+    print(end_of_run(), *asked(run.warnings, STUDY), sep="\n", file=sys.stderr)
     record_provenance()
 
 

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from courtside.study.configuration.sessions import Subject
 from courtside.study.errors import InputError
 from courtside.study.execution import verdicts
 from courtside.study.provenance import run
@@ -128,6 +129,25 @@ def test_sessions_that_wait_for_clicks_are_told(study):
     assert "save them as data/p.csv" in line
 
 
+@pytest.mark.parametrize(
+    ("mass_kg", "height_m", "words"),
+    [
+        (70.0, 1.75, None),
+        (154.3, 1.75, "154.3 kg at 1.75 m are 50 kg/m2, expected 12 to 40: check mass_kg and "
+         "height_m; if it is in pounds, write 70.0"),
+        (31.8, 1.75, "31.8 kg at 1.75 m are 10 kg/m2, expected 12 to 40: check mass_kg and "
+         "height_m"),
+        (154.3, None, None),
+    ],
+)  # fmt: skip
+def test_a_mass_that_does_not_go_with_the_height_is_told(study, mass_kg, height_m, words):
+    session = study.sessions["plain-tiny"]
+    body = Subject(height_m=height_m, mass_kg=mass_kg)
+    other = replace(session, subjects={"p": body})
+    said = run.warnings(replace(study, sessions={"plain-tiny": other}))
+    assert said == ([f"Warning: plain-tiny: subjects.p: {words}"] if words else [])
+
+
 def test_warnings_about_cameras_of_recorded_takes_are_told(study, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     session = study.sessions["plain-tiny"]
@@ -135,18 +155,18 @@ def test_warnings_about_cameras_of_recorded_takes_are_told(study, tmp_path, monk
     ways = recorded.take_calibrations()
     assert ways
     study = replace(study, sessions={"north": replace(recorded, name="north")})
-    assert run.doubtful_cameras(study) == []
+    assert run.warnings(study) == []
     quality = tmp_path / f"results/north/calibration/{ways[0]}/quality.json"
     quality.parent.mkdir(parents=True)
     quality.write_text(json.dumps({"f_px": 1}))
-    assert run.doubtful_cameras(study) == []
+    assert run.warnings(study) == []
     quality.write_text(json.dumps({"warnings": ["camera left moved", "b", "c", "d", "e"]}))
-    said = run.doubtful_cameras(study)
+    said = run.warnings(study)
     where = f"results/north/calibration/{ways[0]}/quality.json"
     assert said[0] == f"Warning: north: camera left moved; see {where}"
     assert said[3:] == [f"Warning: north: 2 more warnings in {where}"]
     virtual = {"north": replace(recorded, name="north", virtual={"seed": 1})}
-    assert run.doubtful_cameras(replace(study, sessions=virtual)) == []
+    assert run.warnings(replace(study, sessions=virtual)) == []
 
 
 def test_pictures_that_a_model_of_photos_lost_are_told(study, tmp_path, monkeypatch):

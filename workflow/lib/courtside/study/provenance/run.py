@@ -14,6 +14,9 @@ from courtside.study.execution import verdicts as verdict_files
 from courtside.study.provenance import environment, provenance
 
 N_WARNINGS = 3  # of one calibration, on the terminal
+KG_OF_LB = 0.45359237
+# ASSUME: kg/m2 of a body; in pounds, a person of 18 or more kg/m2 seems to have 40 or more.
+BODY_KG_M2 = (12.0, 40.0)
 
 
 def record(
@@ -128,6 +131,11 @@ def lost_pictures(study: Study) -> list[str]:
     return found
 
 
+def warnings(study: Study) -> list[str]:
+    """Return what is doubtful about cameras and stated bodies, a line for each."""
+    return [f"Warning: {line}" for line in doubtful_cameras(study) + doubtful_bodies(study)]
+
+
 def doubtful_cameras(study: Study) -> list[str]:
     """Return the warnings about cameras with which recorded takes are measured, a line for each."""
     found = []
@@ -137,11 +145,30 @@ def doubtful_cameras(study: Study) -> list[str]:
         if "file" in ways:
             read.add(paths.CALIBRATION_CHECK.format(session=session.name, suffix="json"))
         for path in (path for path in sorted(read) if Path(path).is_file()):
-            warnings = files.read_json(Path(path)).get("warnings", [])
-            found += [f"{session.name}: {line}; see {path}" for line in warnings[:N_WARNINGS]]
-            more = len(warnings) - N_WARNINGS
+            told = files.read_json(Path(path)).get("warnings", [])
+            found += [f"{session.name}: {line}; see {path}" for line in told[:N_WARNINGS]]
+            more = len(told) - N_WARNINGS
             found += [f"{session.name}: {more} more warnings in {path}"] * (more > 0)
-    return [f"Warning: {line}" for line in found]
+    return found
+
+
+def doubtful_bodies(study: Study) -> list[str]:
+    """Return one line for each person whose mass does not go with the height."""
+    found = []
+    for session in study.sessions.values():
+        for name, person in session.subjects.items():
+            if person.mass_kg and person.height_m:
+                index = person.mass_kg / person.height_m**2
+                if not BODY_KG_M2[0] <= index <= BODY_KG_M2[1]:
+                    pounds = f"; if it is in pounds, write {KG_OF_LB * person.mass_kg:.1f}"
+                    found.append(
+                        f"{session.name}: subjects.{name}: {person.mass_kg:g} kg at "
+                        f"{person.height_m:g} m are {index:.0f} kg/m2, expected "
+                        f"{BODY_KG_M2[0]:.0f} to {BODY_KG_M2[1]:.0f}: check mass_kg and height_m"
+                        + pounds
+                        * (index > BODY_KG_M2[1])
+                    )
+    return found
 
 
 def left_out(study: Study) -> list[str]:
