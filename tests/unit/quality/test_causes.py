@@ -1,5 +1,7 @@
 """The cause of a camera's disagreement is found by test, for each fault that is planted."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -43,6 +45,20 @@ def test_a_person_who_is_found_and_not_followed():
 def test_nobody_is_found(share):
     cause = found(judged.footage(hidden={2: share}))
     assert cause.name == causes.DETECTION and f"{share:.0%}" in cause.sentence
+
+
+@pytest.mark.parametrize(("first", "second"), [(2, 3), (0, 2)])
+@pytest.mark.parametrize("rows", [(0, 1), (-1, -1)])
+def test_two_videos_that_are_exchanged(first, second, rows):
+    right, names = judged.footage(), list(SAME)
+    cameras = list(right)
+    for at, other in ((first, second), (second, first)):
+        cameras[at] = replace(right[other], camera=right[at].camera)
+    followed = SAME | {names[first]: rows, names[second]: rows}
+    for at, other in ((first, second), (second, first)):
+        cause = found(judged.followed(cameras, followed), at)
+        assert cause.name == causes.EXCHANGED
+        assert f"its video is given for {names[other]}" in cause.sentence
 
 
 def test_a_stranger_is_followed_and_the_person_never_found():

@@ -1,4 +1,4 @@
-"""Tests of why a camera disagrees with the others: detection, identity, clock or calibration.
+"""Tests of why a camera disagrees with the others: detection, identity, clock, calibration, video.
 
 Each test changes one property of one camera and checks whether its keypoints then match the joints
 from the other cameras. Errors are in heights of the person in that picture.
@@ -15,7 +15,7 @@ from courtside.quality import seen as views
 from courtside.quality.seen import Seen
 
 DETECTION, IDENTITY, CLOCK, CALIBRATION = "detection", "identity", "clock", "calibration"
-UNKNOWN = "unknown"
+EXCHANGED, UNKNOWN = "exchanged", "unknown"
 # ASSUME: usual takes have 0.012 to 0.03 (`verdict.LIMITS`); another body is 0.3 away and more.
 FITS = 0.08
 NEARER = 0.6  # a change explains an error if at most this share of it is left,
@@ -33,7 +33,7 @@ SPREAD = 0.02  # heights: errors beyond it weigh less in that fit
 class Cause:
     """The likelier cause of a camera's disagreement."""
 
-    name: str  # `detection`, `identity`, `clock`, `calibration`, `unknown`
+    name: str  # `detection`, `identity`, `clock`, `calibration`, `exchanged` (video), `unknown`
     sentence: str  # what the test found
 
 
@@ -83,16 +83,24 @@ def find(seen: Seen, camera: int, *, found_limit: float) -> Cause:
 
 
 def _of_camera(seen: Seen, camera: int, expected: NDArray) -> _Camera:
-    rows = seen.rows[camera][:, seen.at]
-    errors = np.stack([seen.errors(camera, row[None]) for row in rows]) if len(rows) else None
     followed = np.where(expected[..., None, None], seen.xy[camera][:, seen.at], np.nan)
-    nearest, best = np.full(followed.shape, np.nan), np.full(expected.shape, -1)
-    if errors is not None:
-        frames = np.nan_to_num(views.typical(errors), nan=np.inf)
-        best = np.where(np.isfinite(frames.min(axis=0)) & expected, frames.argmin(axis=0), -1)
-        picked = rows[np.maximum(best, 0), np.arange(len(seen.at))]
-        nearest = np.where((best >= 0)[..., None, None], picked, np.nan)
-    return _Camera(seen, camera, expected, followed, nearest, best)
+    return _Camera(seen, camera, expected, followed, *_nearest(seen, camera, expected, camera))
+
+
+def _nearest(seen: Seen, camera: int, expected: NDArray, video: int) -> tuple[NDArray, NDArray]:
+    """Return the tracklets of a video that are nearest to where a camera should see the persons.
+
+    Their keypoints (P, S, K, 2) px and their numbers (P, S), -1 without one.
+    """
+    rows = seen.rows[video][:, seen.at]
+    nearest = np.full((*expected.shape, *rows.shape[2:]), np.nan)
+    if not len(rows):
+        return nearest, np.full(expected.shape, -1)
+    errors = np.stack([seen.errors(camera, row[None]) for row in rows])
+    frames = np.nan_to_num(views.typical(errors), nan=np.inf)
+    best = np.where(np.isfinite(frames.min(axis=0)) & expected, frames.argmin(axis=0), -1)
+    picked = rows[np.maximum(best, 0), np.arange(len(seen.at))]
+    return np.where((best >= 0)[..., None, None], picked, nearest), best
 
 
 def _by_tests(one: _Camera, absent: float) -> Cause:
@@ -107,7 +115,9 @@ def _by_tests(one: _Camera, absent: float) -> Cause:
         return Cause(DETECTION, _absent(absent))
     shift_s, clock = _best_shift(one, tested)
     angle_deg, turned = _best_turn(one, tested)
-    left = {CLOCK: clock, CALIBRATION: turned} | ({IDENTITY: nearest} if _is_other(one) else {})
+    video, exchanged = _best_video(one)
+    left = {CLOCK: clock, CALIBRATION: turned, EXCHANGED: exchanged}
+    left |= {IDENTITY: nearest} if _is_other(one) else {}
     name = min(left, key=lambda key: np.nan_to_num(left[key], nan=np.inf))
     if not left[name] <= min(NEARER * before, SAME):
         return _unexplained(one, before, absent)
@@ -115,6 +125,7 @@ def _by_tests(one: _Camera, absent: float) -> Cause:
         IDENTITY: "it follows somebody else: with another person found there",
         CLOCK: f"its clock is off: moved by {shift_s:+.3f} s",
         CALIBRATION: f"its calibration is off: turned by {angle_deg:.1f} degrees",
+        EXCHANGED: f"its video is given for {video}: with the people found in that one",
     }[name]
     fell = f"the error falls from {before:.2f} to {left[name]:.2f} of a person's height"
     return Cause(name, f"{words} {fell}")
@@ -174,6 +185,16 @@ def _best_shift(one: _Camera, tested: NDArray) -> tuple[float, float]:
         found.append((np.nan_to_num(error, nan=np.inf), abs(frames), frames))
     error, _, frames = min(found)
     return float(frames / seen.points.rate_hz), float(error)
+
+
+def _best_video(one: _Camera) -> tuple[str, float]:
+    """Return the other camera whose video leaves the smallest error here, and this error."""
+    seen, found = one.seen, [(np.inf, "")]
+    for video in (at for at in range(len(seen.cameras)) if at != one.at):
+        error = one.left(_nearest(seen, one.at, one.expected, video)[0])
+        found.append((np.nan_to_num(error, nan=np.inf), seen.cameras[video].name))
+    error, name = min(found)
+    return name, float(error)
 
 
 def _best_turn(one: _Camera, tested: NDArray) -> tuple[float, float]:
