@@ -49,6 +49,7 @@ SIZE = (3840, 2160)
 # all pictures, too.
 SUBJECTS = {
     "player": {
+        "sex": "m",
         "consent": ["analysis"],
         "seen": {"camera": "cam02", "time_s": 0, "at_px": [1980, 1000]},
     }

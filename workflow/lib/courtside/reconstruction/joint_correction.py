@@ -87,8 +87,12 @@ def correct(
     joint keeps its place and its offset. `sigma_m` of a corrected joint is added to its
     `covariance_2d`, and its square is taken out of `covariance_network`, which contains it.
     """
+    return _corrected(points, table, offsets(points, table, sex_of, cameras))
+
+
+def _corrected(points: Keypoints3D, table: pd.DataFrame, moved: NDArray) -> Keypoints3D:
+    """Subtract offsets (P, T, J, 3) m of a table, and add their scatter to the covariance."""
     covariance, network = points.covariance_2d.copy(), points.covariance_network.copy()
-    moved = offsets(points, table, sex_of, cameras)
     for joint, side in product(table["joint"].unique(), SIDES):
         at = list(points.joints).index(f"{side}_{joint}")
         sigma_m = table.loc[table["joint"] == joint, "sigma_m"].iloc[0]
@@ -158,9 +162,10 @@ def correct_then_filter(
     The covariance is that of `filtered` plus the scatter of the offsets. This scatter is slow, so
     the filter does not reduce it.
     """
-    moved = keep(correct(raw, table, sex_of, cameras))
-    xyz = skeleton_filter.smooth(moved, cutoff_hz, order).xyz
-    return replace(correct(filtered, table, sex_of, cameras), xyz=xyz)
+    moved = offsets(raw, table, sex_of, cameras)
+    kept = keep(_corrected(raw, table, moved))
+    xyz = skeleton_filter.smooth(kept, cutoff_hz, order).xyz
+    return replace(_corrected(filtered, table, moved), xyz=xyz)
 
 
 def read(path: StrPath) -> pd.DataFrame:
