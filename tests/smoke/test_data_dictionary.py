@@ -65,8 +65,8 @@ PLACES = {
         )
     },
     "*/evaluation/racket.csv": [f"{TAKES} | evaluation/racket.csv", OF_CALIBRATION],
-    "*/evaluation/joint_offsets.*.csv": [f"{TAKES} | joint_offsets"],
-    "*/evaluation/joint_errors.*.csv": [f"{TAKES} | joint_errors"],
+    "networks/*/joint_offsets.csv": [f"{TAKES} | joint_offsets"],
+    "networks/*/joint_errors.csv": [f"{TAKES} | joint_errors"],
     "*/evaluation/takes/*/reliability/*.csv": [f"{TAKES} | reliability", LABELS],
     "*/evaluation/skin_depths.*.csv": [f"{TAKES} | skin_depths"],
     "*/evaluation/*.csv": [OF_CALIBRATION],

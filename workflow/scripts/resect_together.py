@@ -1,6 +1,6 @@
 """Calibrate all fixed cameras together from points at known places alone.
 
-Reads clicked court points, or points with places of their own; writes cameras, covariance, quality.
+Reads clicked court points, or points with your own coordinates; writes cameras, covariance, quality.
 """
 
 from courtside.calibration.court import place_checks, points_alone, quality

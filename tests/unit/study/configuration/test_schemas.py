@@ -60,6 +60,15 @@ def test_a_session_may_name_calibrations_of_its_own(name, n_faults):
     assert len([line for line in found if "override.calibrations" in line]) == n_faults
 
 
+@pytest.mark.parametrize(("floor", "n_faults"), [([3.0], 1), ([3.0, 4.0], 0)])
+def test_one_frame_of_a_wand_on_the_floor_has_no_plane(floor, n_faults):
+    wand = {"length_m": 0.5, "points": "p.csv", "floor": floor}
+    session = {"court": "none", "cameras": {}, "wand": wand}
+    found = [line for line in schemas.faults(session, "session", Path("s.yaml")) if "floor" in line]
+    assert len(found) == n_faults
+    assert all("wand.floor: expected at least 2 entries" in line for line in found)
+
+
 @pytest.mark.parametrize(
     ("key", "value", "said"),
     [

@@ -284,7 +284,7 @@ def expected_volume(
 ) -> dict[str, float]:
     """Return for a JSON file the expected error over a court, cm, and the share of it seen.
 
-    Points at places of their own have no lines: their frame begins anywhere.
+    Points with your own coordinates have no lines: their frame begins anywhere.
     """
     grid = volume(court)
     if not len(court.lines_m):

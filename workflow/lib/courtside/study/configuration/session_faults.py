@@ -265,7 +265,7 @@ def _wand_faults(file: Path, content: Content) -> Iterator[str]:
 
 
 def _point_faults(file: Path, content: Content, root: Path) -> Iterator[str]:
-    """Yield the faults of court points, or points with places of their own."""
+    """Yield the faults of court points, or points with your own coordinates."""
     cameras, walks = content["cameras"], content.get("walks", {})
     clicked = "court_points" in content
     placed = clicked and has_places(root / content["court_points"])
