@@ -1,6 +1,7 @@
 """Calibrate all fixed cameras together from points at known places alone.
 
-Reads clicked court points, or points with your own coordinates; writes cameras, covariance, quality.
+Reads clicked court points, or points with your own coordinates. Writes cameras, their covariance
+and quality.
 """
 
 from courtside.calibration.court import place_checks, points_alone, quality

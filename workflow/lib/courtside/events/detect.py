@@ -45,8 +45,8 @@ def of_devices(
 
     One source of each device must show a clap, because they share a clock. A source with T-poses
     but without a clap gets the claps of its device's first source with claps. A device that is
-    alone, or whose clock is `stated`, needs no clap. An `InputError` if a device among others shows no
-    T-pose and clap in any of its sources.
+    alone, or whose clock is `stated`, needs no clap. An `InputError` if a device among others shows
+    no T-pose and clap in any of its sources.
     """
     clapped = {devices[source] for source, each in found.items() if each.claps} | set(stated)
     for source, each in found.items():
