@@ -3,6 +3,8 @@
 from dataclasses import replace
 from pathlib import Path
 
+import pytest
+
 from courtside.study import paths
 from courtside.study.jobs import evaluation
 from courtside.study.targets import together
@@ -138,6 +140,13 @@ def test_errors_of_a_structure_from_motion_are_labelled_with_it(job, study):
         "session": "plain-tiny",
     }
     assert {key: found[key] for key in CLICKS} == CLICKS
+
+
+@pytest.mark.parametrize(("n_images", "strengths"), [("12", [1]), ("40", [1, 2, 3])])
+def test_clicks_scatter_more_for_the_reference_number_of_images_alone(job, n_images, strengths):
+    one = job(**PLAIN, mapper="global", n_images=n_images, offset="0")
+    one.step("evaluate_calibration")["click_strengths"] = [1, 2, 3]
+    assert evaluation.sfm_errors(one)["strengths"] == strengths
     assert found["sets"] == draws["sets"]
     assert found["strengths"] == [1, 3]  # the session's own
 
@@ -177,6 +186,13 @@ def test_a_racket_is_measured_with_its_own_draws(job):
     assert (found["length_m"], found["tips_px"]) == (0.674, [0.7, 1.8])
     assert not {"sets", "strengths"} & set(found)
     assert {key: found[key] for key in CLICKS} == CLICKS
+
+
+@pytest.mark.parametrize(("n_images", "strengths"), [("12", [1]), ("40", [1, 2, 3])])
+def test_clicks_scatter_more_for_the_reference_number_of_images_alone(job, n_images, strengths):
+    one = job(**PLAIN, mapper="global", n_images=n_images, offset="0")
+    one.step("evaluate_calibration")["click_strengths"] = [1, 2, 3]
+    assert evaluation.sfm_errors(one)["strengths"] == strengths
 
 
 def test_table_1_is_of_the_sets_of_cameras_that_a_session_names(job):
