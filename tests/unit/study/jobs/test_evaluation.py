@@ -140,13 +140,6 @@ def test_errors_of_a_structure_from_motion_are_labelled_with_it(job, study):
         "session": "plain-tiny",
     }
     assert {key: found[key] for key in CLICKS} == CLICKS
-
-
-@pytest.mark.parametrize(("n_images", "strengths"), [("12", [1]), ("40", [1, 2, 3])])
-def test_clicks_scatter_more_for_the_reference_number_of_images_alone(job, n_images, strengths):
-    one = job(**PLAIN, mapper="global", n_images=n_images, offset="0")
-    one.step("evaluate_calibration")["click_strengths"] = [1, 2, 3]
-    assert evaluation.sfm_errors(one)["strengths"] == strengths
     assert found["sets"] == draws["sets"]
     assert found["strengths"] == [1, 3]  # the session's own
 
@@ -188,10 +181,20 @@ def test_a_racket_is_measured_with_its_own_draws(job):
     assert {key: found[key] for key in CLICKS} == CLICKS
 
 
-@pytest.mark.parametrize(("n_images", "strengths"), [("12", [1]), ("40", [1, 2, 3])])
-def test_clicks_scatter_more_for_the_reference_number_of_images_alone(job, n_images, strengths):
+@pytest.mark.parametrize(
+    ("n_images", "step", "strengths"),
+    [
+        ("12", {"strengths_for": [40]}, [1]),
+        ("40", {"strengths_for": [40]}, [1, 2, 3]),
+        ("12", {}, [1, 2, 3]),
+    ],
+)
+def test_clicks_scatter_more_for_some_numbers_of_images_alone(job, n_images, step, strengths):
     one = job(**PLAIN, mapper="global", n_images=n_images, offset="0")
-    one.step("evaluate_calibration")["click_strengths"] = [1, 2, 3]
+    draws = {"n_draws": 3, "seed": 0, "sets": ["all"], "click_strengths": [1, 2, 3], **step}
+    known = one.session.parameters | {"evaluate_calibration": draws}
+    sessions = {"plain-tiny": replace(one.session, parameters=known)}
+    one = replace(one, study=replace(one.study, sessions=sessions))
     assert evaluation.sfm_errors(one)["strengths"] == strengths
 
 

@@ -18,7 +18,6 @@ ALONE = "people-alone"  # the kind of a calibration from people and nothing else
 IMPORTED = "imported"  # in place of a calibration: 3D joints are another program's
 DEVICES = "devices"  # in place of a calibration: joints are a device's, its source the fusion
 HALFBODY = "halfbody"  # the paper's rule for three cameras
-N_REFERENCE = 40  # images of the walk in the calibration that others are compared with
 OFFSETS = 3  # choices of so many bridging images: they start thirds of their spacing late
 
 

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from courtside.evaluation.numbers import intervals
 from courtside.evaluation.numbers.register import Builder, Cut, Number, Settings, Source
 from courtside.evaluation.tables import calibration
-from courtside.study.methods import N_REFERENCE
 
 TABLE = "figures/calibration.csv"
+N_REFERENCE = 40  # images of the walk
 MAPPER, PUBLISHED_MAPPER = "global", "incremental"  # of the default method, of the published one
 WAYS = {  # part: method, mapper, clicks
     "walk18": ("sfm", MAPPER, 18),

@@ -9,7 +9,7 @@ from courtside.study.jobs import calibration
 from courtside.study.jobs.calibration import CLICK_KEYS
 from courtside.study.jobs.job import Job
 from courtside.study.jobs.takes import every_fusion
-from courtside.study.methods import N_REFERENCE, Calibration
+from courtside.study.methods import Calibration
 from courtside.study.targets.calibration import racket_models
 from courtside.study.targets.together import EvaluatedTake
 
@@ -125,8 +125,8 @@ def sfm_errors(job: Job) -> dict[str, Any]:
     """Return the settings of the evaluation of one structure from motion."""
     labels = {"mapper": job["mapper"], "n_bridging": job["n_images"], "offset": job["offset"]}
     found = _drawn_clicks(job, labels, CLICK_KEYS)
-    # Coverage by the scatter of clicks is stated for this number of images alone.
-    return found if int(job["n_images"]) == N_REFERENCE else {**found, "strengths": [1]}
+    varied = job.step("evaluate_calibration").get("strengths_for", [int(job["n_images"])])
+    return found if int(job["n_images"]) in varied else {**found, "strengths": [1]}
 
 
 def known_errors(job: Job) -> dict[str, Any]:
