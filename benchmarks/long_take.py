@@ -96,7 +96,8 @@ def steps(folder, given):
     )
     yield "associate_people", (paths, made["people"]), {"several": len(given.persons) > 1}
     fusion = {"sex_of": dict.fromkeys(given.persons), "fusion": {"used": names, "rule": "robust"}}
-    yield "triangulate", (paths, made["raw"]), {**fusion, **parameters["triangulate"]}
+    fusion |= {"recorded": True, **parameters["triangulate"]}
+    yield "triangulate", (paths, made["raw"]), fusion
     tables = {key: folder / "made" / f"{key}.csv" for key in ("cutoffs", "frames", "summary")}
     filtering = parameters["filter_motion"]
     yield "filter_motion", (made["raw"], shape, made["filtered"], tables["cutoffs"]), filtering

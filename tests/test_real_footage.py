@@ -307,6 +307,7 @@ def skeletons(folder, filmed, limits):
     found = Inputs(**used | {"people": None})
     run_script("associate_people", found, used["people"], several=False)
     fused = {"fusion": {"used": NAMES, "rule": "robust"}, "sex_of": {"p1": None}, **limits}
+    fused["recorded"] = True
     names = {"persons": ["p1"], "stated": [("p1", SEEN)], "take": "walk/t", "page": [], "file": "w"}
     found = Inputs(**used | {"found": used["people"], "people_csv": None})
     run_script("name_people", found, folder / "named.npz", **names)

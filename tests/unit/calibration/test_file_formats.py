@@ -72,9 +72,15 @@ def test_qualisys_is_as_pose2sim_converted_it_but_for_distortion():
         np.testing.assert_allclose(our.dist, 64 * their.dist, rtol=1e-12)
 
 
+@pytest.fixture(scope="module")
+def corners():
+    stills = sorted((WALK / "boards" / "int_cam2_img").glob("*.jpg"))
+    return [found for found in map(found_corners, stills) if found is not None]
+
+
 @needs_real
 @pytest.mark.parametrize("at", range(4))
-def test_chessboards_confirm_qualisys_distortion_without_the_64(at):
+def test_chessboards_confirm_qualisys_distortion_without_the_64(at, corners):
     """Stills of a flat board: reprojection with the focal length and principal point left free.
 
     All stills show one lens of the four (test_chessboard.py); the lenses' distortions are alike.
@@ -83,8 +89,6 @@ def test_chessboards_confirm_qualisys_distortion_without_the_64(at):
     board[:, :2] = np.mgrid[0:4, 0:7].T.reshape(-1, 2) * 0.06
     ours = file_formats.read(WALK / "Calib.qca.txt")
     theirs = file_formats.read(WALK / "Calib_qualisys.toml")
-    stills = sorted((WALK / "boards" / "int_cam2_img").glob("*.jpg"))
-    corners = [found for found in map(found_corners, stills) if found is not None]
     rms_px = [board_error_px(camera, board, corners) for camera in (ours[at], theirs[at])]
     assert rms_px[0] < 0.6 * rms_px[1]
 
