@@ -133,9 +133,9 @@ def test_sessions_that_wait_for_clicks_are_told(study):
     ("mass_kg", "height_m", "words"),
     [
         (70.0, 1.75, None),
-        (154.3, 1.75, "154.3 kg at 1.75 m are 50 kg/m2, expected 12 to 40: check mass_kg and "
+        (154.3, 1.75, "expected 12 to 40 kg/m2, found 50 (154.3 kg at 1.75 m): check mass_kg and "
          "height_m; if it is in pounds, write 70.0"),
-        (31.8, 1.75, "31.8 kg at 1.75 m are 10 kg/m2, expected 12 to 40: check mass_kg and "
+        (31.8, 1.75, "expected 12 to 40 kg/m2, found 10 (31.8 kg at 1.75 m): check mass_kg and "
          "height_m"),
         (154.3, None, None),
     ],
@@ -145,7 +145,7 @@ def test_a_mass_that_does_not_go_with_the_height_is_told(study, mass_kg, height_
     body = Subject(height_m=height_m, mass_kg=mass_kg)
     other = replace(session, subjects={"p": body})
     said = run.warnings(replace(study, sessions={"plain-tiny": other}))
-    assert said == ([f"Warning: plain-tiny: subjects.p: {words}"] if words else [])
+    assert said == ([f"Warning: {session.file}: subjects.p: {words}"] if words else [])
 
 
 def test_warnings_about_cameras_of_recorded_takes_are_told(study, tmp_path, monkeypatch):

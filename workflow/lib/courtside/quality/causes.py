@@ -125,7 +125,8 @@ def _by_tests(one: _Camera, absent: float) -> Cause:
         IDENTITY: "it follows somebody else: with another person found there",
         CLOCK: f"its clock is off: moved by {shift_s:+.3f} s",
         CALIBRATION: f"its calibration is off: turned by {angle_deg:.1f} degrees",
-        EXCHANGED: f"its video is given for {video}: with the people found in that one",
+        EXCHANGED: f"its video is given for {video} (correct the session's file): with the people "
+        "found in that one",
     }[name]
     fell = f"the error falls from {before:.2f} to {left[name]:.2f} of a person's height"
     return Cause(name, f"{words} {fell}")

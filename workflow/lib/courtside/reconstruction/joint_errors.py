@@ -90,14 +90,13 @@ def state(
     at = [points.joints.tolist().index(joint) for joint in skeleton.JOINTS]
     good, share = model.of(design(signs, points.joints.tolist()))
     covariance = points.covariance_2d[:, :, at]
-    bodies = np.array([RECORDED_M[joint.split("_")[1]] ** 2 for joint in skeleton.JOINTS])
-    bodies = bodies if recorded else np.zeros(len(bodies))
-    own = np.trace(covariance, axis1=-2, axis2=-1) / 3 + bodies
+    more = recorded * np.array([RECORDED_M[joint.split("_")[1]] ** 2 for joint in skeleton.JOINTS])
+    own = np.trace(covariance, axis1=-2, axis2=-1) / 3 + more
     beyond = [scipy.stats.chi2.sf(OUTLIER_M**2 / (own + v), 3) for v in (good, model.sigma_m**2)]
     known = np.isfinite(covariance).all(axis=(-2, -1))
     outlier, network = points.outlier.copy(), points.covariance_network.copy()
     outlier[:, :, at] = np.where(known, (1 - share) * beyond[0] + share * beyond[1], np.nan)
-    variance = STATED_GOOD * (1 - share) * good + STATED_OUTLIER * share * model.sigma_m**2 + bodies
+    variance = STATED_GOOD * (1 - share) * good + STATED_OUTLIER * share * model.sigma_m**2 + more
     variance = np.where(known, variance, np.nan)
     network[:, :, at] = variance[..., None, None] * np.eye(3)
     return replace(points, outlier=outlier, covariance_network=network)

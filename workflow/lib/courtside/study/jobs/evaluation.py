@@ -125,8 +125,9 @@ def sfm_errors(job: Job) -> dict[str, Any]:
     """Return the settings of the evaluation of one structure from motion."""
     labels = {"mapper": job["mapper"], "n_bridging": job["n_images"], "offset": job["offset"]}
     found = _drawn_clicks(job, labels, CLICK_KEYS)
-    varied = job.step("evaluate_calibration").get("strengths_for", [int(job["n_images"])])
-    return found if int(job["n_images"]) in varied else {**found, "strengths": [1]}
+    n_images, step = int(job["n_images"]), job.step("evaluate_calibration")
+    varied = n_images in step.get("strengths_for", [n_images])
+    return found if varied else {**found, "strengths": [1]}
 
 
 def known_errors(job: Job) -> dict[str, Any]:

@@ -154,20 +154,19 @@ def doubtful_cameras(study: Study) -> list[str]:
 
 def doubtful_bodies(study: Study) -> list[str]:
     """Return one line for each person whose mass does not go with the height."""
-    found = []
+    found, (least, most) = [], BODY_KG_M2
     for session in study.sessions.values():
         for name, person in session.subjects.items():
-            if person.mass_kg and person.height_m:
-                index = person.mass_kg / person.height_m**2
-                if not BODY_KG_M2[0] <= index <= BODY_KG_M2[1]:
-                    pounds = f"; if it is in pounds, write {KG_OF_LB * person.mass_kg:.1f}"
-                    found.append(
-                        f"{session.name}: subjects.{name}: {person.mass_kg:g} kg at "
-                        f"{person.height_m:g} m are {index:.0f} kg/m2, expected "
-                        f"{BODY_KG_M2[0]:.0f} to {BODY_KG_M2[1]:.0f}: check mass_kg and height_m"
-                        + pounds
-                        * (index > BODY_KG_M2[1])
-                    )
+            if not (person.mass_kg and person.height_m):
+                continue
+            index = person.mass_kg / person.height_m**2
+            if not least <= index <= most:
+                kg = f"; if it is in pounds, write {KG_OF_LB * person.mass_kg:.1f}"
+                found.append(
+                    f"{session.file}: subjects.{name}: expected {least:.0f} to {most:.0f} kg/m2, "
+                    f"found {index:.0f} ({person.mass_kg:g} kg at {person.height_m:g} m): check "
+                    f"mass_kg and height_m{kg if index > most else ''}"
+                )
     return found
 
 
