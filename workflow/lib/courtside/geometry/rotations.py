@@ -15,9 +15,14 @@ def rotation_from_rodrigues(vectors: ArrayLike) -> NDArray:
     return scipy.spatial.transform.Rotation.from_rotvec(vectors).as_matrix()
 
 
-def rodrigues_from_rotation(rotations: ArrayLike) -> NDArray:
-    """Return the rotation vectors (..., 3), axis times radians, of rotations (..., 3, 3)."""
-    return scipy.spatial.transform.Rotation.from_matrix(rotations).as_rotvec()
+def rodrigues_from_rotation(rotations: ArrayLike, *, valid: bool = False) -> NDArray:
+    """Return the rotation vectors (..., 3), axis times radians, of rotations (..., 3, 3).
+
+    `valid` skips the check that they are rotations, which takes most of the time where they are
+    few.
+    """
+    found = scipy.spatial.transform.Rotation.from_matrix(rotations, assume_valid=valid)
+    return found.as_rotvec()
 
 
 def angles(rotations: ArrayLike) -> NDArray:

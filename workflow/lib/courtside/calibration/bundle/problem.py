@@ -95,7 +95,12 @@ class Network:
             "vij,vj->vi", turn, reference.cam_from_world[:, :, 3]
         )
         images = np.concatenate(
-            [rotations.rodrigues_from_rotation(turn), shift, self.flex - reference.flex], axis=1
+            [
+                rotations.rodrigues_from_rotation(turn, valid=True),
+                shift,
+                self.flex - reference.flex,
+            ],
+            axis=1,
         )
         return np.concatenate([images.ravel(), (self.lens - reference.lens).ravel()])
 
@@ -148,39 +153,60 @@ def with_points(
     )
 
 
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """The point of each observation, as its camera sees it."""
+
+    still: NDArray  # (M, 3): in the camera frame at mid-exposure
+    in_cam: NDArray  # (M, 3): in the camera frame when its row is read
+    normalised: NDArray  # (M, 2): on the plane z = 1
+    distorted: NDArray  # (M, 2): the same after lens distortion
+    residual: NDArray  # (M, 2): predicted minus observed, px; NaN where it lies behind the image
+
+
+def see(network: Network) -> Seen:
+    """Return the points of all observations as their cameras see them."""
+    pose = network.cam_from_world[network.image_idx]
+    still = np.einsum("mij,mj->mi", pose[:, :, :3], network.xyz[network.point_idx]) + pose[:, :, 3]
+    in_cam = still + rotations.cross(_spin(network), still)
+    depth = np.where(in_cam[:, 2:] > 1e-6, in_cam[:, 2:], np.nan)
+    normalised = in_cam[:, :2] / depth
+    lens = _lens(network)
+    distorted = camera.distort(_coefficients(lens), normalised)
+    shift = network.flex[network.image_idx, 3:]
+    predicted = _focal(lens) * distorted + lens[:, 2:4] + shift
+    return Seen(still, in_cam, normalised, distorted, predicted - network.xy)
+
+
 def residuals(network: Network) -> NDArray:
     """Return predicted minus observed, (M, 2) px; NaN where a point lies behind its image."""
-    *_, distorted = _see(network)
-    return _residuals(network, distorted)
+    return see(network).residual
 
 
-def _residuals(network: Network, distorted: NDArray) -> NDArray:
-    lens = _lens(network)
-    shift = network.flex[network.image_idx, 3:]
-    return _focal(lens) * distorted + lens[:, 2:4] + shift - network.xy
+def linearised(network: Network, seen: Seen | None = None) -> tuple[NDArray, NDArray, NDArray]:
+    """Return `residuals`, with derivatives by `columns` (M, 2, 19) and by point (M, 2, 3).
 
-
-def linearised(network: Network) -> tuple[NDArray, NDArray, NDArray]:
-    """Return `residuals`, with derivatives by `columns` (M, 2, 19) and by point (M, 2, 3)."""
-    still, in_cam, normalised, distorted = _see(network)
+    `seen` is what `see` returned for this network, where that is known.
+    """
+    seen = seen or see(network)
     lens = _lens(network)
     # Of the point in the camera's frame.
     by_place = _focal(lens)[:, :, None] * camera.jacobian_by_place(
-        _coefficients(lens), normalised, in_cam[:, 2:]
+        _coefficients(lens), seen.normalised, seen.in_cam[:, 2:]
     )
     # Before the shutter's turn: r @ (I + [spin]) = r + r x spin.
     by_still = by_place + rotations.cross(by_place, _spin(network)[:, None, :])
     rotation = network.cam_from_world[network.image_idx, :, :3]
-    by_camera = np.zeros((len(in_cam), 2, IMAGE + len(LENS)))
+    by_camera = np.zeros((len(by_still), 2, IMAGE + len(LENS)))
     by_camera[:, :, :3] = rotations.cross(
-        still[:, None, :], by_still
+        seen.still[:, None, :], by_still
     )  # by_still @ -[x]: rows crossed
     by_camera[:, :, 3:6] = by_still
-    turned = rotations.cross(still[:, None, :], by_place)
+    turned = rotations.cross(seen.still[:, None, :], by_place)
     by_camera[:, :, 6:9] = turned * _row_time(network)[:, None, None]
     by_camera[:, 0, 9] = by_camera[:, 1, 10] = 1.0
-    by_camera[:, :, IMAGE:] = _by_lens(lens, normalised, distorted)
-    return _residuals(network, distorted), by_camera, by_still @ rotation
+    by_camera[:, :, IMAGE:] = _by_lens(lens, seen.normalised, seen.distorted)
+    return seen.residual, by_camera, by_still @ rotation
 
 
 def _by_lens(lens: NDArray, normalised: NDArray, distorted: NDArray) -> NDArray:
@@ -202,20 +228,6 @@ def _by_lens(lens: NDArray, normalised: NDArray, distorted: NDArray) -> NDArray:
     ):
         along[:, 0, column], along[:, 1, column] = f * aspect * dx, f * dy
     return along
-
-
-def _see(network: Network) -> tuple[NDArray, NDArray, NDArray, NDArray]:
-    """Return the points in the camera frame, (M, 3), at mid-exposure and when their row is read.
-
-    Also return them on the plane z = 1, without and with lens distortion, (M, 2) each.
-    """
-    pose = network.cam_from_world[network.image_idx]
-    still = np.einsum("mij,mj->mi", pose[:, :, :3], network.xyz[network.point_idx]) + pose[:, :, 3]
-    in_cam = still + rotations.cross(_spin(network), still)
-    depth = np.where(in_cam[:, 2:] > 1e-6, in_cam[:, 2:], np.nan)
-    normalised = in_cam[:, :2] / depth
-    distorted = camera.distort(_coefficients(_lens(network)), normalised)
-    return still, in_cam, normalised, distorted
 
 
 def _lens(network: Network) -> NDArray:

@@ -1,7 +1,7 @@
 """Bundle adjustment of a `Network`: Levenberg-Marquardt on images and lenses, points eliminated."""
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from courtside.calibration.bundle import problem
 from courtside.calibration.bundle.problem import Network
 
-DENSE_ELEMENTS = 10_000  # a matrix up to this size is not worth the overhead of a sparse one
+DENSE_ELEMENTS = 10_000_000  # 80 MB: up to this size, a dense product is faster than a sparse one
 # Relative to a point's information along its best direction: less is rounding error, not depth.
 MIN_INFORMATION = 1e-10
 MAX_DAMPING = 1e6  # a step of the images is negligible then
@@ -76,21 +76,63 @@ def adjust(
     adjustment stops when the relative decrease of the cost is below `tolerance`.
     """
     damping = 1e-4
-    normal = normal_equations(network, quadratic)
+    state = _state(network, quadratic)
+    normal = _normal(state, quadratic)
     for _ in range(max_iterations):
-        moved, trial, damping = _fall(network, normal, quadratic, damping)
-        if trial is None:
+        moved, damping = _fall(state, normal, quadratic, damping)
+        if moved is None:
             break
-        gain = (normal.cost - trial) / max(trial, 1e-300)
-        network, damping = moved, max(damping / 10, 1e-9)
-        normal = _normal(network, quadratic, trial)
+        gain = (state.cost - moved.cost) / max(moved.cost, 1e-300)
+        state, damping = moved, max(damping / 10, 1e-9)
+        normal = _normal(state, quadratic)
         if gain < tolerance:
             break
-    return network, normal
+    return state.network, normal
 
 
-def _fall(network, normal, quadratic, damping) -> tuple[Network, float | None, float]:
-    """Return the network after a step that lowers the cost, with the cost and the damping used.
+def cost(network: Network, quadratic: Quadratic | None = None) -> float:
+    """Return half the sum of squared residuals in sigmas, inf where a point is behind its image."""
+    return _state(network, quadratic).cost
+
+
+def normal_equations(network: Network, quadratic: Quadratic | None = None) -> Normal:
+    """Build the `Normal` of a network."""
+    return _normal(_state(network, quadratic), quadratic)
+
+
+@dataclass(frozen=True, eq=False)
+class _State:
+    """A network with the terms of its cost."""
+
+    network: Network
+    seen: problem.Seen
+    off: NDArray  # (K,): (value - mean) / sigma of images and lenses; 0 without a prior
+    inverse_sigma: NDArray  # (K,): 0 without a prior
+    step: NDArray  # (K,): from the reference of the quadratic prior; empty without one
+    cost: float
+
+
+def _state(network: Network, quadratic: Quadratic | None) -> _State:
+    seen, (off, inverse) = problem.see(network), _prior(network)
+    step = np.zeros(0) if quadratic is None else network.difference(quadratic.reference)
+    scaled = seen.residual / network.axis_sigma_px
+    if not np.isfinite(scaled).all():
+        return _State(network, seen, off, inverse, step, np.inf)
+    square = (scaled**2).sum(axis=1)
+    scale = network.loss_scale**2
+    robust = np.isfinite(scale)
+    total = square[~robust].sum()
+    total += (scale[robust] * np.log1p(square[robust] / scale[robust])).sum()
+    total += (off**2).sum() + (_point_prior(network)[0] ** 2).sum()
+    if quadratic is not None:
+        total += step @ quadratic.information @ step + 2 * quadratic.gradient @ step
+    return _State(network, seen, off, inverse, step, total / 2)
+
+
+def _fall(
+    state: _State, normal: Normal, quadratic: Quadratic | None, damping: float
+) -> tuple[_State | None, float]:
+    """Return the state after a step that lowers the cost, None without one, and the damping used.
 
     Points are not damped: however small the images' steps are, a step may move a point behind an
     image. If no damping helps, these points are not moved, because one of them alone would stop all
@@ -99,15 +141,15 @@ def _fall(network, normal, quadratic, damping) -> tuple[Network, float | None, f
     for hold in (False, True):
         tried = damping
         while tried <= MAX_DAMPING:
-            moved, trial = _descend(network, normal, quadratic, tried, hold)
-            if trial is not None:
-                return moved, trial, tried
+            moved = _state(_stepped(state.network, normal, tried, hold), quadratic)
+            if moved.cost <= state.cost:
+                return moved, tried
             tried *= 10
-    return network, None, damping
+    return None, damping
 
 
-def _descend(network, normal, quadratic, damping, hold) -> tuple[Network, float | None]:
-    """Return the network after a damped step with its cost, None if the cost does not fall."""
+def _stepped(network: Network, normal: Normal, damping: float, hold: bool) -> Network:
+    """Return the network after a damped step; `hold` keeps points from going behind an image."""
     information = normal.information + damping * np.diag(np.diag(normal.information) + 1e-12)
     with warnings.catch_warnings():
         # Without its damping the information of a free frame is singular.
@@ -116,49 +158,25 @@ def _descend(network, normal, quadratic, damping, hold) -> tuple[Network, float 
     step = np.zeros(len(normal.active))
     step[normal.active] = part
     moved = network.moved(step, normal.back(part))
-    if hold:  # points that would be behind an image stay where they were
+    if hold:
         stay = moved.point_idx[~np.isfinite(problem.residuals(moved)).all(axis=1)]
         moved.xyz[stay] = network.xyz[stay]
-    trial = cost(moved, quadratic)
-    return moved, trial if trial <= normal.cost else None
+    return moved
 
 
-def cost(network: Network, quadratic: Quadratic | None = None) -> float:
-    """Return half the sum of squared residuals in sigmas, inf where a point is behind its image."""
-    scaled = problem.residuals(network) / network.axis_sigma_px
-    if not np.isfinite(scaled).all():
-        return np.inf
-    square = (scaled**2).sum(axis=1)
-    scale = network.loss_scale**2
-    robust = np.isfinite(scale)
-    total = square[~robust].sum()
-    total += (scale[robust] * np.log1p(square[robust] / scale[robust])).sum()
-    off, _ = _prior(network)
-    total += (off**2).sum() + (_point_prior(network)[0] ** 2).sum()
-    if quadratic is not None:
-        step = network.difference(quadratic.reference)
-        total += step @ quadratic.information @ step + 2 * quadratic.gradient @ step
-    return total / 2
-
-
-def normal_equations(network: Network, quadratic: Quadratic | None = None) -> Normal:
-    """Build the `Normal` of a network."""
-    return _normal(network, quadratic, cost(network, quadratic))
-
-
-def _normal(network: Network, quadratic: Quadratic | None, total: float) -> Normal:
-    """Return the `Normal` of a network whose cost is known."""
-    residual, by_camera, by_point = problem.linearised(network)
+def _normal(state: _State, quadratic: Quadratic | None) -> Normal:
+    network = state.network
+    residual, by_camera, by_point = problem.linearised(network, state.seen)
     weight = _weight(network, residual)
     seen = weight > 0
     residual, by_camera, by_point = (
         np.where(_along(seen, terms), terms, 0.0) * _along(weight, terms)
         for terms in (residual, by_camera, by_point)
     )
-    full, gradient = _camera_side(network, by_camera, residual, quadratic)
+    full, gradient = _camera_side(state, by_camera, residual, quadratic)
     active = _active(network) & (np.diag(full) > 0)
     root, point_gradient = _point_side(network, by_point, residual)
-    coupling = _coupling(network, root, by_point, by_camera)[:, active]
+    coupling = _coupling(network, root, by_point, by_camera, active)
     scaled_gradient = np.einsum("nij,nj->ni", root, point_gradient)
     eliminated: Any = coupling.T @ coupling
     if scipy.sparse.issparse(eliminated):
@@ -170,7 +188,7 @@ def _normal(network: Network, quadratic: Quadratic | None, total: float) -> Norm
         pulled = (coupling @ step).reshape(-1, 3) + scaled_gradient
         return -np.einsum("nji,nj->ni", root, pulled)
 
-    return Normal(active, information, gradient, total, back)
+    return Normal(active, information, gradient, state.cost, back)
 
 
 def _along(values: NDArray, terms: NDArray) -> NDArray:
@@ -212,24 +230,31 @@ def _point_prior(network: Network) -> tuple[NDArray, NDArray]:
     return np.where(known[:, None], network.xyz - network.xyz_mean, 0.0) * inverse[:, None], inverse
 
 
-def _camera_side(network, by_camera, residual, quadratic) -> tuple[NDArray, NDArray]:
+def _camera_side(
+    state: _State, by_camera: NDArray, residual: NDArray, quadratic: Quadratic | None
+) -> tuple[NDArray, NDArray]:
     """Return information (K, K) and gradient (K,) of images and lenses before elimination."""
-    size, columns = network.n_columns, network.columns()
-    blocks = np.einsum("mri,mrj->mij", by_camera, by_camera)
-    rows = np.broadcast_to(columns[:, :, None], blocks.shape).ravel()
-    flat = rows * size + np.broadcast_to(columns[:, None, :], blocks.shape).ravel()
-    information = np.bincount(flat, blocks.ravel(), minlength=size * size).reshape(size, size)
-    pull = np.einsum("mri,mr->mi", by_camera, residual)
-    gradient = np.bincount(columns.ravel(), pull.ravel(), minlength=size)
-    information, gradient = information.astype(float), gradient.astype(float)  # int of nothing
-    off, inverse = _prior(network)
-    information[np.diag_indices(size)] += inverse**2
-    gradient += off * inverse
+    size = state.network.n_columns
+    information, gradient = np.zeros((size, size)), np.zeros(size)
+    for seen, columns in _by_image(state.network):
+        rows = by_camera[seen].reshape(-1, len(columns))
+        information[columns[:, None], columns] += rows.T @ rows
+        gradient[columns] += rows.T @ residual[seen].ravel()
+    information[np.diag_indices(size)] += state.inverse_sigma**2
+    gradient += state.off * state.inverse_sigma
     if quadratic is not None:
-        step = network.difference(quadratic.reference)
         information += quadratic.information
-        gradient += quadratic.gradient + quadratic.information @ step
+        gradient += quadratic.gradient + quadratic.information @ state.step
     return information, gradient
+
+
+def _by_image(network: Network) -> Iterator[tuple[NDArray, NDArray]]:
+    """Yield the observations (M',) and the columns (19,) of each image that has observations."""
+    order = np.argsort(network.image_idx, kind="stable")
+    _, first = np.unique(network.image_idx[order], return_index=True)
+    columns = network.columns()
+    for seen in np.split(order, first[1:]) if len(order) else []:
+        yield seen, columns[seen[0]]
 
 
 def _point_side(network, by_point, residual) -> tuple[NDArray, NDArray]:
@@ -253,15 +278,27 @@ def _sum_by(index: NDArray, values: NDArray, length: int) -> NDArray:
     return np.stack(sums, axis=1).astype(float)  # int of nothing
 
 
-def _coupling(network, root, by_point, by_camera) -> "NDArray | scipy.sparse.csr_matrix":
-    """Return root @ by_point.T @ by_camera, summed by point: (3 N, K); sparse where it is large."""
-    block = np.einsum("mij,mrj,mrk->mik", root[network.point_idx], by_point, by_camera)
+def _coupling(
+    network: Network, root: NDArray, by_point: NDArray, by_camera: NDArray, active: NDArray
+) -> "NDArray | scipy.sparse.csr_matrix":
+    """Return root @ by_point.T @ by_camera of the active columns, summed by point: (3 N, A).
+
+    Sparse where it is large.
+    """
+    along = by_point @ root[network.point_idx].transpose(0, 2, 1)
+    block = (
+        along[:, 0, :, None] * by_camera[:, 0, None, :]
+        + along[:, 1, :, None] * by_camera[:, 1, None, :]
+    )
     rows = 3 * network.point_idx[:, None, None] + np.arange(3)[None, :, None]
-    columns = network.columns()[:, None, :]
-    n_rows, n_columns = 3 * len(network.xyz), network.n_columns
-    if n_rows * n_columns <= DENSE_ELEMENTS:
-        at = (rows * n_columns + columns).ravel()
-        whole = np.bincount(at, block.ravel(), minlength=n_rows * n_columns)
-        return whole.reshape(n_rows, n_columns)
-    at = (np.broadcast_to(rows, block.shape).ravel(), np.broadcast_to(columns, block.shape).ravel())
-    return scipy.sparse.csr_matrix((block.ravel(), at), shape=(n_rows, n_columns))
+    n_rows, n_columns = 3 * len(network.xyz), np.count_nonzero(active)
+    # A last column takes what is not active.
+    place = np.where(active, np.cumsum(active) - 1, n_columns)[network.columns()][:, None, :]
+    shape = (n_rows, n_columns + 1)
+    if n_rows * shape[1] <= DENSE_ELEMENTS:
+        whole = np.bincount(
+            (rows * shape[1] + place).ravel(), block.ravel(), minlength=n_rows * shape[1]
+        )
+        return whole.reshape(shape)[:, :n_columns]
+    at = (np.broadcast_to(rows, block.shape).ravel(), np.broadcast_to(place, block.shape).ravel())
+    return scipy.sparse.csr_matrix((block.ravel(), at), shape=shape)[:, :n_columns]
