@@ -58,6 +58,7 @@ onsuccess:
         *run.waiting_for_clicks(STUDY),
         *run.left_out(STUDY),
         *asked(run.lost_pictures, STUDY),
+        *REMARKS,
         *asked(run.warnings, STUDY),
         *verdicts,
         sep="\n",
@@ -69,7 +70,7 @@ onsuccess:
 
 onerror:
     files.delete_unfinished("results")
-    print(end_of_run(), *asked(run.warnings, STUDY), sep="\n", file=sys.stderr)
+    print(end_of_run(), *REMARKS, *asked(run.warnings, STUDY), sep="\n", file=sys.stderr)
     record_provenance()
 
 

@@ -55,6 +55,7 @@ try:
     PLANS = {
         name: plans.read(CONFIG / paths.PLAN_YAML.format(plan=name)) for name in config["plans"]
     }
+    REMARKS = []  # on recordings and stated bodies: told at the start, and again at the end
     if workflow.is_main_process:  # jobs need not look again, nor load what looks
         from courtside.validation import check as recorded
         from courtside.validation import providers
@@ -62,8 +63,8 @@ try:
 
         providers.check(STUDY)
         looks = Remembered(Path(".snakemake") / "courtside" / "recordings.json")
-        for remark in recorded.check(STUDY, looks):
-            print(f"Remark: {remark}", file=sys.stderr)
+        REMARKS = [f"Remark: {remark}" for remark in recorded.check(STUDY, looks)]
+        print(*REMARKS, sep="\n", end="\n" * bool(REMARKS), file=sys.stderr)
     future_dates.check([CONFIG, paths.EXTERNAL, *(f"data/{name}" for name in STUDY.sessions)])
 except InputError as error:
     sys.exit("\n".join(f"Error: {line}" for line in str(error).splitlines()))

@@ -6,7 +6,6 @@ from types import SimpleNamespace
 
 import pytest
 
-from courtside.study.configuration.sessions import Subject
 from courtside.study.errors import InputError
 from courtside.study.execution import verdicts
 from courtside.study.provenance import run
@@ -127,25 +126,6 @@ def test_sessions_that_wait_for_clicks_are_told(study):
     (line,) = run.waiting_for_clicks(replace(study, sessions={"plain-tiny": waiting}))
     assert line.startswith("plain-tiny: court points are not clicked yet: open results/plain-tiny/")
     assert "save them as data/p.csv" in line
-
-
-@pytest.mark.parametrize(
-    ("mass_kg", "height_m", "words"),
-    [
-        (70.0, 1.75, None),
-        (154.3, 1.75, "expected 12 to 40 kg/m2, found 50 (154.3 kg at 1.75 m): check mass_kg and "
-         "height_m; if it is in pounds, write 70.0"),
-        (31.8, 1.75, "expected 12 to 40 kg/m2, found 10 (31.8 kg at 1.75 m): check mass_kg and "
-         "height_m"),
-        (154.3, None, None),
-    ],
-)  # fmt: skip
-def test_a_mass_that_does_not_go_with_the_height_is_told(study, mass_kg, height_m, words):
-    session = study.sessions["plain-tiny"]
-    body = Subject(height_m=height_m, mass_kg=mass_kg)
-    other = replace(session, subjects={"p": body})
-    said = run.warnings(replace(study, sessions={"plain-tiny": other}))
-    assert said == ([f"Warning: {session.file}: subjects.p: {words}"] if words else [])
 
 
 def test_warnings_about_cameras_of_recorded_takes_are_told(study, tmp_path, monkeypatch):

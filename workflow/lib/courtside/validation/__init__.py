@@ -1,6 +1,7 @@
-"""Checks of recordings before any job: sizes, rates, copies, exchanged cameras.
+"""Checks of sessions before any job: sizes, rates, copies, exchanged cameras, stated bodies.
 
 check: `check`: all sessions of a study; every fault in one `InputError`
+bodies: `remarks`: a mass that does not go with the height
 calibrated: `faults`: cameras and sizes against the calibration file, sizes of a camera's recordings
 views: `faults`: one view given for two cameras, exchanged cameras
 lengths: `faults`, `remarks`: numbers of frames and rates of the cameras of a take

@@ -10,7 +10,7 @@ from courtside.study.configuration.session_files import is_there
 from courtside.study.configuration.sessions import Session, Study, Take
 from courtside.study.errors import InputError
 from courtside.study.methods import Calibration, fewer_images
-from courtside.validation import calibrated, keypoint_folders, lengths, stated_times, views
+from courtside.validation import bodies, calibrated, keypoint_folders, lengths, stated_times, views
 from courtside.validation.remembered import Remembered
 from courtside.video.glance import Glance
 
@@ -84,6 +84,8 @@ class _Session:
 
     def remarks(self) -> Iterator[str]:
         """Yield what is worth a look."""
+        for line in bodies.remarks(self._session.subjects):
+            yield f"{self._session.file}: {line}"
         for name, take in self._session.takes.items():
             said = lengths.remarks(self._takes[name], synchronised=take.synchronised)
             times = stated_times.remarks(take, self._takes[name])

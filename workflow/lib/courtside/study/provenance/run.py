@@ -14,9 +14,6 @@ from courtside.study.execution import verdicts as verdict_files
 from courtside.study.provenance import environment, provenance
 
 N_WARNINGS = 3  # of one calibration, on the terminal
-KG_OF_LB = 0.45359237
-# ASSUME: kg/m2 of a body; in pounds, a person of 18 or more kg/m2 seems to have 40 or more.
-BODY_KG_M2 = (12.0, 40.0)
 
 
 def record(
@@ -132,11 +129,6 @@ def lost_pictures(study: Study) -> list[str]:
 
 
 def warnings(study: Study) -> list[str]:
-    """Return what is doubtful about cameras and stated bodies, a line for each."""
-    return [f"Warning: {line}" for line in doubtful_cameras(study) + doubtful_bodies(study)]
-
-
-def doubtful_cameras(study: Study) -> list[str]:
     """Return the warnings about cameras with which recorded takes are measured, a line for each."""
     found = []
     for session in study.sessions.values():
@@ -146,27 +138,9 @@ def doubtful_cameras(study: Study) -> list[str]:
             read.add(paths.CALIBRATION_CHECK.format(session=session.name, suffix="json"))
         for path in (path for path in sorted(read) if Path(path).is_file()):
             told = files.read_json(Path(path)).get("warnings", [])
-            found += [f"{session.name}: {line}; see {path}" for line in told[:N_WARNINGS]]
+            found += [f"Warning: {session.name}: {line}; see {path}" for line in told[:N_WARNINGS]]
             more = len(told) - N_WARNINGS
-            found += [f"{session.name}: {more} more warnings in {path}"] * (more > 0)
-    return found
-
-
-def doubtful_bodies(study: Study) -> list[str]:
-    """Return one line for each person whose mass does not go with the height."""
-    found, (least, most) = [], BODY_KG_M2
-    for session in study.sessions.values():
-        for name, person in session.subjects.items():
-            if not (person.mass_kg and person.height_m):
-                continue
-            index = person.mass_kg / person.height_m**2
-            if not least <= index <= most:
-                kg = f"; if it is in pounds, write {KG_OF_LB * person.mass_kg:.1f}"
-                found.append(
-                    f"{session.file}: subjects.{name}: expected {least:.0f} to {most:.0f} kg/m2, "
-                    f"found {index:.0f} ({person.mass_kg:g} kg at {person.height_m:g} m): check "
-                    f"mass_kg and height_m{kg if index > most else ''}"
-                )
+            found += [f"Warning: {session.name}: {more} more warnings in {path}"] * (more > 0)
     return found
 
 

@@ -1,0 +1,29 @@
+"""A mass in pounds is told before any job."""
+
+import pytest
+
+from courtside.study.configuration.sessions import Subject
+from courtside.validation import bodies
+
+
+@pytest.mark.parametrize(
+    ("mass_kg", "height_m", "words"),
+    [
+        (70.0, 1.75, None),
+        (154.3, 1.75, "expected 12 to 40 kg/m2, found 50 (154.3 kg at 1.75 m): check mass_kg and "
+         "height_m; if it is in pounds, write 70.0"),
+        (31.8, 1.75, "expected 12 to 40 kg/m2, found 10 (31.8 kg at 1.75 m): check mass_kg and "
+         "height_m"),
+        (154.3, None, None),
+    ],
+)  # fmt: skip
+def test_a_mass_that_does_not_go_with_the_height_is_told(mass_kg, height_m, words):
+    said = list(bodies.remarks({"p": Subject(height_m=height_m, mass_kg=mass_kg)}))
+    assert said == ([f"subjects.p: {words}"] if words else [])
+
+
+def test_a_remark_on_a_body_names_the_file(hall):
+    hall.content["subjects"]["p1"] = {"height_m": 1.75, "mass_kg": 154.3}
+    faults, (remark,) = hall.said()
+    assert faults == []
+    assert ".yaml: subjects.p1: expected 12 to 40 kg/m2" in remark
