@@ -24,7 +24,7 @@ ALL = ("--", "all", *ASKED_FOR)
 SEED = 20250711
 N_OF_SNAKEMAKE = 24
 LATEST = 0.9  # of a job's seconds: later, it may have ended before
-EARLIER = (0.5, 0.2, 0.1, 0.05)  # for jobs that had
+EARLIER = (0.5, 0.2, 0.05, 0.0)  # for jobs that had; at last they are killed once seen
 LATE_S = 2.0  # Snakemake is killed up to so long after a job has ended
 # A job is not killed more often than Snakemake tries it again.
 AGAIN = ("--keep-going", "--retries", "3")
