@@ -115,7 +115,7 @@ def test_another_number_of_images_maps_only_that_number(kept):
 
 
 def test_a_click_spares_structure_from_motion(kept):
-    with edited(kept / "config/config.yaml", "click_sigma_px: 2.5", "click_sigma_px: 2.4"):
+    with edited(kept / "config/config.yaml", "click_sigma_px: 1.75", "click_sigma_px: 1.7"):
         jobs = planned(root=kept)
     assert jobs["adjust_network"] == 2
     assert not {"extract_features", "match_images", "map_images"} & set(jobs)

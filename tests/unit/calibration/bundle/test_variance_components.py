@@ -10,7 +10,7 @@ from scipy import integrate
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection, variance_components
 from courtside.calibration.court import court as court_files
-from courtside.calibration.court import joint_adjustment, sfm_alignment
+from courtside.calibration.court import joint_adjustment, line_edges, sfm_alignment
 from fixtures.cameras import networks_made
 from fixtures.cameras.scene import opencv_projection
 
@@ -20,7 +20,10 @@ EXACT = replace(COURT, sigma_m=np.full(18, 1e-4))
 
 
 def solved(scatter_px, tie_sigma_px=1.0, points=None, seed=0, weights=WEIGHTS):
-    """Solve from ties with errors of 1 px, and clicks with a scatter (2 cameras, 2 axes)."""
+    """Solve from ties with errors of 1 px, and clicks with a scatter (2 cameras, 2 axes).
+
+    Along edges that cross flat the clicks scatter more.
+    """
     rng = np.random.default_rng(seed)
     truth = networks_made.exact_lens_prior(networks_made.make(6, 60))
     drawn = replace(truth, xy=truth.xy + rng.normal(size=truth.xy.shape))
@@ -28,7 +31,8 @@ def solved(scatter_px, tie_sigma_px=1.0, points=None, seed=0, weights=WEIGHTS):
     knowledge = selection.marginalise(weighed, [0, 1])
     ties = joint_adjustment.Ties(("side", "back"), (networks_made.SIZE,) * 2, knowledge)
     clicks = {
-        camera.name: opencv_projection(camera, COURT.xyz) + rng.normal(size=(18, 2)) * sigma
+        camera.name: opencv_projection(camera, COURT.xyz)
+        + rng.normal(size=(18, 2)) * sigma * np.sqrt(line_edges.click_variances(camera, COURT))
         for camera, sigma in zip(networks_made.fixed_cameras(truth), scatter_px, strict=True)
     }
     found = joint_adjustment.solve_with_factors(ties, clicks, EXACT, points=points, **weights)

@@ -117,7 +117,7 @@ def test_too_few_points_name_the_camera():
 
 def test_free_places_are_a_court_without_lines():
     places = court.of_places("points", HALL.points, HALL.xyz - [10, 20, 0])
-    moved = replace(HALL, xyz=places.xyz)
+    moved = replace(HALL, xyz=places.xyz, lines_m=places.lines_m)
     clicks = clicked(true_cameras())
     one, other = (
         points_alone.calibrate(of, clicks, dict.fromkeys(clicks, SIZE), **WEIGHTS)

@@ -125,18 +125,20 @@ def add_control_points(
 
     Their coordinates `xyz` (P, 3) m, in the network's frame, are known with `xyz_sigma` (P,). The
     clicks (P, 2) px, NaN where not clicked, and their sigma are by index of the image; points
-    without a click are left out. A sigma is a number or one for each axis; `loss_scale` is in
-    sigmas.
+    without a click are left out. A sigma is a number, or one for each axis, (2,), of all points or
+    of each, (P, 2); `loss_scale` is in sigmas.
     """
     clicked = [
         (v, p) for v, xy in clicks.items() for p in np.flatnonzero(np.isfinite(xy).all(axis=1))
     ]
     image_idx, point = np.array(clicked, dtype=int).reshape(-1, 2).T
     used, point_idx = np.unique(point, return_inverse=True)
-    xyz, xyz_sigma = np.asarray(xyz)[used], np.asarray(xyz_sigma)[used]
-    sigma, others = np.array([sigma_px[v] for v in image_idx], dtype=float), network.sigma_px
-    if sigma.ndim > 1:
+    sigma, others = np.array([sigma_px[v] for v in image_idx]), network.sigma_px
+    if any(np.ndim(each) for each in sigma_px.values()):
+        by_point = {v: np.broadcast_to(each, (len(xyz), 2)) for v, each in sigma_px.items()}
+        sigma = np.array([by_point[v][p] for v, p in clicked]).reshape(-1, 2)
         others = network.axis_sigma_px
+    xyz, xyz_sigma = np.asarray(xyz)[used], np.asarray(xyz_sigma)[used]
     places = np.array([clicks[v][p] for v, p in clicked]).reshape(-1, 2)
     return replace(
         network,

@@ -41,21 +41,20 @@ class Factors:
     ties : of all ties
     clicks_redundancy : (V, 2) float; redundancy of the clicks; 0: the prior alone
     ties_redundancy : the same for the ties
+    edges : (V, P, 2) or (V, 1, 2) float; besides, of each click, because its edges may cross flat:
+        `court.line_edges.click_variances`; not estimated
     """
 
     clicks: NDArray
     ties: float
     clicks_redundancy: NDArray
     ties_redundancy: float
+    edges: NDArray
 
     @property
     def bias(self) -> float:
-        """Factor of the clicks' bias: the harmonic mean of the factors of the scatter.
-
-        Residuals hardly show the bias. Along edges that cross at a small angle the scatter is large
-        for geometric reasons; where it is small, it shows the accuracy of the person.
-        """
-        return float(1 / np.mean(1 / self.clicks))
+        """Factor of the clicks' bias, which residuals hardly show: the mean of the scatter's."""
+        return float(np.mean(self.clicks))
 
     @property
     def widening(self) -> float:
@@ -71,7 +70,8 @@ class Factors:
 
 def none(n_images: int) -> Factors:
     """Return factors that change nothing."""
-    return Factors(np.ones((n_images, 2)), 1.0, np.zeros((n_images, 2)), 0.0)
+    alike = np.ones((n_images, 2)), 1.0, np.zeros((n_images, 2)), 0.0
+    return Factors(*alike, np.ones((n_images, 1, 2)))
 
 
 def estimate(
@@ -103,6 +103,7 @@ def estimate(
         float(_posterior(misfit * factors.ties, left, TIES_PRIOR, 1.0)),
         redundancy,
         left,
+        factors.edges,
     )
 
 

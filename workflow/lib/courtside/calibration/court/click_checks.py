@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration.bundle import solver
-from courtside.calibration.court import joint_adjustment, sfm_alignment
+from courtside.calibration.court import joint_adjustment, line_edges, sfm_alignment
 from courtside.calibration.court.court import ClickedPoints, Court, to_line_centres
 from courtside.calibration.point_covariance import MEDIAN_2D, mahalanobis
 from courtside.geometry.camera import Camera, project
@@ -19,7 +19,6 @@ WRONG = 6.0  # ASSUME: a click this many sigmas off is wrong
 # second counts scatter that differs from point to point.
 NORMAL_2D = np.array([MEDIAN_2D, 1.794])
 RAISED = 2.0  # ASSUME: times the error across an edge: of points above the floor
-LONGEST = 4.0  # ASSUME: times the error across an edge: along edges that cross flat
 CERTAIN = 4.0  # ASSUME: the inward shift must be this many standard deviations from none
 CENTRES = (0.5, 1.6)  # ASSUME: of half a line width: shifts that mean line centres
 # In half line widths: edges, half way, line centres; three points determine a parabola.
@@ -101,23 +100,19 @@ def leave_one_out(cameras: Sequence[Camera], clicks: ClickedPoints, court: Court
         residual[at] = fitted.points(xyz[at]) - court.xyz[at]
         for row, camera in enumerate(cameras):
             projected[row, at] = project(fitted.camera(camera), court.xyz[at])
-            crossing[row, at] = crossing_of(fitted.camera(camera), court.xyz[at])
+            crossing[row, at] = crossings(fitted.camera(camera), court.xyz[[at]])[0]
     names = tuple(camera.name for camera in cameras)
     return LeaveOneOut(court.points, names, residual, projected, clicked, crossing)
 
 
-def crossing_of(camera: Camera, xyz: NDArray) -> NDArray:
-    """Return the covariance (2, 2) of a click of unit error across the edges of its point.
+def crossings(camera: Camera, xyz: NDArray) -> NDArray:
+    """Return `line_edges.crossings` (P, 2, 2), with points above the floor.
 
-    The edges of a point on the floor lie along the court's axes. Those of a post's tip are upright
-    and level, and cross at a right angle; few such points carry all heights.
+    The edges of a post's tip are upright and level, and cross at a right angle; few such points
+    carry all heights.
     """
-    if xyz[2] > 0:
-        return RAISED**2 * np.eye(2)
-    along = project(camera, xyz + 1e-3 * np.eye(3)[:2]) - project(camera, xyz)
-    across = along[:, ::-1] * [1, -1] / np.linalg.norm(along, axis=1, keepdims=True)
-    extent, axes = np.linalg.eigh(across.T @ across)
-    return (axes / np.maximum(extent, LONGEST**-2.0)) @ axes.T
+    raised = (xyz[:, 2] > 0)[:, None, None]
+    return np.where(raised, RAISED**2 * np.eye(2), line_edges.crossings(camera, xyz))
 
 
 def find_wrong_clicks(table: LeaveOneOut, *, sigma_px: float = 1.0) -> list[WrongClick]:

@@ -16,7 +16,7 @@ from courtside.calibration.bundle import selection, solver, variance_components,
 from courtside.calibration.bundle.problem import FLEX, IMAGE, POSE, Network
 from courtside.calibration.bundle.variance_components import Factors
 from courtside.calibration.bundle.walk_parts import Part
-from courtside.calibration.court import sfm_alignment
+from courtside.calibration.court import line_edges, sfm_alignment
 from courtside.calibration.court.court import ClickedPoints, Court
 from courtside.geometry.camera import Camera
 from courtside.geometry.similarity import Sim3
@@ -265,7 +265,8 @@ def solve(
     click_bias_px : bias that all clicks in one picture share, standard deviation per axis, at a
         width of 3840 px
     points : (P,) bool; court points to use; by default all
-    factors : on the variances of clicks (scatter and bias) and ties; by default none
+    factors : on the variances of clicks (scatter, by their edges, and bias) and ties; by default
+        none
     start : network of another solution, where the search starts; by default the ties' own
     lines : from painted lines, `court_lines.walk_and_lines.LineConstraints.knowledge`
     """
@@ -278,7 +279,7 @@ def solve(
         at: np.where(use[:, None], clicks[name], np.nan) for at, name in enumerate(ties.cameras)
     }
     sigmas = {
-        at: click_sigma(click_sigma_px, size) * np.sqrt(factors.clicks[at])
+        at: click_sigma(click_sigma_px, size) * np.sqrt(factors.clicks[at] * factors.edges[at])
         for at, size in enumerate(ties.sizes)
     }
     network = selection.add_control_points(
@@ -296,14 +297,27 @@ def solve(
     return Solution(cameras, network, covariance, factors)
 
 
-def solve_with_factors(ties: Ties, clicks: ClickedPoints, court: Court, **options: Any) -> Solution:
-    """Do as `solve`, with weights and covariance from the residuals (`variance_components`).
+def solve_by_edges(ties: Ties, clicks: ClickedPoints, court: Court, **options: Any) -> Solution:
+    """Do as `solve`, with clicks less certain along edges that cross flat in the picture.
 
-    The given sigmas of clicks and ties are priors. A few clicks determine their scatter poorly; the
-    covariance is enlarged for this (`Factors.widening`). `**options` are those of `solve`, without
-    `factors`.
+    The edges are those that cameras see which `solve` found. `**options` are those of `solve`,
+    without `factors`.
     """
     solved = solve(ties, clicks, court, **options)
+    edges = np.stack([line_edges.click_variances(camera, court) for camera in solved.cameras])
+    factors = replace(variance_components.none(len(ties.cameras)), edges=edges)
+    options["start"] = solved.network
+    return solve(ties, clicks, court, **options, factors=factors)
+
+
+def solve_with_factors(ties: Ties, clicks: ClickedPoints, court: Court, **options: Any) -> Solution:
+    """Do as `solve_by_edges`, with weights and covariance from the residuals.
+
+    The given sigmas of clicks and ties are priors (`variance_components`). A few clicks determine
+    their scatter poorly; the covariance is enlarged for this (`Factors.widening`). `**options` are
+    those of `solve`, without `factors`.
+    """
+    solved = solve_by_edges(ties, clicks, court, **options)
     for _ in range(FACTOR_ROUNDS):
         before = solved.factors
         knowledge = solver.scaled(ties.knowledge, 1 / before.ties)

@@ -7,7 +7,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from courtside.calibration.court import joint_adjustment, resection
+from courtside.calibration.court import joint_adjustment, line_edges, resection
 from courtside.calibration.court.court import ClickedPoints, Court
 from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError
@@ -15,7 +15,7 @@ from courtside.study.errors import InputError
 Found = resection.Linear | resection.Fitted
 # Of the expected scatter: that of a good click. Points alone carry the camera here, and with the
 # whole scatter mirrored points and another court find cameras that nearly fit.
-GOOD = 0.3
+GOOD = 0.43
 NAME = re.compile(r"(dlt|known)(\d+)(-board)?")
 
 
@@ -75,6 +75,7 @@ def calibrate(
             size,
             sigma_px=GOOD * joint_adjustment.click_sigma(click_sigma_px, size),
             xyz_sigma=court.sigma_m[way.points],
+            edges=line_edges.on_lines(court)[way.points],
             name=name,
             **known,
         )

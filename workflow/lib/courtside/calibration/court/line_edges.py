@@ -2,12 +2,16 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration.court.court import ON_EDGE_M, Court
-from courtside.geometry.camera import Camera, undistort
+from courtside.geometry.camera import Camera, project, undistort
+
+LONGEST = 4.0  # ASSUME: times the error across an edge: along edges that cross flat
+STEP_M = 1e-3  # along an edge, for its direction in the picture
 
 
 @dataclass(frozen=True)
@@ -45,6 +49,44 @@ def _at(low: NDArray, high: NDArray, xyz: NDArray) -> tuple[Edge, ...]:
         if near and length > (best[axis][0] if axis in best else 0):
             best[axis] = length, Edge(int(line), axis, float(xyz[axis]), near[0])
     return tuple(best[axis][1] for axis in sorted(best))
+
+
+def crossings(camera: Camera, xyz: NDArray) -> NDArray:
+    """Return the covariance (P, 2, 2) of a click of unit error across each edge of a point.
+
+    The edges of points (P, 3) on the floor lie along the court's axes. Where they cross at a small
+    angle in the picture, a click is inaccurate along them. NaN where the picture does not show
+    their directions.
+    """
+    ends = xyz[:, None] + STEP_M * np.eye(3)[:2]
+    along = project(camera, ends.reshape(-1, 3)).reshape(-1, 2, 2) - project(camera, xyz)[:, None]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        across = along[:, :, ::-1] * [1, -1] / np.linalg.norm(along, axis=2, keepdims=True)
+    information = across.transpose(0, 2, 1) @ across
+    seen = np.isfinite(information).all(axis=(1, 2))
+    extent, axes = np.linalg.eigh(information[seen])
+    found = np.full(information.shape, np.nan)
+    found[seen] = (axes / np.maximum(extent, LONGEST**-2.0)[:, None]) @ axes.transpose(0, 2, 1)
+    return found
+
+
+def click_covariances(camera: Camera, xyz: NDArray, on_edge: NDArray) -> NDArray:
+    """Return `crossings` (P, 2, 2) of the points that lie `on_edge`, (P,) bool; others have 1."""
+    covariances = crossings(camera, xyz)
+    known = on_edge & np.isfinite(covariances).all(axis=(1, 2))
+    return np.where(known[:, None, None], covariances, np.eye(2))
+
+
+def click_variances(camera: Camera, court: Court) -> NDArray:
+    """Return the variance (P, 2) of a click by picture axis, where one across an edge has 1."""
+    covariances = click_covariances(camera, court.xyz, on_lines(court))
+    return np.diagonal(covariances, axis1=1, axis2=2)
+
+
+@lru_cache(maxsize=16)
+def on_lines(court: Court) -> NDArray:
+    """Return which points (P,) bool lie on a painted edge, or the middle of a line."""
+    return np.array([len(edges) > 0 for edges in named(court)], dtype=bool)
 
 
 def post(court: Court, point: int) -> int | None:

@@ -56,11 +56,14 @@ class Clicks:
     sigma_px: float  # of a click per axis
     xyz_sigma: NDArray | None  # (P,): of a point per axis, m; None: exact
     free_lens: bool  # whether f and k1 are found, too
+    shape: NDArray | None = None  # (P, 2, 2): covariance of a click of sigma 1; None: the identity
 
     def of(self, which: NDArray) -> "Clicks":
         """Return the clicks of some points, `which` (P,) bool."""
-        spread = None if self.xyz_sigma is None else self.xyz_sigma[which]
-        return replace(self, xyz=self.xyz[which], xy=self.xy[which], xyz_sigma=spread)
+        spread, shape = (
+            None if each is None else each[which] for each in (self.xyz_sigma, self.shape)
+        )
+        return replace(self, xyz=self.xyz[which], xy=self.xy[which], xyz_sigma=spread, shape=shape)
 
 
 def start(
@@ -133,11 +136,14 @@ def whitened(state: State, clicks: Clicks) -> tuple[NDArray, NDArray] | tuple[No
         by_f = camera.distort(state.dist, normalised)
         parts += [by_f[..., None], (state.K[0, 0] * square * normalised)[..., None]]
     by_step = np.concatenate(parts, axis=2)
-    if clicks.xyz_sigma is None:
+    if clicks.xyz_sigma is None and clicks.shape is None:
         return off / clicks.sigma_px, by_step / clicks.sigma_px
-    spread = by_point @ by_point.transpose(0, 2, 1) * clicks.xyz_sigma[:, None, None] ** 2
+    spread = clicks.sigma_px**2 * (np.eye(2) if clicks.shape is None else clicks.shape)
+    if clicks.xyz_sigma is not None:
+        of_points = by_point @ by_point.transpose(0, 2, 1)
+        spread = of_points * clicks.xyz_sigma[:, None, None] ** 2 + spread
     try:
-        root = np.linalg.inv(np.linalg.cholesky(spread + clicks.sigma_px**2 * np.eye(2)))
+        root = np.linalg.inv(np.linalg.cholesky(spread))
     except np.linalg.LinAlgError:
         return None, None
     return (root @ off[..., None])[..., 0], root @ by_step

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from courtside.calibration.bundle import selection, solver, variance_components
 from courtside.calibration.bundle.problem import IMAGE, LENS
-from courtside.calibration.court import click_checks, joint_adjustment, resection
+from courtside.calibration.court import click_checks, joint_adjustment, line_edges, resection
 from courtside.calibration.court.court import ClickedPoints, Court
 from courtside.calibration.court.joint_adjustment import Solution, Ties
 from courtside.geometry.camera import Camera, project
@@ -67,15 +67,14 @@ def calibrate(
             size,
             sigma_px=sigma_px,
             xyz_sigma=court.sigma_m,
+            edges=line_edges.on_lines(court),
             name=name,
         )
         starts.append(found.camera)
     solved = _solved(_lenses(starts), clicks, court, weights)
     projected = np.stack([project(camera, court.xyz) for camera in solved.cameras])
     clicked = np.stack([np.asarray(clicks[name], float) for name in sizes])
-    crossing = np.array(
-        [[click_checks.crossing_of(c, xyz) for xyz in court.xyz] for c in solved.cameras]
-    )
+    crossing = np.stack([click_checks.crossings(c, court.xyz) for c in solved.cameras])
     unplaced = np.full_like(court.xyz, np.nan)
     table = click_checks.LeaveOneOut(
         court.points, tuple(sizes), unplaced, projected, clicked, crossing
@@ -132,7 +131,7 @@ def _lenses(starts: Sequence[Camera]) -> Ties:
 def _solved(lenses: Ties, clicks: ClickedPoints, court: Court, weights: dict) -> Solution:
     """Adjust all cameras, their clicks weighted by the scatter that the residuals show."""
     options = {**weights, "max_iterations": MAX_ITERATIONS}
-    solved = joint_adjustment.solve(lenses, clicks, court, **options)
+    solved = joint_adjustment.solve_by_edges(lenses, clicks, court, **options)
     for _ in range(ROUNDS):
         before = solved.factors
         found = variance_components.estimate(solved.network, lenses.knowledge, before)

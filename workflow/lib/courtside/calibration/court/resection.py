@@ -1,13 +1,13 @@
 """Calibrate one camera from points at known places: linear (DLT), and by least squares."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from courtside.calibration.bundle.problem import POSE
-from courtside.calibration.court import one_camera
+from courtside.calibration.court import line_edges, one_camera
 from courtside.calibration.point_covariance import MEDIAN_2D
 from courtside.geometry import similarity
 from courtside.geometry.camera import Camera, project
@@ -185,6 +185,7 @@ def nonlinear(
     dist: ArrayLike | None = None,
     sigma_px: float = 1.0,
     xyz_sigma: ArrayLike | None = None,
+    edges: ArrayLike | None = None,
     name: str = "camera",
 ) -> Fitted:
     """Calibrate a camera by robust least squares of the pixel errors, without a start value.
@@ -205,6 +206,8 @@ def nonlinear(
     dist : (5,) float; only with K; zeros by default
     sigma_px : of a good click per axis
     xyz_sigma : (P,) float; how far the points are from `xyz`, standard deviation per axis, m
+    edges : (P,) bool; points at which painted edges along x and y cross: the accepted clicks are
+        then fitted again, less certain along edges that cross flat in the picture; by default none
     """
     if K is None and dist is not None:
         raise ValueError("expected dist only together with K")
@@ -219,12 +222,12 @@ def nonlinear(
             f"camera {name}: expected clicks that fit a camera, found none; check the names of the "
             "points"
         )
-    state, off, _ = one_camera.descend(state, clicks, CAUCHY)
-    shown = np.sqrt(1 - len(parameters) / off.size)  # share of errors that residuals show
-    agree = _agree(np.linalg.norm(off, axis=1), shown)
-    off_px = np.median(np.linalg.norm(one_camera.residuals(state, clicks)[0], axis=1)) / shown
-    _check_agreement(clicks, agree, off_px, size, name)
-    state, _, by_step = one_camera.descend(state, clicks.of(agree), np.inf)
+    state, agree, by_step = _fit(state, clicks, size, name)
+    if edges is not None and np.any(edges):
+        camera = Camera(name, size, state.K, state.dist, state.cam_from_world)
+        shape = line_edges.click_covariances(camera, xyz_seen, np.asarray(edges)[seen])
+        shaped = replace(clicks, shape=shape).of(agree)
+        state, _, by_step = one_camera.descend(state, shaped, np.inf)
     accepted = np.zeros(len(seen), dtype=bool)
     accepted[np.flatnonzero(seen)[agree]] = True
     camera = Camera(name, size, state.K, state.dist, state.cam_from_world)
@@ -233,6 +236,19 @@ def nonlinear(
     covariance = _covariance(by_step.reshape(-1, by_step.shape[2]), name)
     rms_px = float(np.sqrt(np.mean(error_px[accepted] ** 2) / 2))
     return Fitted(camera, covariance, parameters, accepted, error_px, rms_px)
+
+
+def _fit(
+    state: one_camera.State, clicks: one_camera.Clicks, size: tuple[int, int], name: str
+) -> tuple[one_camera.State, NDArray, NDArray]:
+    """Return the fitted state, the clicks (P,) bool that agree, and derivatives in sigmas."""
+    state, off, by_step = one_camera.descend(state, clicks, CAUCHY)
+    shown = np.sqrt(1 - by_step.shape[2] / off.size)  # share of errors that residuals show
+    agree = _agree(np.linalg.norm(off, axis=1), shown)
+    off_px = np.median(np.linalg.norm(one_camera.residuals(state, clicks)[0], axis=1)) / shown
+    _check_agreement(clicks, agree, off_px, size, name)
+    state, _, by_step = one_camera.descend(state, clicks.of(agree), np.inf)
+    return state, agree, by_step
 
 
 def _agree(distance: NDArray, shown: float) -> NDArray:

@@ -287,12 +287,13 @@ def _of_clicks(
     shared = [own.reshape(2 * n, sigma_m.size), bias.reshape(2 * n, 2 * n_images)]
     shared_px = np.concatenate(shared, axis=1)
     scatter = (weights["click_sigma_px"] * size[:, None]) ** 2 * solved.factors.clicks
+    scatter = np.broadcast_to(scatter[:, None] * solved.factors.edges, every.shape)
     return _Observations(
         network,
         residual.ravel(),
         rows.reshape(2 * n, network.n_columns),
         np.einsum("nrk,nkl->nrl", by_point, by_line[point]).reshape(2 * n, by_line.shape[2]),
-        scatter[image].ravel(),
+        scatter[image, point].ravel(),
         shared_px @ shared_px.T,
         np.repeat(np.arange(n), 2),
         np.full(2 * n, weights["click_loss"]),

@@ -71,7 +71,7 @@ def predict(
     angle_deg = widest_angle_deg(fixed, walked, court)
     found = (len(walked), angle_deg, len(ties.xyz), int(min(n_seen)))
     try:
-        solution = joint_adjustment.solve(
+        solution = joint_adjustment.solve_by_edges(
             joint_adjustment.Ties(names, sizes, knowledge), clicks(fixed, court), court, **clicking
         )
     except InputError as error:
