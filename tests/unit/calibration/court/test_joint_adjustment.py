@@ -8,7 +8,7 @@ import pytest
 
 from courtside.calibration.bundle import selection, solver, walk_parts
 from courtside.calibration.court import court as court_files
-from courtside.calibration.court import joint_adjustment, sfm_alignment
+from courtside.calibration.court import joint_adjustment, line_edges, sfm_alignment
 from courtside.study.errors import InputError
 from fixtures.cameras import networks_made
 from fixtures.cameras.scene import opencv_projection
@@ -130,6 +130,32 @@ def test_covariance_is_that_of_repeated_clicks_ties_and_courts():
     assert np.median(ratio) == pytest.approx(1, abs=0.1)
     assert np.abs(ratio - 1).max() < 4 / np.sqrt(2 * n_draws)
     np.testing.assert_allclose(np.mean(of_points, axis=0), 3, atol=4 * np.sqrt(6 / n_draws))
+
+
+def test_clicks_along_flat_edges_weigh_less():
+    truth = made(6, 60)
+    ties, _ = condense(truth, clicks_of(truth))
+    cameras = dict(zip(FIXED, networks_made.fixed_cameras(truth), strict=True))
+    places = np.array([[0.0, 0, 0], [3, 6, 2], [6, 13, 1]])
+    seen, rng = clicks_of(truth, xyz=places), np.random.default_rng(4)
+    root = {
+        name: np.linalg.cholesky(
+            line_edges.click_covariances(camera, COURT.xyz, line_edges.on_lines(COURT))
+        )
+        for name, camera in cameras.items()
+    }
+    errors = []
+    for _ in range(30):
+        noise = {name: (root[name] @ rng.normal(size=(18, 2, 1)))[..., 0] for name in FIXED}
+        clicks = {name: xy + SIGMA_PX * noise[name] for name, xy in clicks_of(truth).items()}
+        solved = [
+            way(ties, clicks, COURT, **GAUSSIAN)
+            for way in (joint_adjustment.solve, joint_adjustment.solve_by_edges)
+        ]
+        off = [sfm_alignment.reconstruct(each.cameras, seen) - places for each in solved]
+        errors.append([np.linalg.norm(each) for each in off])
+    alike, weighed = np.median(errors, axis=0)
+    assert weighed < 0.85 * alike
 
 
 def test_what_the_clicks_in_a_picture_have_in_common_is_found():

@@ -9,6 +9,7 @@ from courtside.calibration.court import court as court_files
 from courtside.calibration.court import line_edges
 from courtside.geometry import camera as cameras
 from fixtures.cameras import court_pictures
+from fixtures.cameras.scene import look_at, opencv_projection
 
 FOLDER = Path(__file__).parents[4] / "config" / "courts"
 COURTS = sorted(FOLDER.glob("*.yaml"))
@@ -52,6 +53,39 @@ def test_the_badminton_court_by_hand():
         for edge in edges:
             low, high = np.sort(court.lines_m[edge.line].reshape(2, 2), axis=0)
             assert (high - low)[edge.axis] == pytest.approx(0.04)
+
+
+def test_a_click_scatters_as_its_two_edges_cross():
+    """Two straight edges, each off across itself by a normal error, meet at the click."""
+    court, rng = court_pictures.badminton(), np.random.default_rng(3)
+    floor = court.xyz[court.xyz[:, 2] == 0]
+    matrix = np.array([[1120.0, 0, 639.5], [0, 1120, 359.5], [0, 0, 1]])
+    for place in ((-18, 6.7, 1.9), (3.05, -14.3, 2.1), (3.05, 6.7, 15.0)):
+        camera = cameras.Camera("c", (1280, 720), matrix, np.zeros(5), look_at(place, (3, 6, 0)))
+        found = line_edges.crossings(camera, floor)
+        for xyz, covariance in zip(floor, found, strict=True):
+            ends = opencv_projection(camera, xyz + 0.01 * np.vstack([np.zeros(3), np.eye(3)[:2]]))
+            along = ends[1:] - ends[0]
+            normals = along[:, ::-1] * [1, -1] / np.linalg.norm(along, axis=1, keepdims=True)
+            drawn = np.linalg.solve(normals, rng.normal(size=(2, 4000))).T
+            extent, axes = np.linalg.eigh(np.cov(drawn.T))
+            expected = (axes * np.minimum(extent, line_edges.LONGEST**2)) @ axes.T
+            np.testing.assert_allclose(covariance, expected, atol=0.12 * extent.max())
+            assert np.linalg.eigvalsh(covariance)[0] == pytest.approx(extent[0], rel=0.1)
+        assert np.isfinite(found).all()
+
+
+def test_points_without_lines_scatter_alike():
+    court = court_pictures.badminton()
+    matrix = np.array([[1120.0, 0, 639.5], [0, 1120, 359.5], [0, 0, 1]])
+    pose = look_at((-18, 6.7, 1.9), (3.05, 6.7, 1.3))
+    camera = cameras.Camera("c", (1280, 720), matrix, np.zeros(5), pose)
+    variances = line_edges.click_variances(camera, court)
+    raised = court.xyz[:, 2] > 0
+    assert (variances[raised] == 1).all()
+    assert variances[~raised].max() > 4 and variances.min() > 0.4
+    places = court_files.of_places("p", court.points, court.xyz)
+    assert (line_edges.click_variances(camera, places) == 1).all()
 
 
 def test_points_on_posts():

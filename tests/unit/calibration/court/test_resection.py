@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from courtside.calibration.court import court, resection
+from courtside.calibration.court import court, line_edges, resection
 from courtside.geometry import camera as cameras
 from courtside.geometry import triangulation
 from courtside.study.errors import InputError
@@ -149,6 +149,29 @@ def test_the_covariance_is_that_of_repeated_clicks(known_lens, court_sigma):
     assert mahalanobis.mean() / len(expected) == pytest.approx(1, abs=0.12)
     ratio = np.sqrt((steps**2).mean(axis=0) / np.diag(expected))
     np.testing.assert_allclose(ratio, 1, atol=0.18)
+
+
+def test_clicks_along_flat_edges_weigh_less():
+    """Drawn as two edges meet: errors are smaller than by equal weights, and as large as stated."""
+    true, n_draws = camera("side"), 60
+    edges = line_edges.on_lines(COURT)
+    shape = line_edges.click_covariances(true, COURT.xyz, edges)
+    root, rng = np.linalg.cholesky(shape), np.random.default_rng(7)
+    alike, weighed = [], []
+    for _ in range(n_draws):
+        noise = SIGMA_PX * (root @ rng.normal(size=(18, 2, 1)))[..., 0]
+        given = COURT.xyz, clicked(true) + noise, SIZE
+        known = {"K": true.K, "dist": true.dist, "sigma_px": SIGMA_PX}
+        alike.append(step_between(true, resection.nonlinear(*given, **known).camera)[:6])
+        found = resection.nonlinear(*given, **known, edges=edges)
+        weighed.append(step_between(true, found.camera)[:6])
+    errors = [
+        np.median(np.linalg.norm(np.array(steps)[:, 3:], axis=1)) for steps in (alike, weighed)
+    ]
+    assert errors[1] < 0.8 * errors[0]
+    stated = resection.nonlinear(COURT.xyz, clicked(true), SIZE, **known, edges=edges).covariance
+    square = np.einsum("ni,ij,nj->n", weighed, np.linalg.inv(stated), weighed)
+    assert square.mean() / 6 == pytest.approx(1, abs=0.25)
 
 
 def step_between(true, found):
