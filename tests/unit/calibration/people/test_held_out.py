@@ -21,7 +21,7 @@ PLACES = np.array([[x, y, 0.0] for x in (-2, 0, 2) for y in (-2, 0, 2)])
 
 def court():
     xy = np.stack([cameras.project(one, PLACES) for one in TRUE])
-    return Clicks(PLACES, np.full(9, 1e-3), xy, np.full(4, 1.0), np.zeros(4), 4.0)
+    return Clicks(PLACES, np.full(9, 1e-3), xy, np.ones((4, 1, 1)), np.zeros(4), 4.0)
 
 
 @pytest.fixture(scope="module")

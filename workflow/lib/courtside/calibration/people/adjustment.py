@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import problem, selection, solver
 from courtside.calibration.bundle.problem import POSE, Network
-from courtside.calibration.court import joint_adjustment
+from courtside.calibration.court import joint_adjustment, line_edges
 from courtside.calibration.court.court import ClickedPoints, Court
 from courtside.calibration.people import prior
 from courtside.calibration.people.views import Seen, placed
@@ -37,9 +37,14 @@ class Clicks:
     xyz: NDArray  # (P, 3): m
     sigma_m: NDArray  # (P,)
     xy: NDArray  # (C, P, 2): px, NaN where not clicked
-    sigma_px: NDArray  # (C,): scatter of a click per axis
+    sigma_px: NDArray  # (C, P, 2), or (C, 1, 1): scatter of a click per axis
     bias_px: NDArray  # (C,): what all clicks in one picture have in common, likewise
     loss_scale: float  # of the Cauchy loss, in sigmas
+
+    @property
+    def clicked(self) -> NDArray:
+        """Which points were clicked, (C, P) bool."""
+        return np.isfinite(self.xy).all(axis=2)
 
     def of(self, points: NDArray) -> "Clicks":
         """Return the clicks of some points, (P,) bool; those of the others are NaN."""
@@ -55,13 +60,15 @@ def court_clicks(
     click_bias_px: float,
     click_loss: float,
 ) -> Clicks:
-    """Return a court's clicks, weighted as by `court.joint_adjustment.solve`."""
+    """Return a court's clicks, weighted as by `court.joint_adjustment.solve_by_edges`."""
     scatter, bias = (
         np.array([joint_adjustment.click_sigma(px, camera.size) for camera in cameras])
         for px in (click_sigma_px, click_bias_px)
     )
+    edges = np.stack([line_edges.click_variances(camera, court) for camera in cameras])
+    sigma_px = scatter[:, None, None] * np.sqrt(edges)
     xy = np.stack([marked[camera.name] for camera in cameras])
-    return Clicks(court.xyz, court.sigma_m, xy, scatter, bias, click_loss)
+    return Clicks(court.xyz, court.sigma_m, xy, sigma_px, bias, click_loss)
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,7 +210,7 @@ def _scatter(network: Network, n_views: int, clicks: Clicks) -> float:
 
     From the median of their residuals; a camera's place and direction take six of them.
     """
-    stated_px = clicks.sigma_px[network.image_idx[n_views:], None]
+    stated_px = np.broadcast_to(clicks.sigma_px, clicks.xy.shape)[clicks.clicked]
     scaled = problem.residuals(network)[n_views:] / stated_px
     left = 1 - len(POSE) * len(network.cam_from_world) / max(scaled.size, 1)
     if left <= 0.25:
@@ -214,9 +221,9 @@ def _scatter(network: Network, n_views: int, clicks: Clicks) -> float:
 
 def _with_clicks(network: Network, clicks: Clicks, scatter: float) -> Network:
     """Return a network with clicks whose sums are as uncertain as scatter and bias make them."""
-    count = np.isfinite(clicks.xy).all(axis=2).sum(axis=1)
-    own_px = scatter * clicks.sigma_px
-    sigma_px = np.sqrt(own_px**2 + count * clicks.bias_px**2)
+    shared = clicks.clicked.sum(axis=1) * clicks.bias_px**2
+    own_px = np.broadcast_to(scatter * clicks.sigma_px, clicks.xy.shape)
+    sigma_px = np.sqrt(own_px**2 + shared[:, None, None])
     return selection.add_control_points(
         network,
         clicks.xyz,
