@@ -33,7 +33,7 @@ def test_a_mapper_has_its_own_options_and_attempts(job):
 
 def test_clicks_have_the_parameters_of_the_adjustment(job):
     found = calibration.clicks(job(**PLAIN))
-    assert found == {"click_sigma_px": 2.5, "click_bias_px": 1.25, "click_loss": 4.0}
+    assert found == {"click_sigma_px": 1.75, "click_bias_px": 1.25, "click_loss": 4.0}
 
 
 def test_crops_are_those_of_cameras_that_have_one(job):

@@ -12,7 +12,7 @@ from courtside.study.targets import together
 SHOT = {"session": "players-tiny", "take": "shot", "calibration": "known18"}
 NET = {**SHOT, "model": "blazepose-static"}
 PLAIN = {"session": "plain-tiny"}
-CLICKS = {"click_sigma_px": 2.5, "click_bias_px": 1.25, "click_loss": 4.0}
+CLICKS = {"click_sigma_px": 1.75, "click_bias_px": 1.25, "click_loss": 4.0}
 TRUE = "results/virtual/players-tiny/takes"
 
 
