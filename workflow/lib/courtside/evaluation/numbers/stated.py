@@ -8,6 +8,7 @@ from pathlib import Path
 from courtside.evaluation.numbers.markers import View
 from courtside.evaluation.numbers.register import ORIGINS, STUDY, Number, Source
 from courtside.study.errors import InputError, StrPath
+from courtside.study.execution.files import atomic
 
 FOLDER = "docs/numbers"  # of their tables, one for each command that writes one, and one by hand
 COLUMNS = ("table", "row", "part", "printed", "unit", "sessions", "n", "n_failed", "origin")
@@ -45,7 +46,7 @@ def joined(rows: Iterable[Sequence[object]]) -> list[list[object]]:
 
 def write(path: StrPath, rows: Iterable[Sequence[object]]) -> None:
     """Write the table of one command; each row has the values of `COLUMNS`, then the command."""
-    with Path(path).open("w", newline="", encoding="utf-8") as stream:
+    with atomic(path) as new, new.open("w", newline="", encoding="utf-8") as stream:
         table = csv.writer(stream, lineterminator="\n")
         table.writerow([*COLUMNS, "command"])
         table.writerows(rows)
@@ -354,6 +355,17 @@ VIEWS = {  # the columns that the documents show of their tables
         )
         for name, first in {"click-model": "halls: clicks", "click-alarms": "clicks"}.items()
     },
+    "halls-coverage": View(
+        "halls-coverage",
+        {
+            "hall": "{row}",
+            **{
+                f"{n} clicks, x1; x2; x3": f"{{n{n}_x1}}; {{n{n}_x2}}; {{n{n}_x3}}"
+                for n in (18, 8, 3)
+            },
+            "with": "{n18_x1.command}",
+        },
+    ),
     "worlds": View(
         "worlds",
         {
