@@ -4,10 +4,11 @@
 
 RESULTS holds the sessions `hall-...` of config/full.yaml. These alone are made by
 `snakemake --configfile config/full.yaml --config 'variations=[]' 'sessions=[hall-a-plain,
-hall-b-plain, hall-corners-plain, hall-a-rich, hall-b-rich, hall-corners-rich]' -- all`, in about an
-hour and a half on two cores. Besides the trials of the study, `PERSONS` others click each hall:
-with ten of them at twice and three times the usual scatter, the coverage of one hall is known to 10
-percentage points only. Writes docs/numbers/other_halls.csv, a source of docs/make_tables.py.
+hall-b-plain, hall-corners-plain, hall-a-rich, hall-b-rich, hall-corners-rich]' --
+results/figures/calibration.csv`, in about a quarter of an hour on two cores. Besides the trials of
+the study, `PERSONS` others click each hall: with the ten of the study at twice and three times the
+usual scatter, the coverage of one hall is known to 10 percentage points only. Writes
+docs/numbers/other_halls.csv, a source of docs/make_tables.py.
 """
 
 import argparse
