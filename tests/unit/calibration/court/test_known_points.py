@@ -151,7 +151,7 @@ def test_mirrored_points_are_named_or_put_the_camera_below_the_floor():
         clicks = {"side": marked["side"][other]}
         try:
             found = known_points.calibrate(
-                way, COURT, clicks, {"side": size}, {}, click_sigma_px=2.5
+                way, COURT, clicks, {"side": size}, {}, click_sigma_px=1.75
             )
         except InputError as error:
             assert "camera side: " in str(error)
@@ -174,7 +174,7 @@ def test_mirrored_points_are_named_where_the_best_fit_is_at_infinity(place, f_px
         for clicks, message in (marked["one"], ""), (marked["one"][other], "points are mirrored"):
             try:
                 known_points.calibrate(
-                    way, COURT, {"one": clicks}, {"one": size}, {}, click_sigma_px=2.5
+                    way, COURT, {"one": clicks}, {"one": size}, {}, click_sigma_px=1.75
                 )
             except InputError as error:
                 assert message and message in str(error)
@@ -200,7 +200,7 @@ def of_eight(change=None, n_draws=15):
             wrong = change(marked[place], rng) if change else []
             try:
                 found = known_points.calibrate(
-                    way, COURT, marked, {place: SIZE}, {}, click_sigma_px=2.5
+                    way, COURT, marked, {place: SIZE}, {}, click_sigma_px=1.75
                 )[place]
             except InputError as error:
                 assert "check the names" in str(error) or "the points are mirrored" in str(error)

@@ -46,6 +46,15 @@ class Clicks:
         """Which points were clicked, (C, P) bool."""
         return np.isfinite(self.xy).all(axis=2)
 
+    def alone_px(self, scatter: float = 1.0) -> NDArray:
+        """Return sigmas (C, P, 2) of clicks as if independent, px, their scatter times `scatter`.
+
+        Their sum in each picture is then as uncertain as scatter and bias make it.
+        """
+        own_px = np.broadcast_to(scatter * self.sigma_px, self.xy.shape)
+        shared = self.clicked.sum(axis=1) * self.bias_px**2
+        return np.sqrt(own_px**2 + shared[:, None, None])
+
     def of(self, points: NDArray) -> "Clicks":
         """Return the clicks of some points, (P,) bool; those of the others are NaN."""
         return replace(self, xy=np.where(points[:, None], self.xy, np.nan))
@@ -221,14 +230,12 @@ def _scatter(network: Network, n_views: int, clicks: Clicks) -> float:
 
 def _with_clicks(network: Network, clicks: Clicks, scatter: float) -> Network:
     """Return a network with clicks whose sums are as uncertain as scatter and bias make them."""
-    shared = clicks.clicked.sum(axis=1) * clicks.bias_px**2
-    own_px = np.broadcast_to(scatter * clicks.sigma_px, clicks.xy.shape)
-    sigma_px = np.sqrt(own_px**2 + shared[:, None, None])
+    sigma_px = clicks.alone_px(scatter)
     return selection.add_control_points(
         network,
         clicks.xyz,
         clicks.sigma_m,
         dict(enumerate(clicks.xy)),
         sigma_px=dict(enumerate(sigma_px)),
-        loss_scale=clicks.loss_scale * float((own_px / sigma_px).mean()),
+        loss_scale=clicks.loss_scale * float((scatter * clicks.sigma_px / sigma_px).mean()),
     )

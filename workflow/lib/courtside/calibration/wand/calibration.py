@@ -259,8 +259,7 @@ def _with_clicks(state: State, cameras, lenses, clicks: Clicks) -> State:
     xy = _straight(cameras, lenses, clicks.xy)
     image, point = np.nonzero(np.isfinite(xy[..., 0]))
     used, at = np.unique(point, return_inverse=True)
-    count = np.isfinite(clicks.xy[..., 0]).sum(axis=1)
-    sigma_px = np.sqrt(clicks.sigma_px**2 + count * clicks.bias_px**2)
+    sigma_px = np.sqrt((clicks.alone_px() ** 2).mean(axis=2))  # one for both axes
     first, blocks = len(bodies.origin), bodies.block.max() + 1
     none = np.zeros(len(used))
     bodies = Bodies(
@@ -280,7 +279,7 @@ def _with_clicks(state: State, cameras, lenses, clicks: Clicks) -> State:
         image_idx=np.concatenate([network.image_idx, image]),
         point_idx=np.concatenate([network.point_idx, len(network.xyz) + at]),
         xy=np.concatenate([network.xy, xy[image, point]]),
-        sigma_px=np.concatenate([network.sigma_px, sigma_px[image]]),
+        sigma_px=np.concatenate([network.sigma_px, sigma_px[image, point]]),
         loss_scale=np.concatenate([network.loss_scale, np.full(len(image), np.inf)]),
     )
     return _in_front(replace(state, bodies=bodies, network=network))
