@@ -12,26 +12,19 @@ docs/numbers/other_halls.csv, a source of docs/make_tables.py.
 """
 
 import argparse
-import sys
 from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "workflow" / "lib"))
-
-from courtside.calibration.court import court as court_files
+import ways_to_calibrate
 from courtside.calibration.court import joint_adjustment
 from courtside.calibration.records import tie_points
 from courtside.evaluation import calibration as trials
 from courtside.evaluation.numbers import calibration, register, stated
-from courtside.records.truth import session_truth
-from people_seen import WEIGHTS
-from virtualgym.session import clicks as clicking
+from ways_to_calibrate import HALLS, ROOT, WEIGHTS
 
 COMMAND = "`python benchmarks/other_halls.py`"
 TABLES = {"calibration": "halls", "calibration-strengths": "halls-strengths"}
-HALLS = [f"hall-{layout}-{look}" for layout in ("a", "b", "corners") for look in ("plain", "rich")]
 PERSONS, SEED, STRENGTHS, SETS = 30, 5, (1, 2, 3), ("all", "eight", "three")
 
 
@@ -43,36 +36,31 @@ def rows(results):
         yield [*about, number.sessions, number.n, number.n_failed, register.BENCHMARK, COMMAND]
 
 
-def trial(ties, real, court, clicks, name):
+def trial(one, ties, clicks, name):
     """Return the error over the volume, cm, and the share of it in the 90 % ellipsoids."""
-    use = np.zeros(len(court.points), dtype=bool)
-    use[court.indices(name)] = True
-    solved = joint_adjustment.solve_with_factors(ties, clicks, court, points=use, **WEIGHTS)
-    found = trials.score(solved.cameras, real.cameras, court, clicks, solved.point_covariance)
+    use = np.zeros(len(one.court.points), dtype=bool)
+    use[one.court.indices(name)] = True
+    solved = joint_adjustment.solve_with_factors(ties, clicks, one.court, points=use, **WEIGHTS)
+    truth = one.real.cameras, one.court
+    found = trials.score(solved.cameras, *truth, clicks, solved.point_covariance)
     return found["volume_rms_cm"], 100 * found["coverage90"]
 
 
 def coverage_rows(results):
     """Yield the rows of the table `halls-coverage`: other persons in each hall, and all halls."""
-    court = court_files.read(ROOT / "config" / "courts" / "badminton.yaml")
     shares = {}
-    for hall in HALLS:
-        real = session_truth.read(results / "virtual" / hall / "truth.npz")
-        ties = tie_points.read(results / hall / "sfm" / "global-n40-o0" / "ties.npz").ties
-        who = {"n_draws": PERSONS, "seed": SEED, "preset": hall.split("-")[-1], "session": hall}
+    for one in (ways_to_calibrate.hall(results, name) for name in HALLS):
+        ties = tie_points.read(results / one.name / "sfm" / "global-n40-o0" / "ties.npz").ties
         for strength in STRENGTHS:
-            persons = clicking.clicks_of_persons(
-                real.cameras, court, real.court_xyz, **who, strength=strength
-            )
-            every = [[trial(ties, real, court, one, name) for name in SETS] for one in persons]
+            persons = one.persons(PERSONS, seed=SEED, strength=strength)
+            every = [[trial(one, ties, clicks, name) for name in SETS] for clicks in persons]
             for name, (error, held) in zip(SETS, np.array(every).transpose(1, 2, 0), strict=True):
-                shares.setdefault((name, strength), []).append(held.mean())
-                part = f"n{len(court.sets[name])}_x{strength}"
+                part = f"n{len(one.court.sets[name])}_x{strength}"
+                shares.setdefault(part, []).append(held.mean())
                 printed = f"{np.median(error):.2f} cm, {held.mean():.0f} %"
-                row = ["halls-coverage", f"`{hall}`", part, printed, "", hall, PERSONS, 0]
+                row = ["halls-coverage", f"`{one.name}`", part, printed, "", one.name, PERSONS, 0]
                 yield [*row, register.BENCHMARK, COMMAND]
-    for (name, strength), each in shares.items():
-        part = f"n{len(court.sets[name])}_x{strength}"
+    for part, each in shares.items():
         printed = f"{np.mean(each):.0f} %, {min(each):.0f} to {max(each):.0f}"
         row = ["halls-coverage", "mean, least and most hall", part, printed, "", ", ".join(HALLS)]
         yield [*row, PERSONS * len(HALLS), 0, register.BENCHMARK, COMMAND]

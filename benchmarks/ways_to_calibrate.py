@@ -91,12 +91,12 @@ class Hall:
         """Width and height of their pictures, px."""
         return {camera.name: camera.size for camera in self.real.cameras}
 
-    def persons(self, n_draws):
-        """Return the court points that drawn persons click."""
+    def persons(self, n_draws, **changes):
+        """Return the court points that drawn persons click; `changes` are of seed or strength."""
         preset = yaml_files.read(ROOT / "config" / "sessions" / f"{self.name}.yaml")["virtual"]
         drawn = {"n_draws": n_draws, "seed": 0, "session": self.name, "preset": preset["preset"]}
         known = self.real.cameras, self.court, self.real.court_xyz
-        return list(clicking.clicks_of_persons(*known, **drawn))
+        return list(clicking.clicks_of_persons(*known, **drawn | changes))
 
 
 def hall(results, name):

@@ -1,7 +1,7 @@
 """Bundle adjustment of a `Network`: Levenberg-Marquardt on images and lenses, points eliminated."""
 
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -173,10 +173,11 @@ def _normal(state: _State, quadratic: Quadratic | None) -> Normal:
         np.where(_along(seen, terms), terms, 0.0) * _along(weight, terms)
         for terms in (residual, by_camera, by_point)
     )
-    full, gradient = _camera_side(state, by_camera, residual, quadratic)
+    columns = network.columns()
+    full, gradient = _camera_side(state, columns, by_camera, residual, quadratic)
     active = _active(network) & (np.diag(full) > 0)
     root, point_gradient = _point_side(network, by_point, residual)
-    coupling = _coupling(network, root, by_point, by_camera, active)
+    coupling = _coupling(network, columns, active, root, by_point, by_camera)
     scaled_gradient = np.einsum("nij,nj->ni", root, point_gradient)
     eliminated: Any = coupling.T @ coupling
     if scipy.sparse.issparse(eliminated):
@@ -231,15 +232,20 @@ def _point_prior(network: Network) -> tuple[NDArray, NDArray]:
 
 
 def _camera_side(
-    state: _State, by_camera: NDArray, residual: NDArray, quadratic: Quadratic | None
+    state: _State,
+    columns: NDArray,
+    by_camera: NDArray,
+    residual: NDArray,
+    quadratic: Quadratic | None,
 ) -> tuple[NDArray, NDArray]:
     """Return information (K, K) and gradient (K,) of images and lenses before elimination."""
     size = state.network.n_columns
     information, gradient = np.zeros((size, size)), np.zeros(size)
-    for seen, columns in _by_image(state.network):
-        rows = by_camera[seen].reshape(-1, len(columns))
-        information[columns[:, None], columns] += rows.T @ rows
-        gradient[columns] += rows.T @ residual[seen].ravel()
+    for seen in _by_image(state.network):
+        own = columns[seen[0]]
+        rows = by_camera[seen].reshape(-1, len(own))
+        information[own[:, None], own] += rows.T @ rows
+        gradient[own] += rows.T @ residual[seen].ravel()
     information[np.diag_indices(size)] += state.inverse_sigma**2
     gradient += state.off * state.inverse_sigma
     if quadratic is not None:
@@ -248,13 +254,11 @@ def _camera_side(
     return information, gradient
 
 
-def _by_image(network: Network) -> Iterator[tuple[NDArray, NDArray]]:
-    """Yield the observations (M',) and the columns (19,) of each image that has observations."""
+def _by_image(network: Network) -> list[NDArray]:
+    """Return the observations (M',) of each image that has some."""
     order = np.argsort(network.image_idx, kind="stable")
     _, first = np.unique(network.image_idx[order], return_index=True)
-    columns = network.columns()
-    for seen in np.split(order, first[1:]) if len(order) else []:
-        yield seen, columns[seen[0]]
+    return np.split(order, first[1:]) if len(order) else []
 
 
 def _point_side(network, by_point, residual) -> tuple[NDArray, NDArray]:
@@ -279,7 +283,12 @@ def _sum_by(index: NDArray, values: NDArray, length: int) -> NDArray:
 
 
 def _coupling(
-    network: Network, root: NDArray, by_point: NDArray, by_camera: NDArray, active: NDArray
+    network: Network,
+    columns: NDArray,
+    active: NDArray,
+    root: NDArray,
+    by_point: NDArray,
+    by_camera: NDArray,
 ) -> "NDArray | scipy.sparse.csr_matrix":
     """Return root @ by_point.T @ by_camera of the active columns, summed by point: (3 N, A).
 
@@ -293,7 +302,7 @@ def _coupling(
     rows = 3 * network.point_idx[:, None, None] + np.arange(3)[None, :, None]
     n_rows, n_columns = 3 * len(network.xyz), np.count_nonzero(active)
     # A last column takes what is not active.
-    place = np.where(active, np.cumsum(active) - 1, n_columns)[network.columns()][:, None, :]
+    place = np.where(active, np.cumsum(active) - 1, n_columns)[columns][:, None, :]
     shape = (n_rows, n_columns + 1)
     if n_rows * shape[1] <= DENSE_ELEMENTS:
         whole = np.bincount(
