@@ -1,5 +1,7 @@
 """Profiles across drawn lines: where they are taken, and that expectation and picture agree."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -90,3 +92,13 @@ def test_the_blur_is_of_the_given_size(camera, court):
     low, high = np.interp([0.159, 0.841], rise[t < 0], t[t < 0])
     assert (high - low) / 2 == pytest.approx(1.5, rel=0.05)
     assert cv2.minMaxLoc(stretch.paint)[1] == pytest.approx(1, abs=2e-3)
+
+
+def test_a_line_whose_end_the_lens_model_does_not_reach_is_not_measured(grey, camera, court):
+    ends, half = line_edges.middle_line(court, 0)
+    strong = replace(camera, dist=np.array([-0.9, 0, 0, 0, 0]))
+    corner = cameras.project(strong, ends[0] - [6.0, 3.0, 0])
+    assert np.isnan(corner).all() and np.isfinite(cameras.project(strong, ends[1])).all()
+    paint = line_edges.paint(strong, court)
+    given = ends, ends[0] - [6.0, 3.0, 0], half, paint, 4.0, BLUR_PX
+    assert line_profiles.sample_stretch(grey, strong, *given) is None

@@ -11,7 +11,7 @@ def test_the_right_camera_explains_most(court, seen):
     view = court_pictures.view_of(court_pictures.pair()[1])
     shift = np.array([[0, 0, 0], [0.3, 0, 0], [0, 1.0, 0], [0, 0, 0.4], [0, 300.0, 0]])
     many = view[np.zeros(5, dtype=int)]
-    many = views.Views(many.rotation, many.centre + shift, many.f_px, many.k1, many.principal)
+    many = views.Views(many.rotation, many.centre + shift, many.f_px, many.division, many.principal)
     found = evidence.score(seen, many, views.samples(court, 0.3), 3.0)
     assert found.share[0] > 0.6
     assert (found.score[0] > 2 * found.score[1:]).all()

@@ -40,6 +40,8 @@ def sample_stretch(
 ) -> Stretch | None:
     """Sample a picture across a stretch of a line; None if too little of it is in the picture.
 
+    None, too, if the lens model does not reach the stretch or its origin.
+
     The true line may be up to `reach_px` from the expected one. The ends (2, 3) of the stretch are
     on the line's middle; the shift is measured at the origin (3,), on the same straight line.
     `half_width_m` (3,) leads from the middle to the edge of the higher coordinate; `blur_px` is the
@@ -64,6 +66,8 @@ def sample_stretch(
     width_px = float(np.median(np.sum(across * normal, axis=1)))
     about = np.median(tangent, axis=0)
     along = (xy - project(camera, origin_m)) @ (about / np.linalg.norm(about))
+    if not np.isfinite([width_px, *along, *normal.ravel()]).all():
+        return None
     half = int(np.ceil((width_px / 2 + MARGIN_PX) / STEP_PX))
     wide = half + int(np.ceil(reach_px / STEP_PX))
     steps = np.arange(-wide, wide + 1)[:, np.newaxis] * STEP_PX

@@ -65,7 +65,12 @@ class _Axis:
 
 
 def find(
-    frame: FloorFrame, ends: NDArray, court: Court, width: float, k1: float, principal: NDArray
+    frame: FloorFrame,
+    ends: NDArray,
+    court: Court,
+    width: float,
+    division: float,
+    principal: NDArray,
 ) -> list[Views]:
     """Return cameras with a floor frame that project lines of a court onto lines of the picture.
 
@@ -84,7 +89,7 @@ def find(
             if len(centre):
                 n = len(centre)
                 rotation = np.broadcast_to(axes.T, (n, 3, 3))
-                lens = np.full(n, frame.f_px), np.full(n, k1)
+                lens = np.full(n, frame.f_px), np.full(n, division)
                 found.append(Views(rotation, centre, *lens, principal))
     return found
 

@@ -16,9 +16,9 @@ REACH_PX = (10.0, 5.0, 3.0)  # per 1280 px of width: across the line, round by r
 STEP_PX, PIXEL_PX = 0.25, 1.0  # of the search, and of the extent of a pixel across a line
 OFF_RAD = np.deg2rad(14.0)
 FEWEST = 12  # samples with a ridge near
-K1_SIGMA, FOCAL_SIGMA = 0.1, 0.7  # of what lenses have; of the focal length in logarithms
+LENS_SIGMA, FOCAL_SIGMA = 0.1, 0.7  # of `division`; of the focal length in logarithms
 EDGE_PX = 0.5  # of a ridge, standard deviation
-STEPS = np.array([0.01] * 3 + [0.2] * 3 + [0.02, 0.02])  # rad, m, ln f, k1
+STEPS = np.array([0.01] * 3 + [0.2] * 3 + [0.02, 0.02])  # rad, m, ln f, division
 
 
 @dataclass(frozen=True)
@@ -32,13 +32,13 @@ class Uncertainty:
 
 def refine(seen: Fields, view: Views, along: Samples) -> Views | None:
     """Fit a camera (`Views` of one) to the ridges near its lines; None if they are too few."""
-    scale, k1 = seen.width / 1280, float(view.k1[0])
+    scale, division = seen.width / 1280, float(view.division[0])
     for reach in REACH_PX:
         for _ in range(2):
             found = _targets(seen, view, along, reach * scale)
             if found is None:
                 return None
-            residuals = _residuals(view, along, found, max(0.25 * reach * scale, 0.5), k1)
+            residuals = _residuals(view, along, found, max(0.25 * reach * scale, 0.5), division)
             change = scipy.optimize.least_squares(
                 residuals, np.zeros(8), loss="soft_l1", x_scale=STEPS, max_nfev=8
             )
@@ -47,13 +47,13 @@ def refine(seen: Fields, view: Views, along: Samples) -> Views | None:
 
 
 def moved(view: Views, change: NDArray) -> Views:
-    """Return a camera turned (rad, world axes), moved (m), zoomed (ln) and with another k1."""
+    """Return a camera turned (rad, world axes), moved (m), zoomed (ln) and with another lens."""
     turn = rotations.rotation_from_rodrigues(change[:3])
     return Views(
         (view.rotation[0] @ turn)[None],
         view.centre + change[3:6],
         view.f_px * np.exp(change[6]),
-        view.k1 + change[7],
+        view.division + change[7],
         view.principal,
     )
 
@@ -64,7 +64,7 @@ def uncertainty(seen: Fields, view: Views, along: Samples, middle_m: NDArray) ->
     if found is None:
         return None
     # Neighbouring samples of one line share their errors.
-    residuals = _residuals(view, along, found, EDGE_PX * 2, float(view.k1[0]))
+    residuals = _residuals(view, along, found, EDGE_PX * 2, float(view.division[0]))
     base, small = residuals(np.zeros(8)), 1e-4 * STEPS
     columns = [(residuals(np.eye(8)[at] * small[at]) - base) / small[at] for at in range(8)]
     slopes = np.stack(columns, axis=1)
@@ -114,13 +114,13 @@ def _targets(seen: Fields, view: Views, along: Samples, reach_px: float) -> _Tar
     return _Targets(at[hit], target, normal[hit], weight)
 
 
-def _residuals(view: Views, along: Samples, found: _Targets, sigma_px: float, k1: float):
+def _residuals(view: Views, along: Samples, found: _Targets, sigma_px: float, division: float):
     places = along.place[found.sample]
 
     def residuals(change: NDArray) -> NDArray:
         trial = moved(view, change)
         off = np.sum((trial.project(places)[0] - found.xy) * found.normal, axis=1)
-        lens = (trial.k1[0] - k1) / K1_SIGMA, change[6] / FOCAL_SIGMA
+        lens = (trial.division[0] - division) / LENS_SIGMA, change[6] / FOCAL_SIGMA
         off = np.nan_to_num(off, nan=50.0) / sigma_px * found.weight
         return np.concatenate([off, lens])
 

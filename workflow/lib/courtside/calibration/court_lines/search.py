@@ -24,9 +24,13 @@ COARSE_PX, FINE_PX = 8.0, 2.5  # per 1280 px of width: tolerance before and afte
 COARSE_SAMPLES, FINE_M = 120, 0.3  # of all lines; between samples of a line
 SHORTLIST, REFINED = 2000, 24  # cameras
 APART_WIDTHS = 0.008  # of the picture: cameras nearer than this see the same
-BARREL = (0.0, 0.07, 0.15)  # share by which lenses pull the picture's corners in; the next if none
+# Share by which lenses pull the picture's corners in; each next one if none before was accepted.
+BARREL = (0.0, 0.07, 0.15, 0.22)
+SETTLED, ROUNDS, STILL_PX = 3, 4, 0.3  # best cameras, refined again until they stay; per 1280 px
 NEIGHBOURS, BESIDE_M, BESIDE_STEP_M = 2, 16.0, 0.15  # the search for a like court beside this
-SURE = 100.0  # score from which other lenses are not tried
+LEAST_SCORE = 100.0  # log likelihood ratio; lines of other things reached 70 to 110
+LEAST_LINE, LEAST_LINES = 0.3, 0.7  # share of a line, and share of the lines in view seen so
+FEWEST_LINES = 3  # along each axis
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,15 +52,13 @@ class Found:
     scale: float  # how many times larger the given picture is
 
 
-def find(
-    image: NDArray, court: Court, lines: str = "light", *, k1: float | None = None, seed: int = 0
-) -> Found:
+def find(image: NDArray, court: Court, lines: str = "light", *, seed: int = 0) -> Found:
     """Find cameras that explain the lines of a court in a picture (H, W, 3) uint8.
 
-    The principal point is assumed to be the picture's centre. `k1` is the lens's if it is known;
-    otherwise several values are tried. Line segments give directions of the floor and focal
-    lengths. Matches of lines in the picture with lines of the court give positions. The lines of
-    the whole court then decide, and the best candidates are refined.
+    The principal point is assumed to be the picture's centre. Several lenses are tried. Line
+    segments give directions of the floor and focal lengths. Matches of lines in the picture with
+    lines of the court give positions. The lines of the whole court then decide, and the best
+    candidates are refined.
     """
     scale = max(1.0, image.shape[1] / WIDEST_PX)
     if scale > 1:
@@ -65,18 +67,35 @@ def find(
         image = cv2.resize(image, size, interpolation=cv2.INTER_AREA)
     seen = evidence.fields(ridges.find(image, lines))
     found: list[Candidate] = []
-    for barrel in BARREL if k1 is None else (0.0,):
-        found += _of_lens(seen, court, barrel, k1, seed)
+    for barrel in BARREL:
+        found += _of_lens(seen, court, barrel, seed)
         found = _different(found, court, seen.width)
-        if found and found[0].score > SURE:
+        if found and not fault(found[0], court):
             break
     return Found(found, seen, image, scale)
 
 
-def _of_lens(seen: Fields, court: Court, barrel: float, k1: float | None, seed: int):
+def fault(one: Candidate, court: Court) -> str:
+    """Return why a candidate is rejected, empty if it is accepted."""
+    if one.score < LEAST_SCORE:
+        return f"the best camera explains too little (score {one.score:.0f} of {LEAST_SCORE:.0f})"
+    low, high = court.line_corners()
+    axis = np.argmin(high - low, axis=1)
+    shown = np.isfinite(one.lines)
+    good = shown & (np.nan_to_num(one.lines) >= LEAST_LINE)
+    if good.sum() < LEAST_LINES * shown.sum():
+        return f"only {good.sum()} of {shown.sum()} lines in view are seen"
+    for number, along in enumerate("yx"):
+        # A court of fewer lines than that along an axis cannot show them.
+        if good[axis == number].sum() < min(FEWEST_LINES, (axis == number).sum()):
+            return f"too few lines along {along} are seen"
+    return ""
+
+
+def _of_lens(seen: Fields, court: Court, barrel: float, seed: int) -> list[Candidate]:
     """Return candidates with one lens."""
     rng, along = np.random.default_rng(seed), views.samples(court, FINE_M)
-    hypotheses = _hypotheses(seen, court, barrel, k1, rng)
+    hypotheses = _hypotheses(seen, court, barrel, rng)
     if hypotheses is None:
         return []
     tolerance = COARSE_PX * seen.width / 1280
@@ -87,10 +106,11 @@ def _of_lens(seen: Fields, court: Court, barrel: float, k1: float | None, seed: 
     found = _refined(seen, court, along, hypotheses, REFINED)
     for one in found[:NEIGHBOURS]:
         found = found + _refined(seen, court, along, _beside(one.view), 4)
-    return found
+    best = sorted(found, key=lambda one: -one.score)[:SETTLED]
+    return found + [_settled(seen, court, along, one) for one in best]
 
 
-def _hypotheses(seen, court, barrel, k1, rng) -> Views | None:
+def _hypotheses(seen, court, barrel, rng) -> Views | None:
     """Return cameras from straight pieces of lines, None if there are none."""
     height, width = seen.ridges.on.shape
     principal = np.array([width - 1, height - 1]) / 2
@@ -101,7 +121,7 @@ def _hypotheses(seen, court, barrel, k1, rng) -> Views | None:
     ends = ends * np.repeat(stretch.reshape(2, -1).T, 2, axis=1)
     found = []
     for frame in floor_frames.find(ends, width, rng):
-        lens = -barrel * (frame.f_px / corner) ** 2 if k1 is None else k1
+        lens = -barrel * (frame.f_px / corner) ** 2
         found += placements.find(frame, ends, court, width, lens, principal)
     return views.join(found) if found else None
 
@@ -123,6 +143,21 @@ def _refined(seen: Fields, court: Court, along: Samples, hypotheses: Views, most
         if view is not None and _possible(view, court):
             found.append(_candidate(seen, court, along, view))
     return sorted(found, key=lambda one: -one.score)
+
+
+def _settled(seen: Fields, court: Court, along: Samples, one: Candidate) -> Candidate:
+    """Return the best of a candidate and its further refinements, until it stays in place."""
+    best, view, scale = one, one.view, seen.width / 1280
+    for _ in range(ROUNDS):
+        before, refined = view, refinement.refine(seen, view, along)
+        if refined is None or not _possible(refined, court):
+            break
+        view = refined
+        best = max(best, _candidate(seen, court, along, view), key=lambda trial: trial.score)
+        moved = np.linalg.norm(view.project(along.place) - before.project(along.place), axis=2)
+        if np.nanmedian(moved) < STILL_PX * scale:
+            break
+    return best
 
 
 def _candidate(seen: Fields, court: Court, along: Samples, view: Views) -> Candidate:

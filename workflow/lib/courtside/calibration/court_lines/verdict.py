@@ -14,14 +14,12 @@ from courtside.calibration.court.court import Court
 from courtside.calibration.court_lines import refinement, search, views
 from courtside.calibration.court_lines.refinement import Uncertainty
 from courtside.calibration.court_lines.search import Candidate, Found
+from courtside.calibration.court_lines.views import Samples
 from courtside.geometry.camera import Camera
 from courtside.records.cameras.click_proposals import EITHER
 
 FOUND, AMBIGUOUS, NOT_FOUND = "found", "ambiguous", "not found"
 # ASSUME: all of these are tuned by hand on development sessions.
-LEAST_SCORE = 100.0  # log likelihood ratio; lines of other things reached 70 to 110
-LEAST_LINE, LEAST_LINES = 0.3, 0.7  # share of a line, and share of the lines in view seen so
-FEWEST_LINES = 3  # along each axis
 MOST_RIVAL, LEAST_MARGIN = 0.92, 30.0  # of the next best: share of the score, and difference
 POSE = np.eye(4)[:3]  # of a camera that was not found
 LIKE_SCORE, WHITER, LEAST_WHITE = 0.4, 1.3, 0.3  # score and whiteness of like courts
@@ -63,7 +61,7 @@ def judge(found: Found, court: Court, name: str, size: tuple[int, int], lines: s
     best = found.candidates[first]
     rival = np.delete(value, first).max(initial=0.0) / paint[first]
     outcome, reason = FOUND, ""
-    if fault := _fault(best, court):
+    if fault := search.fault(best, court):
         outcome, reason = NOT_FOUND, fault
     elif lines == "light" and paint[first] < LEAST_WHITE:
         outcome, reason = AMBIGUOUS, "the lines that fit the court are not white"
@@ -74,27 +72,17 @@ def judge(found: Found, court: Court, name: str, size: tuple[int, int], lines: s
         )
     elif rival > MOST_RIVAL * best.score or best.score - rival < LEAST_MARGIN:
         outcome, reason = AMBIGUOUS, "another place of the camera explains the lines nearly as well"
-    camera = views.to_camera(best.view, name, size, found.scale)
     along = views.samples(court, search.FINE_M)
+    camera = views.to_camera(best.view, name, size, found.scale, _reach_px(found, best, along))
     sure = refinement.uncertainty(found.seen, best.view, along, np.array([*court.size_m / 2, 0]))
     return Verdict(outcome, reason, camera, best.score, rival, sure, symmetric)
 
 
-def _fault(best: Candidate, court: Court) -> str:
-    """Return why a candidate is rejected, empty if it is accepted."""
-    if best.score < LEAST_SCORE:
-        return f"the best camera explains too little (score {best.score:.0f} of {LEAST_SCORE:.0f})"
-    low, high = court.line_corners()
-    axis = np.argmin(high - low, axis=1)
-    shown = np.isfinite(best.lines)
-    good = shown & (np.nan_to_num(best.lines) >= LEAST_LINE)
-    if good.sum() < LEAST_LINES * shown.sum():
-        return f"only {good.sum()} of {shown.sum()} lines in view are seen"
-    for number, along in enumerate("yx"):
-        # A court of fewer lines than that along an axis cannot show them.
-        if good[axis == number].sum() < min(FEWEST_LINES, (axis == number).sum()):
-            return f"too few lines along {along} are seen"
-    return ""
+def _reach_px(found: Found, best: Candidate, along: Samples) -> float:
+    """Return how far from the principal point lines are in the picture, px."""
+    place = best.view.project(along.place)[0]
+    inside = ((place > 0) & (place < found.image.shape[1::-1])).all(axis=1)
+    return float(np.linalg.norm(place[inside] - best.view.principal, axis=1).max(initial=1.0))
 
 
 def _has_like(candidates: list[Candidate], best: Candidate, paint: NDArray, court: Court) -> bool:
@@ -104,7 +92,7 @@ def _has_like(candidates: list[Candidate], best: Candidate, paint: NDArray, cour
         one.score > LIKE_SCORE * best.score
         and white * WHITER > own
         and _is_beside(one, best, court)
-        and not _fault(one, court)
+        and not search.fault(one, court)
         for one, white in zip(candidates, paint, strict=True)
     )
 

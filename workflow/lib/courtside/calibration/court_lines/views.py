@@ -10,24 +10,28 @@ from courtside.calibration.court.court import Court
 from courtside.geometry.camera import Camera
 
 NEAREST_M = 0.3  # ASSUME: nothing nearer is seen
-LEAST_SLOPE = 0.2  # of the lens model: beyond, it soon folds back
+FIT_STEPS = 100  # radii at which two lens models are made alike
 ALIKE_M = 0.001  # rounding: lines nearer than this, after half a turn of the court, are one
 
 
 @dataclass(frozen=True, eq=False)
 class Views:
-    """Cameras (B) with square pixels, one principal point and k1 alone."""
+    """Cameras (B) with square pixels, one principal point and the division model of lenses.
+
+    A point at the distance r from the axis is seen at q, where r = q / (1 + division q^2)
+    (Fitzgibbon 2001). For small distortion that is k1 alone; it also holds for wide lenses.
+    """
 
     rotation: NDArray  # (B, 3, 3): from the world
     centre: NDArray  # (B, 3): in the world, m
     f_px: NDArray  # (B,)
-    k1: NDArray  # (B,)
+    division: NDArray  # (B,): on the z = 1 plane; negative: barrel
     principal: NDArray  # (2,): px
 
     def __getitem__(self, which: NDArray | slice | list[int]) -> "Views":
         """Return some of the cameras."""
         return Views(
-            self.rotation[which], self.centre[which], self.f_px[which], self.k1[which],
+            self.rotation[which], self.centre[which], self.f_px[which], self.division[which],
             self.principal,
         )  # fmt: skip
 
@@ -42,27 +46,43 @@ class Views:
         in_cam -= (self.rotation[:, :, 2] * self.centre[:, 2:])[:, None]
         depth = np.where(in_cam[..., 2:] > NEAREST_M, in_cam[..., 2:], np.nan)
         place = in_cam[..., :2] / depth
-        bent = self.k1[:, None, None] * np.sum(place**2, axis=-1, keepdims=True)
-        place = np.where(1 + 3 * bent > LEAST_SLOPE, place * (1 + bent), np.nan)
+        bent = 4 * self.division[:, None, None] * np.sum(place**2, axis=-1, keepdims=True)
+        with np.errstate(invalid="ignore"):
+            place *= 2 / (1 + np.sqrt(1 - bent))
         return place * self.f_px[:, None, None] + self.principal
 
 
 def join(views: list[Views]) -> Views:
     """Return all cameras of several `Views` of one picture."""
-    rows = ("rotation", "centre", "f_px", "k1")
-    rotation, centre, f_px, k1 = (
+    rows = ("rotation", "centre", "f_px", "division")
+    rotation, centre, f_px, division = (
         np.concatenate([getattr(one, row) for one in views]) for row in rows
     )
-    return Views(rotation, centre, f_px, k1, views[0].principal)
+    return Views(rotation, centre, f_px, division, views[0].principal)
 
 
-def to_camera(view: Views, name: str, size: tuple[int, int], scale: float = 1.0) -> Camera:
-    """Return the only camera of `Views` for a picture of a size, `scale` times larger."""
+def to_camera(
+    view: Views, name: str, size: tuple[int, int], scale: float, within_px: float
+) -> Camera:
+    """Return the only camera of `Views` for a picture of a size, `scale` times larger.
+
+    Its k1 to k3 are fitted to the division model, at most `within_px` (of the picture of `Views`)
+    from the principal point.
+    """
     matrix = np.diag([view.f_px[0] * scale, view.f_px[0] * scale, 1.0])
     matrix[:2, 2] = (view.principal + 0.5) * scale - 0.5
     rotation = view.rotation[0]
     pose = np.column_stack([rotation, -rotation @ view.centre[0]])
-    return Camera(name, size, matrix, np.array([view.k1[0], 0, 0, 0, 0]), pose)
+    k1, k2, k3 = _polynomial(float(view.division[0]), within_px / float(view.f_px[0]))
+    return Camera(name, size, matrix, np.array([k1, k2, 0, 0, k3]), pose)
+
+
+def _polynomial(division: float, reach: float) -> NDArray:
+    """Return k1, k2, k3 (3,) nearest to the division model, up to where it shows points."""
+    seen = np.linspace(0, reach, FIT_STEPS)
+    away = seen / (1 + division * seen**2)
+    powers = np.column_stack([away**3, away**5, away**7])
+    return np.linalg.lstsq(powers, seen - away, rcond=None)[0]
 
 
 @dataclass(frozen=True, eq=False)
