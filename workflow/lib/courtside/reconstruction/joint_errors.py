@@ -92,7 +92,8 @@ def state(
     covariance = points.covariance_2d[:, :, at]
     more = recorded * np.array([RECORDED_M[joint.split("_")[1]] ** 2 for joint in skeleton.JOINTS])
     own = np.trace(covariance, axis1=-2, axis2=-1) / 3 + more
-    beyond = [scipy.stats.chi2.sf(OUTLIER_M**2 / (own + v), 3) for v in (good, model.sigma_m**2)]
+    # The upper tail of chi-squared; `scipy.stats` has it too, but takes half a second to import.
+    beyond = [scipy.special.chdtrc(3, OUTLIER_M**2 / (own + v)) for v in (good, model.sigma_m**2)]
     known = np.isfinite(covariance).all(axis=(-2, -1))
     outlier, network = points.outlier.copy(), points.covariance_network.copy()
     outlier[:, :, at] = np.where(known, (1 - share) * beyond[0] + share * beyond[1], np.nan)
