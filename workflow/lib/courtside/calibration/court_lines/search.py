@@ -1,5 +1,6 @@
 """The cameras that explain the lines of a picture best."""
 
+import itertools
 from dataclasses import dataclass, replace
 
 import cv2
@@ -24,8 +25,9 @@ COARSE_PX, FINE_PX = 8.0, 2.5  # per 1280 px of width: tolerance before and afte
 COARSE_SAMPLES, FINE_M = 120, 0.3  # of all lines; between samples of a line
 SHORTLIST, REFINED = 2000, 24  # cameras
 APART_WIDTHS = 0.008  # of the picture: cameras nearer than this see the same
-# Share by which lenses pull the picture's corners in; each next one if none before was accepted.
-BARREL = (0.0, 0.07, 0.15, 0.22)
+# Share by which lenses pull the picture's corners in, and how often the random search is repeated:
+# each next one, and each next time, if no camera before was accepted.
+BARREL, DRAWS = (0.0, 0.07, 0.15, 0.22), 2
 SETTLED, ROUNDS, STILL_PX = 3, 4, 0.3  # best cameras, refined again until they stay; per 1280 px
 NEIGHBOURS, BESIDE_M, BESIDE_STEP_M = 2, 16.0, 0.15  # the search for a like court beside this
 LEAST_SCORE = 100.0  # log likelihood ratio; lines of other things reached 70 to 110
@@ -67,8 +69,8 @@ def find(image: NDArray, court: Court, lines: str = "light", *, seed: int = 0) -
         image = cv2.resize(image, size, interpolation=cv2.INTER_AREA)
     seen = evidence.fields(ridges.find(image, lines))
     found: list[Candidate] = []
-    for barrel in BARREL:
-        found += _of_lens(seen, court, barrel, seed)
+    for draw, barrel in itertools.product(range(DRAWS), BARREL):
+        found += _of_lens(seen, court, barrel, seed + draw)
         found = _different(found, court, seen.width)
         if found and not fault(found[0], court):
             break
