@@ -6,7 +6,7 @@ views: Views, Samples: many cameras at once, and points along a court's lines
 evidence: fields, score, Evidence: the share of a court's lines that the picture shows
 placements: find: camera positions that project lines of the court onto lines of the picture
 refinement: refine, uncertainty: a camera adjusted until the lines fit, and its uncertainty
-search: find, Candidate: the cameras that explain a picture best
+search: find, fault, Candidate: the cameras that explain a picture best, and why one is rejected
 edges: measure, Edges: painted lines measured in a picture, stretch by stretch
 walk_and_lines: of_pictures, LineConstraints: cameras of a walk adjusted together with lines
 verdict: judge, Verdict: found, ambiguous or not found, and why; ends of symmetric courts
