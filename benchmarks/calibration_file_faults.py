@@ -4,9 +4,10 @@
 
 SESSION is a virtual session whose takes were detected. For each seed the true cameras are written
 as a file would have them, one of them spoilt, and judged by clicked court points (8 of those that
-two cameras see, 1 px of scatter), by the network's own keypoints, and by both. For each fault the
-table gives how many were warned of, in how many the camera was named, and in how many the camera
-and what is wrong with it. A warning without a fault is a false alarm.
+two cameras see, 1 px of scatter), by the network's own keypoints, by both, and by the painted lines
+of the static pictures. For each fault the table gives how many were warned of, in how many the
+camera was named, and in how many the camera and what is wrong with it. A warning without a fault is
+a false alarm. Without TAKE, painted lines alone.
 """
 
 import argparse
@@ -14,20 +15,24 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pandas as pd
 from scipy.spatial.transform import Rotation
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
 from courtside.calibration.court import court as court_files
-from courtside.calibration.file_check import faults, residuals, verdict
+from courtside.calibration.court_lines import search
+from courtside.calibration.court_lines import verdict as court_verdict
+from courtside.calibration.file_check import court_place, faults, residuals, verdict
 from courtside.geometry import camera as camera_models
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.records.truth import session_truth
 from courtside.study.configuration import yaml_files
 
 ROOT = Path(__file__).parents[1]
-MODEL = "blazepose-full"
+MODEL = "blazepose-heavy-flip"
+LINES = yaml_files.read(ROOT / "config" / "config.yaml")["propose_court_points"]
 CLICK_PX, N_POINTS, SEEN = 1.0, 8, 0.8
 LEAST_SHIFT_PX = 6.0  # a principal point mirrored by less is not planted
 KINDS = {  # what a warning must say
@@ -37,6 +42,7 @@ KINDS = {  # what a warning must say
     "focal length 5 %": "focal length",
     "turned by 0.3 degrees": "direction",
     "turned by 1 degree": "direction",
+    "turned by 1 degree, focal length 3 %": "direction and focal length",
     "moved by 5 cm, 0.5 degrees": "place",
     "moved by 20 cm, 0.5 degrees": "place",
     "exchanged": "exchanged",
@@ -48,19 +54,18 @@ KINDS = {  # what a warning must say
 def plant(cameras, kind, rng):
     """Return cameras with a fault, and the name of the spoilt one."""
     at = int(rng.integers(len(cameras)))
-    spoilt, one = list(cameras), cameras[at]
+    spoilt, one, n = list(cameras), cameras[at], len(cameras)
     if kind == "mirrored":
-        ways = [(k, axis) for k in range(len(cameras)) for axis in (0, 1)]
+        ways = [(k, axis) for k in range(n) for axis in (0, 1)]
         far = [way for way in ways if shift_px(cameras[way[0]], way[1]) >= LEAST_SHIFT_PX]
         at, axis = far[rng.integers(len(far))]
         spoilt[at] = faults.mirrored_point(cameras[at], axis)
     elif kind.startswith("focal"):
-        matrix = one.K.copy()
-        matrix[[0, 1], [0, 1]] *= 1 + rng.choice([-1, 1]) * float(kind.split()[2]) / 100
-        spoilt[at] = replace(one, K=matrix)
+        spoilt[at] = zoomed(one, rng.choice([-1, 1]) * float(kind.split()[2]))
     elif kind.startswith("turned"):
         vector = direction(rng) * np.radians(float(kind.split()[2]))
-        spoilt[at] = camera_models.turned(one, vector)
+        percent = rng.choice([-1, 1]) * float(kind.split()[-2]) if "%" in kind else 0.0
+        spoilt[at] = camera_models.turned(zoomed(one, percent), vector)
     elif kind.startswith("moved"):
         pose = one.cam_from_world.copy()
         pose[:, :3] = (
@@ -70,7 +75,7 @@ def plant(cameras, kind, rng):
         pose[:, 3] = -pose[:, :3] @ centre_m
         spoilt[at] = replace(one, cam_from_world=pose)
     elif kind == "exchanged":
-        other = (at + 1) % len(cameras)
+        other = (at + 1) % n
         spoilt[at] = replace(cameras[other], name=one.name)
         spoilt[other] = replace(one, name=cameras[other].name)
     elif kind == "picture size":
@@ -78,6 +83,12 @@ def plant(cameras, kind, rng):
     elif kind == "picture turned":
         spoilt[at] = faults.turned_picture(one, 2)
     return spoilt, cameras[at].name
+
+
+def zoomed(camera, percent):
+    matrix = camera.K.copy()
+    matrix[[0, 1], [0, 1]] *= 1 + percent / 100
+    return replace(camera, K=matrix)
 
 
 def shift_px(camera, axis):
@@ -107,31 +118,51 @@ def detected(folder, take, cameras):
     return [view.xy[0][:n_frames, joints] for view in views]
 
 
+def painted(folder, cameras, court):
+    """Return the court's points (C, P, 2) px that painted lines of the static pictures show."""
+    xy = np.full((len(cameras), len(court.points), 2), np.nan)
+    for at, camera in enumerate(cameras):
+        image = cv2.imread(str(folder / "static" / f"{camera.name}.png"))
+        best = search.find(image, court, LINES["lines"])
+        judged = court_verdict.judge(best, court, camera.name, camera.size, LINES["lines"])
+        reach = {"search_px": LINES["search_share"] * camera.size[0], "lines": LINES["lines"]}
+        limits = reach | {"max_sigma_px": LINES["max_sigma_px"]}
+        xy[at] = court_verdict.proposed(judged, image, court, **limits).xy
+    return xy
+
+
+def said(kind, by, name, judged):
+    """Return what a verdict says of one planted fault."""
+    line = " ".join(one.what for one in judged.faults) or " ".join(judged.warnings)
+    named = name in line
+    right = named and bool(judged.faults) and KINDS[kind] in line
+    warned = bool(judged.warnings)
+    return {"kind": kind, "by": by, "n": 1, "warned": warned, "camera": named, "fault": right}
+
+
 def trial(kind, cameras, xyz, views, seed):
-    """Yield what was said of one planted fault, by what the cameras were judged by."""
+    """Yield what was said of one planted fault, by clicked points and people."""
     rng = np.random.default_rng([seed, list(KINDS).index(kind)])
     spoilt, name = plant(cameras, kind, rng)
     static, people = clicked(cameras, xyz, rng), residuals.of_people(views)
     by = {"static": (static, None), "people": (None, people), "both": (static, people)}
     for what, data in by.items():
         judged = verdict.judge(spoilt, verdict.Seen(*data), residuals.height_px(views))
-        line = " ".join(one.what for one in judged.faults) or " ".join(judged.warnings)
-        named = name in line
-        yield {
-            "kind": kind,
-            "by": what,
-            "n": 1,
-            "warned": bool(judged.warnings),
-            "camera": named,
-            "camera_and_parameter": named and bool(judged.faults) and KINDS[kind] in line,
-        }
+        yield said(kind, what, name, judged)
+
+
+def by_lines(kind, cameras, court, lines, seed):
+    """Return what was said of the same fault by painted lines."""
+    rng = np.random.default_rng([seed, list(KINDS).index(kind)])
+    spoilt, name = plant(cameras, kind, rng)
+    return said(kind, "lines", name, court_place.judge(spoilt, lines, court, either_end=True))
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("results", type=Path)
     parser.add_argument("session")
-    parser.add_argument("takes", nargs="+")
+    parser.add_argument("takes", nargs="*")
     parser.add_argument("--seeds", type=int, default=6)
     parser.add_argument("--cameras", nargs="*", help="only these")
     parser.add_argument("--kinds", nargs="*", choices=KINDS, default=list(KINDS))
@@ -141,9 +172,18 @@ def main():
     court = court_files.read(ROOT / "config" / "courts" / f"{session['court']}.yaml")
     real = session_truth.read(given.results / "virtual" / given.session / "truth.npz")
     cameras = [c for c in real.cameras if c.name in (given.cameras or session["cameras"])]
-    rows = []
+    folder = given.results / given.session
+    lines = painted(folder, cameras, court)
+    print(
+        f"court found in {np.isfinite(lines[..., 0]).any(axis=1).sum()} of {len(cameras)} pictures"
+    )
+    rows = [
+        by_lines(kind, cameras, court, lines, seed)
+        for kind in given.kinds
+        for seed in range(given.seeds)
+    ]
     for take in given.takes:
-        views = detected(given.results / given.session, take, cameras)
+        views = detected(folder, take, cameras)
         for kind in given.kinds:
             for seed in range(given.seeds):
                 rows += trial(kind, cameras, court.xyz, views, seed)

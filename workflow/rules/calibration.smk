@@ -38,6 +38,8 @@ rule check_cameras:
         cameras_toml=paths.part(paths.CAMERAS, calibration="file"),
         static_csv=lambda w: session_of(w).static_points or [],
         seen=of_job(calibration.checked_files),
+        court_yaml=of_job(calibration.court_of_file),
+        proposals_csv=of_job(calibration.found_court),
     output:
         check_json=paths.part(paths.CALIBRATION_CHECK, suffix="json"),
         check_csv=paths.part(paths.CALIBRATION_CHECK, suffix="csv"),
@@ -288,7 +290,7 @@ rule propose_court_points:
 
 rule find_court:
     input:
-        pictures=of_job(calibration.each_fixed, paths.STATIC),
+        pictures=of_job(calibration.of_hall),
         court_yaml=of_job(Job.court_file),
     output:
         proposals_csv=paths.part(paths.FOUND_COURT, part="proposals.csv"),

@@ -7,6 +7,7 @@ import pytest
 from courtside.study import paths
 from courtside.study.errors import InputError
 from courtside.study.jobs import calibration
+from courtside.study.jobs.job import Job
 
 PLAIN = {"session": "plain-tiny"}
 
@@ -168,6 +169,22 @@ def test_a_calibration_file_is_checked_by_what_cameras_see(job):
     }
     files = calibration.checked_files(job(session="walk-4cams-tiny"))
     assert files == [*take["pose2d"], take["sync"], take["people"]]
+
+
+def test_painted_lines_check_a_file_where_all_cameras_film_the_court(job):
+    one = job(session="walk-4cams-tiny")
+    assert calibration.found_court(one) == calibration.court_of_file(one) == []
+    session = replace(one.session, court="badminton")
+    sessions = {**one.study.sessions, session.name: session}
+    shown = Job(replace(one.study, sessions=sessions), one.wildcards)
+    found = "results/walk-4cams-tiny/calibration/court_lines/proposals.csv"
+    assert calibration.found_court(shown) == found
+    assert str(calibration.court_of_file(shown)).endswith("courts/badminton.yaml")
+    folder = "results/walk-4cams-tiny"
+    assert calibration.of_hall(shown)[2:] == [
+        f"{folder}/static/cam03.png",
+        f"{folder}/takes/balancing/background/cam04.png",
+    ]
 
 
 def test_scales_are_those_of_cameras_whose_videos_are_scaled(job):

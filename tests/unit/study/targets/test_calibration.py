@@ -109,3 +109,14 @@ def test_calibration_files_that_are_used_are_checked(study):
     assert not calibration.checks_file(empty)
     assert calibration.checks_file(replace(empty, static_points="points.csv"))
     assert not calibration.checks_file(study.sessions["players-tiny"])
+
+
+def test_painted_lines_check_a_file_where_all_cameras_film_the_court(study):
+    session = study.sessions["walk-4cams-tiny"]
+    assert not session.shows_court()
+    on_court = replace(session, court="badminton")
+    assert on_court.shows_court()
+    empty = replace(on_court, takes={}, static_points=None)
+    assert not calibration.checks_file(empty)
+    filmed = {name: replace(one, static="s.mp4") for name, one in session.cameras.items()}
+    assert calibration.checks_file(replace(empty, cameras=filmed))

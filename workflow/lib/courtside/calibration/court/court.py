@@ -41,6 +41,12 @@ class Court:
         ends = self.lines_m[:, :2], self.lines_m[:, 2:]
         return np.minimum(*ends), np.maximum(*ends)
 
+    def other_end(self) -> NDArray:
+        """Return the index of the point to which half a turn brings each one (P,); -1: none."""
+        turned = np.array([*self.size_m, 0.0]) + self.xyz * [-1, -1, 1]
+        apart_m = np.linalg.norm(turned[:, None] - self.xyz, axis=-1)
+        return np.where(apart_m.min(axis=1) < ON_EDGE_M, apart_m.argmin(axis=1), -1)
+
     def indices(self, chosen: str | Sequence[str]) -> NDArray:
         """Return the indices in `points` of a set, by its name, or of some points, (n,) int."""
         names = self.sets[chosen] if isinstance(chosen, str) else chosen

@@ -110,25 +110,33 @@ def turned_picture(camera: Camera, turns: int) -> Camera:
     return camera if turns % 2 == 0 else replace(camera, size=(height, width))
 
 
-def fitted(cameras: Sequence[Camera], at: int, xyz: NDArray, xy: NDArray) -> Iterator[Fault]:
+@dataclass(frozen=True)
+class Way:
+    """Numbers of a camera that may be wrong together."""
+
+    n_free: int
+    name: str
+    advice: str
+    change: Callable[[Camera, NDArray], Camera]  # the camera changed by so many numbers
+
+
+def fitted(
+    cameras: Sequence[Camera], at: int, xyz: NDArray, xy: NDArray, ways: Sequence[Way]
+) -> Iterator[Fault]:
     """Yield the faults with free numbers that camera number `at` may have, fitted.
 
     `xyz` (N, 3) are points that the other cameras see, `xy` (N, 2) px this camera's views of them.
     """
     camera = cameras[at]
     seen = np.isfinite(xyz).all(axis=-1) & np.isfinite(xy).all(axis=-1)
-    ways: tuple[tuple[int, str, str, Callable[[Camera, NDArray], Camera]], ...] = (
-        (1, "focal length", "calibrate its lens again", _focal),
-        (3, "direction or principal point", "calibrate it again: it was turned", _turned),
-        (6, "place and direction", "calibrate it again: it was moved", _moved),
-    )
-    for n_free, name, advice, change in ways:
-        if seen.sum() * 2 < n_free + 4:
+    for way in ways:
+        if seen.sum() * 2 < way.n_free + 4:
             continue
-        mended = _fit(camera, xyz[seen], xy[seen], n_free, change)
-        what = f"the {name} of camera {camera.name}"
-        what += f" is {_percent(camera, mended)}" if n_free == 1 else " is wrong"
-        yield Fault(what, advice, _put(cameras, at, mended), n_free)
+        mended = fit(camera, xyz[seen], xy[seen], way)
+        what = f"the {way.name} of camera {camera.name}"
+        are = "are" if " and " in way.name else "is"
+        what += f" is {_percent(camera, mended)}" if way.n_free == 1 else f" {are} wrong"
+        yield Fault(what, way.advice, _put(cameras, at, mended), way.n_free)
 
 
 def _percent(camera: Camera, mended: Camera) -> str:
@@ -136,21 +144,18 @@ def _percent(camera: Camera, mended: Camera) -> str:
     return f"{abs(off):.1f} % too {'long' if off > 0 else 'short'}"
 
 
-def _fit(
-    camera: Camera,
-    xyz: NDArray,
-    xy: NDArray,
-    n_free: int,
-    change: Callable[[Camera, NDArray], Camera],
-) -> Camera:
-    def residuals(free: NDArray) -> NDArray:
-        return np.nan_to_num(project(change(camera, free), xyz) - xy, nan=1e3).ravel()
+def fit(camera: Camera, xyz: NDArray, xy: NDArray, way: Way) -> Camera:
+    """Fit the numbers of a camera to views (N, 2) px of points (N, 3); some may be outliers."""
 
-    scale_px = max(float(np.median(np.abs(residuals(np.zeros(n_free))))) / 3, 1.0)
+    def residuals(free: NDArray) -> NDArray:
+        return np.nan_to_num(project(way.change(camera, free), xyz) - xy, nan=1e3).ravel()
+
+    start = np.zeros(way.n_free)
+    scale_px = max(float(np.median(np.abs(residuals(start)))) / 3, 1.0)
     found = scipy.optimize.least_squares(
-        residuals, np.zeros(n_free), loss="soft_l1", f_scale=scale_px, max_nfev=30
+        residuals, start, loss="soft_l1", f_scale=scale_px, max_nfev=30
     )
-    return change(camera, found.x)
+    return way.change(camera, found.x)
 
 
 def _focal(camera: Camera, free: NDArray) -> Camera:
@@ -169,3 +174,22 @@ def _moved(camera: Camera, free: NDArray) -> Camera:
     pose = moved.cam_from_world.copy()
     pose[:, 3] += free[3:]
     return replace(camera, cam_from_world=pose)
+
+
+def _turned_zoomed(camera: Camera, free: NDArray) -> Camera:
+    return _focal(_turned(camera, free), free[3:])
+
+
+def _lens(camera: Camera, free: NDArray) -> Camera:
+    dist = camera.dist.copy()
+    dist[0] += free[1]
+    return replace(_focal(camera, free), dist=dist)
+
+
+FOCAL = Way(1, "focal length", "calibrate its lens again", _focal)
+TURNED = Way(3, "direction or principal point", "calibrate it again: it was turned", _turned)
+ZOOMED = Way(
+    4, "direction and focal length", "calibrate it again: it was turned and zoomed", _turned_zoomed
+)
+MOVED = Way(6, "place and direction", "calibrate it again: it was moved", _moved)
+LENS = Way(2, "focal length and distortion", "calibrate its lens again", _lens)

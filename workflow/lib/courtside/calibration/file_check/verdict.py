@@ -19,6 +19,7 @@ from courtside.geometry.camera import Camera
 FEWEST_STATIC, FEWEST_JOINTS = 4, 60  # ASSUME: fewer say nothing
 FLOOR_PX = 0.5  # ASSUME: below, residuals say nothing: clicks and networks are no better
 PRICE = {0: 0.05, 1: 0.1, 3: 0.2, 6: 0.3}  # ASSUME: of a fault, by its free numbers
+FREE = (faults.FOCAL, faults.TURNED, faults.MOVED)
 MOST_MIRRORED = 8  # coordinates mirrored together are tried up to so many: 256 ways
 # ASSUME: the least gain of an explanation without and with free numbers; and what is too much
 # without an explanation: of static points as a share of the longer side of the picture, of joints
@@ -176,7 +177,7 @@ def _fitted(start: _Explained, seen: Seen) -> list[_Explained]:
     xy, found, cameras = seen.views(), [], start.cameras
     for at in range(len(cameras) if len(cameras) >= 3 else 0):
         xyz = residuals.placed_by_others(cameras, xy, at)
-        for one in faults.fitted(cameras, at, xyz, xy[at]):
+        for one in faults.fitted(cameras, at, xyz, xy[at], FREE):
             score = seen.cost(one.cameras) + PRICE[one.n_free]
             found.append(_Explained(one.cameras, score, [one]))
     return found

@@ -17,6 +17,17 @@ def each_fixed(job: Job, pattern: str) -> list[str]:
     return job.of_each(pattern, camera=job.session.cameras)
 
 
+def of_hall(job: Job) -> list[str]:
+    """Return a picture of the hall by each fixed camera: its static one, or of its first take."""
+    session = job.session
+    return [
+        job.fill(paths.STATIC, camera=name)
+        if camera.static
+        else job.fill(paths.BACKGROUND, camera=name, take=session.take_of_hall(name))
+        for name, camera in session.cameras.items()
+    ]
+
+
 def of_full_size(job: Job) -> list[str]:
     """Return of each fixed camera a picture or video of the size that its clicks are in."""
     session = job.session
@@ -150,6 +161,17 @@ def files_of(takes_seen: list[dict[str, Any]]) -> list[str]:
 def checked_files(job: Job) -> list[str]:
     """Return the files of `checked` in one list."""
     return files_of(checked(job))
+
+
+def found_court(job: Job) -> str | list:
+    """Return the court points that painted lines show, where they check a calibration file."""
+    shown = job.session.shows_court()
+    return job.fill(paths.FOUND_COURT, part="proposals.csv") if shown else []
+
+
+def court_of_file(job: Job) -> str | Path | list:
+    """Return the court whose painted lines check a calibration file."""
+    return job.court_file() if job.session.shows_court() else []
 
 
 def refining_files(job: Job) -> list[str]:

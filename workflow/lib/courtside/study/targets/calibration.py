@@ -30,7 +30,8 @@ def every_file_check(study: Study) -> list[str]:
 def checks_file(session: Session) -> bool:
     """Return whether the calibration file of a session is used and something can check it."""
     filmed = any(take.cameras for take in session.takes.values())
-    return "file" in session.take_calibrations() and (filmed or bool(session.static_points))
+    at_rest = bool(session.static_points) or session.shows_court()
+    return "file" in session.take_calibrations() and (filmed or at_rest)
 
 
 def every_photo_model(study: Study) -> list[str]:
