@@ -145,6 +145,15 @@ def test_of_two_cameras_that_disagree_none_is_named():
     assert "too few agree to say which are wrong" in judged.warnings[0]
 
 
+def test_two_cameras_may_see_two_courts():
+    true = right_cameras(2)
+    wide = zoomed(true[1], 0.6)
+    beside = views([wide], court=replace(COURT, xyz=COURT.xyz + np.array([7.0, 0, 0])))
+    xy = np.stack([views(true)[0], beside[0]])
+    judged = court_place.judge([true[0], wide], xy, COURT, either_end=True)
+    assert judged.place.n_agreeing() == 1 and judged.warnings == []
+
+
 def test_a_file_in_another_unit_is_named():
     true = right_cameras()
     file = [replace(c, cam_from_world=c.cam_from_world * [1, 1, 1, 1.03]) for c in true]

@@ -96,7 +96,8 @@ def judge(cameras: Sequence[Camera], xy: NDArray, court: Court, *, either_end: b
     if place is None:
         return Verdict([], [], mended, None)
     if place.n_agreeing() < 2:
-        return Verdict([_nobody_agrees(cameras, place)], [], mended, place)
+        is_one_court = (place.away_m[place.wrong()] <= ELSEWHERE_M).any()
+        return Verdict([_nobody_agrees(cameras, place)] * bool(is_one_court), [], mended, place)
     warnings, found = [], []
     for at in place.wrong():
         if place.off_px_of(mended, at) <= place.limit_px[at]:  # exchanged with one before
