@@ -3,7 +3,7 @@
 Inputs: a calibration made elsewhere, or ties from structure from motion and clicked court points,
 or these alone.
 Outputs: results/{session}/calibration/{calibration}/, results/{session}/pages/clicking.html.
-Steps: import_cameras (`file`), check_cameras (by static points and people), calibrate_cameras
+Steps: import_cameras (`file`), check_court (by painted lines), check_cameras (by static points and people), calibrate_cameras
 (`sfm-n40`, the default), align_cameras (`paper-n40`, `paper-global-n40`, `sim3-n40`),
 calibrate_lens and resect_cameras (`known18`, `known8-board`, `dlt18`), resect_together (`known`:
 all points, all cameras), calibrate_boards (`board`), calibrate_wand (`wand`),
@@ -38,8 +38,6 @@ rule check_cameras:
         cameras_toml=paths.part(paths.CAMERAS, calibration="file"),
         static_csv=lambda w: session_of(w).static_points or [],
         seen=of_job(calibration.checked_files),
-        court_yaml=of_job(calibration.court_of_file),
-        proposals_csv=of_job(calibration.found_court),
     output:
         check_json=paths.part(paths.CALIBRATION_CHECK, suffix="json"),
         check_csv=paths.part(paths.CALIBRATION_CHECK, suffix="csv"),
@@ -53,6 +51,28 @@ rule check_cameras:
         takes=of_job(calibration.checked),
     script:
         "../scripts/check_cameras.py"
+
+
+rule check_court:
+    input:
+        calibration_path=lambda w: session_of(w).calibration_file,
+        cameras_toml=paths.part(paths.CAMERAS, calibration="file"),
+        court_yaml=of_job(Job.court_file),
+        proposals_csv=paths.part(paths.FOUND_COURT, part="proposals.csv"),
+    output:
+        check_json=paths.part(paths.COURT_CHECK, suffix="json"),
+        check_csv=paths.part(paths.COURT_CHECK, suffix="csv"),
+    log:
+        "results/{session}/logs/check_court/file.log",
+    # Before detection: what is wrong with cameras is told early, also where a later step fails.
+    priority: 50
+    params:
+        code=code("check_court.py"),
+        names=lambda w: session_of(w).calibration_camera_names(),
+        override=lambda w: session_of(w).calibration_override,
+        unit=lambda w: session_of(w).calibration_unit,
+    script:
+        "../scripts/check_court.py"
 
 
 rule calibrate_cameras:
@@ -297,6 +317,7 @@ rule find_court:
         found_json=paths.part(paths.FOUND_COURT, part="found.json"),
     log:
         "results/{session}/logs/find_court/all.log",
+    priority: 50 # for check_court
     params:
         code=code("find_court.py"),
         names=lambda w: list(session_of(w).cameras),

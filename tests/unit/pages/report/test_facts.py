@@ -90,11 +90,13 @@ def test_a_quality_file_that_is_not_json_is_named(tmp_path):
 def test_warnings_of_a_check_join_those_of_the_calibration_file(tmp_path):
     (tmp_path / "quality.json").write_text(json.dumps({"covariance": "unknown"}))
     (tmp_path / "check.json").write_text(json.dumps({"warnings": ["cam02 is mirrored"]}))
-    files = {"quality": {"file": tmp_path / "quality.json"}, "check": tmp_path / "check.json"}
+    (tmp_path / "court.json").write_text(json.dumps({"warnings": ["cam05 was turned"]}))
+    checks = [tmp_path / "court.json", tmp_path / "check.json"]
+    files = {"quality": {"file": tmp_path / "quality.json"}, "checks": checks}
     facts = report_facts.of_session(files)
     assert facts["quality"]["file"] == {
         "covariance": "unknown",
-        "warnings": ["cam02 is mirrored"],
+        "warnings": ["cam05 was turned", "cam02 is mirrored"],
     }
 
 

@@ -113,10 +113,15 @@ def test_calibration_files_that_are_used_are_checked(study):
 
 def test_painted_lines_check_a_file_where_all_cameras_film_the_court(study):
     session = study.sessions["walk-4cams-tiny"]
-    assert not session.shows_court()
+    assert not calibration.checks_court(session)
     on_court = replace(session, court="badminton")
-    assert on_court.shows_court()
+    assert calibration.file_checks(on_court) == [
+        "results/walk-4cams-tiny/calibration/file/court.json",
+        "results/walk-4cams-tiny/calibration/file/check.json",
+    ]
     empty = replace(on_court, takes={}, static_points=None)
-    assert not calibration.checks_file(empty)
+    assert calibration.file_checks(empty) == []
     filmed = {name: replace(one, static="s.mp4") for name, one in session.cameras.items()}
-    assert calibration.checks_file(replace(empty, cameras=filmed))
+    assert calibration.file_checks(replace(empty, cameras=filmed)) == [
+        "results/walk-4cams-tiny/calibration/file/court.json"
+    ]

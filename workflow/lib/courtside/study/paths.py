@@ -70,6 +70,7 @@ CAMERA_EXPORT = CALIBRATION + "/other_programs"
 REFINEMENT = CALIBRATION + "/refinement.csv"
 KNOCKS = CALIBRATION + "/knocks.csv"
 CALIBRATION_CHECK = SESSION + "/calibration/file/check.{suffix}"  # json or csv
+COURT_CHECK = SESSION + "/calibration/file/court.{suffix}"  # likewise
 COURT_PROPOSALS = CALIBRATION + "/proposals.csv"
 FOUND_COURT = SESSION + "/calibration/court_lines/{part}"  # found.json or proposals.csv
 LENS = SESSION + "/calibration/lens/{camera}.toml"

@@ -41,6 +41,7 @@ PRICE, NEARER, FLOOR_PX = 0.1, 0.8, 0.3
 WAYS = (faults.FOCAL, faults.TURNED, faults.ZOOMED, faults.MOVED, faults.LENS)
 # ASSUME: how far a right court may be from its file, as the cameras of a calibration file see it.
 MOST_SCALE, MOST_TURN_DEG, MOST_AWAY_M = 0.01, 2.0, 0.3
+ROWS = ("camera", "n", "x_px", "y_px", "off_px", "alone_px", "away_m")
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,13 +144,19 @@ def locate(
 
 
 def by_camera(cameras: Sequence[Camera], place: Place) -> pd.DataFrame:
-    """Return the residuals of each camera, as `verdict.by_camera`, but for a sum of all cameras."""
+    """Return what each camera sees of the court, with the columns `ROWS`.
+
+    `x_px`, `y_px`: the median from where the common court is expected to where this camera sees it;
+    the others as in `Place`. NaN where a camera shows no court.
+    """
     xyz, rows = place.world_from_court.points(place.court.xyz), []
-    for camera, view, off_px in zip(cameras, place.xy, place.off_px, strict=True):
-        away_px = (view - project(camera, xyz))[np.isfinite(view).all(axis=-1)]
-        x_px, y_px = np.median(away_px, axis=0) if len(away_px) else (np.nan, np.nan)
-        rows.append(("court", camera.name, len(away_px), x_px, y_px, off_px))
-    return pd.DataFrame(rows, columns=["what", "camera", "n", "x_px", "y_px", "off_px"])
+    for at, camera in enumerate(cameras):
+        view = place.xy[at]
+        shift_px = (view - project(camera, xyz))[np.isfinite(view).all(axis=-1)]
+        x_px, y_px = np.median(shift_px, axis=0) if len(shift_px) else (np.nan, np.nan)
+        off = place.off_px[at], place.alone_px[at], place.away_m[at]
+        rows.append((camera.name, len(shift_px), x_px, y_px, *off))
+    return pd.DataFrame(rows, columns=ROWS)
 
 
 @dataclass(frozen=True, eq=False)

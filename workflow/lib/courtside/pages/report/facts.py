@@ -71,13 +71,15 @@ def of_session(files: dict) -> dict:
     """Read the facts of a session's cameras.
 
     `quality`: {calibration: content}; `model`: content, empty without a file; `static`: rows.
-    `files` are paths by `quality`: {calibration: file}, `check` (of the calibration `file`, which
-    its warnings join), `model` (summary of the structure from
-    motion), `static` (a list); each may be left out.
+    `files` are paths by `quality`: {calibration: file}, `checks` (a list; their warnings join those of
+    the calibration `file`), `model` (summary of the structure from motion), `static` (a list); each
+    may be left out.
     """
     quality = {name: read_json(path) for name, path in files.get("quality", {}).items()}
-    if files.get("check"):
-        quality["file"] = {**quality["file"], **read_json(files["check"])}
+    checks = [read_json(path) for path in files.get("checks", ())]
+    if checks:
+        told = [line for check in checks for line in check["warnings"]]
+        quality["file"] = {**quality["file"], "warnings": told}
     return {
         "quality": quality,
         "model": read_json(files["model"]) if files.get("model") else {},

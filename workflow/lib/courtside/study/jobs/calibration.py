@@ -163,17 +163,6 @@ def checked_files(job: Job) -> list[str]:
     return files_of(checked(job))
 
 
-def found_court(job: Job) -> str | list:
-    """Return the court points that painted lines show, where they check a calibration file."""
-    shown = job.session.shows_court()
-    return job.fill(paths.FOUND_COURT, part="proposals.csv") if shown else []
-
-
-def court_of_file(job: Job) -> str | Path | list:
-    """Return the court whose painted lines check a calibration file."""
-    return job.court_file() if job.session.shows_court() else []
-
-
 def refining_files(job: Job) -> list[str]:
     """Return the files of `refining` in one list."""
     return files_of(refining(job))

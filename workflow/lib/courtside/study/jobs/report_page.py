@@ -149,9 +149,7 @@ def _session(study: Study, session: Session) -> dict[str, Any]:
         "model": paths.SFM_SUMMARY.format(**known),
         "static": [paths.STATIC_CHECK.format(**known, camera=camera) for camera in session.cameras],
     }
-    checked = {}
-    if calibration.checks_file(session):
-        checked["check"] = paths.CALIBRATION_CHECK.format(**known, suffix="json")
+    checks = {"checks": checked} if (checked := calibration.file_checks(session)) else {}
     limits = session.parameters["extract_static"]
     return {
         "name": session.name,
@@ -165,7 +163,7 @@ def _session(study: Study, session: Session) -> dict[str, Any]:
         "overrides": _overrides(study, session),
         "withheld": consent.left_out(session),
         "limits": {key: limits[key] for key in ("max_shift_px", "max_zoom_percent")},
-        "files": {"quality": quality, **checked, **(model if mapped else {})},
+        "files": {"quality": quality, **checks, **(model if mapped else {})},
         "links": [(_link(path), VERDICTS) for path in pages.quality_pages(session)],
         "takes": [_take(study, session, take) for take in session.takes.values()],
     }

@@ -135,7 +135,8 @@ def warnings(study: Study) -> list[str]:
         ways = [] if session.virtual else session.take_calibrations()
         read = {paths.CALIBRATION_QUALITY.format(session=session.name, calibration=w) for w in ways}
         if "file" in ways:
-            read.add(paths.CALIBRATION_CHECK.format(session=session.name, suffix="json"))
+            for check in (paths.COURT_CHECK, paths.CALIBRATION_CHECK):
+                read.add(check.format(session=session.name, suffix="json"))
         for path in (path for path in sorted(read) if Path(path).is_file()):
             told = files.read_json(Path(path)).get("warnings", [])
             found += [f"Warning: {session.name}: {line}; see {path}" for line in told[:N_WARNINGS]]

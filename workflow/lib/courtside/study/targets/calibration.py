@@ -19,19 +19,26 @@ def every_calibration(study: Study) -> list[str]:
 
 
 def every_file_check(study: Study) -> list[str]:
-    """Return the check of every calibration file that takes are measured with."""
-    return [
-        paths.CALIBRATION_CHECK.format(session=session.name, suffix="json")
-        for session in study.sessions.values()
-        if checks_file(session)
-    ]
+    """Return the checks of every calibration file that takes are measured with."""
+    return [path for session in study.sessions.values() for path in file_checks(session)]
+
+
+def file_checks(session: Session) -> list[str]:
+    """Return the checks of a session's calibration file: by painted lines, and by what else."""
+    known = {"session": session.name, "suffix": "json"}
+    by_lines = [paths.COURT_CHECK.format(**known)] * checks_court(session)
+    return by_lines + [paths.CALIBRATION_CHECK.format(**known)] * checks_file(session)
+
+
+def checks_court(session: Session) -> bool:
+    """Return whether the calibration file of a session is used and painted lines can check it."""
+    return "file" in session.take_calibrations() and session.shows_court()
 
 
 def checks_file(session: Session) -> bool:
     """Return whether the calibration file of a session is used and something can check it."""
     filmed = any(take.cameras for take in session.takes.values())
-    at_rest = bool(session.static_points) or session.shows_court()
-    return "file" in session.take_calibrations() and (filmed or at_rest)
+    return "file" in session.take_calibrations() and (filmed or bool(session.static_points))
 
 
 def every_photo_model(study: Study) -> list[str]:
