@@ -180,6 +180,7 @@ VIEWS = {  # the columns that the documents show of their tables
             "static points: warned, camera and fault named": "{static}",
             "joints": "{joints}",
             "both": "{both}",
+            "painted lines": "{lines}",
             "by": "{static.origin}",
             "with": "{static.command}",
         },
