@@ -317,7 +317,7 @@ rule find_court:
         found_json=paths.part(paths.FOUND_COURT, part="found.json"),
     log:
         "results/{session}/logs/find_court/all.log",
-    priority: 50 # for check_court
+    priority: 50  # for check_court
     params:
         code=code("find_court.py"),
         names=lambda w: list(session_of(w).cameras),
