@@ -33,7 +33,7 @@ LARGER_STUDY = {
     "evaluate_skin_depths",
 }
 LARGER_STUDY |= {"compare_networks", "draw_agreement", "refine_cameras"}
-LARGER_STUDY |= {"find_court"}  # of sessions that wait for clicks
+LARGER_STUDY |= {"find_court", "check_court"}  # need painted lines and no clicks, or a file
 # Devices beside fixed cameras need a take of both; keypoints of other programs, own networks and
 # boards are in test_other_sessions.py.
 LARGER_STUDY |= {"select_person", "import_pose2d", "import_pose3d", "check_network"}

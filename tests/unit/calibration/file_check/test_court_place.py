@@ -1,40 +1,14 @@
 """Cameras of a file against a court's lines: planted faults are named, right cameras are not."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from courtside.calibration.court import court as courts
 from courtside.calibration.file_check import court_place, faults
 from courtside.geometry import camera as cameras
 from courtside.geometry import rotations
-from fixtures.cameras import corner_cameras
-
-COURT = courts.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
-MIDDLE = np.array([*COURT.size_m / 2, 0.0])
-PLACES = [(-6, -11, 4.0), (7, -10, 5.0), (6.5, 11, 4.5), (-7, 10, 3.8)]
-
-
-def right_cameras(n=4):
-    """Return cameras round the court, in its own frame."""
-    found = []
-    for at, place in enumerate(PLACES[:n]):
-        one = corner_cameras.camera(f"c{at}", np.array(place), (959.5, 539.5))
-        pose = one.cam_from_world.copy()
-        pose[:, 3] -= pose[:, :3] @ MIDDLE
-        found.append(replace(one, cam_from_world=pose))
-    return found
-
-
-def views(seen_by, noise_px=0.7, seed=0, court=COURT):
-    """Return the court's points (C, P, 2) px as true cameras see them."""
-    rng = np.random.default_rng(seed)
-    xy = np.stack([cameras.project(one, court.xyz) for one in seen_by])
-    xy += rng.normal(0, noise_px, xy.shape)
-    inside = [cameras.in_picture(one, view) for one, view in zip(seen_by, xy, strict=True)]
-    return np.where(np.stack(inside)[..., None], xy, np.nan)
+from fixtures.cameras.court_cameras import COURT, MIDDLE, right_cameras, views
 
 
 def spoilt(seen_by, at, change):
