@@ -22,7 +22,6 @@ from scipy.spatial.transform import Rotation
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
 from courtside.calibration.court import court as court_files
-from courtside.calibration.court_lines import search
 from courtside.calibration.court_lines import verdict as court_verdict
 from courtside.calibration.file_check import court_place, faults, residuals, verdict
 from courtside.geometry import camera as camera_models
@@ -123,11 +122,7 @@ def painted(folder, cameras, court):
     xy = np.full((len(cameras), len(court.points), 2), np.nan)
     for at, camera in enumerate(cameras):
         image = cv2.imread(str(folder / "static" / f"{camera.name}.png"))
-        best = search.find(image, court, LINES["lines"])
-        judged = court_verdict.judge(best, court, camera.name, camera.size, LINES["lines"])
-        reach = {"search_px": LINES["search_share"] * camera.size[0], "lines": LINES["lines"]}
-        limits = reach | {"max_sigma_px": LINES["max_sigma_px"]}
-        xy[at] = court_verdict.proposed(judged, image, court, **limits).xy
+        xy[at] = court_verdict.examine(image, court, camera.name, **LINES)[1].xy
     return xy
 
 

@@ -35,7 +35,7 @@ from courtside.calibration.boards import corners
 from courtside.calibration.boards.board import Board
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court import joint_adjustment, points_alone
-from courtside.calibration.court_lines import search, verdict
+from courtside.calibration.court_lines import verdict
 from courtside.calibration.file_check import residuals
 from courtside.calibration.people import adjustment, held_out, prior, refinement
 from courtside.calibration.people import views as people_views
@@ -109,17 +109,14 @@ def hall(results, name):
 def of_lines(one):
     """Return by camera court points (P, 2) px, found without a click; None where not found."""
     found, step, court = {}, CONFIG["propose_court_points"], one.court
-    turned = [*court.size_m, 0] + court.xyz * [-1, -1, 1]
-    half_turn = np.linalg.norm(court.xyz[:, None] - turned, axis=2).argmin(axis=0)
+    half_turn = court.other_end()
     for camera in one.real.cameras:
         image = cv2.imread(str(one.results / one.name / "static" / f"{camera.name}.png"))
-        best = search.find(image, court, step["lines"])
-        judged = verdict.judge(best, court, camera.name, camera.size, step["lines"])
+        judged, proposed = verdict.examine(image, court, camera.name, **step)
         if judged.outcome != verdict.FOUND:
             found[camera.name] = None
             continue
-        reach = {"search_px": step["search_share"] * camera.size[0], "lines": step["lines"]}
-        xy = verdict.proposed(judged, image, court, max_sigma_px=step["max_sigma_px"], **reach).xy
+        xy = proposed.xy
         off = [
             np.nanmedian(np.abs(points - camera_models.project(camera, one.real.court_xyz)))
             for points in (xy, xy[half_turn])

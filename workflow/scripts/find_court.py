@@ -1,7 +1,7 @@
 """Find a court by its painted lines: static pictures, court -> points to be confirmed, verdicts."""
 
 from courtside.calibration.court import court as court_files
-from courtside.calibration.court_lines import search, verdict
+from courtside.calibration.court_lines import verdict
 from courtside.records.cameras import click_proposals
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json
@@ -9,15 +9,11 @@ from courtside.study.execution.script import run
 from courtside.video import images
 
 
-def main(pictures, court_yaml, proposals_csv, found_json, *, names, search_share, lines, **options):
+def main(pictures, court_yaml, proposals_csv, found_json, *, names, **step):
     court, proposed, said = court_files.read(court_yaml), {}, {}
     given = zip(names, pictures, strict=True)
     for name, path in log.progress(given, len(names), "court lines: cameras"):
-        image = images.read(path)
-        found = search.find(image, court, lines)
-        judged = verdict.judge(found, court, name, image.shape[1::-1], lines)
-        reach = {"search_px": search_share * image.shape[1]}
-        one = verdict.proposed(judged, image, court, lines=lines, **reach, **options)
+        judged, one = verdict.examine(images.read(path), court, name, **step)
         proposed[name], said[name] = one, verdict.report(judged, one)
         words = judged.reason or f"{said[name]['n_proposed']} of {len(court.points)} points"
         log.logger.info("%s: court %s: %s", name, judged.outcome, words)

@@ -9,5 +9,5 @@ refinement: refine, uncertainty: a camera adjusted until the lines fit, and its 
 search: find, fault, Candidate: the cameras that explain a picture best, and why one is rejected
 edges: measure, Edges: painted lines measured in a picture, stretch by stretch
 walk_and_lines: of_pictures, LineConstraints: cameras of a walk adjusted together with lines
-verdict: judge, Verdict: found, ambiguous or not found, and why; ends of symmetric courts
+verdict: examine, judge, Verdict: found, ambiguous or not found, and why; ends of symmetric courts
 """

@@ -41,6 +41,20 @@ class Verdict:
     symmetric: bool  # half a turn of the court gives the same lines: which end is not said
 
 
+def examine(
+    image: NDArray, court: Court, name: str, *, search_share: float, lines: str, **limits: float
+) -> tuple[Verdict, Proposals]:
+    """Find a court in a picture (H, W, 3) of a camera, judge what was found, propose its points.
+
+    `search_share` of the picture's width is as far as a line is searched for; `limits` are those of
+    `proposed`.
+    """
+    found = search.find(image, court, lines)
+    judged = judge(found, court, name, image.shape[1::-1], lines)
+    reach = {"search_px": search_share * image.shape[1]}
+    return judged, proposed(judged, image, court, lines=lines, **reach, **limits)
+
+
 def judge(found: Found, court: Court, name: str, size: tuple[int, int], lines: str) -> Verdict:
     """Judge whether the best candidate is the camera of a picture of a size (width, height) px.
 
