@@ -3,8 +3,9 @@
 Inputs: a calibration made elsewhere, or ties from structure from motion and clicked court points,
 or these alone.
 Outputs: results/{session}/calibration/{calibration}/, results/{session}/pages/clicking.html.
-Steps: import_cameras (`file`), check_court (by painted lines), check_cameras (by static points and people), calibrate_cameras
-(`sfm-n40`, the default), align_cameras (`paper-n40`, `paper-global-n40`, `sim3-n40`),
+Steps: import_cameras (`file`), check_court (by painted lines), check_cameras (by static points and
+people), calibrate_cameras (`sfm-n40`, the default), align_cameras (`paper-n40`, `paper-global-n40`,
+`sim3-n40`),
 calibrate_lens and resect_cameras (`known18`, `known8-board`, `dlt18`), resect_together (`known`:
 all points, all cameras), calibrate_boards (`board`), calibrate_wand (`wand`),
 calibrate_from_people (`people`: nothing else), refine_cameras (`file-people` and the like);

@@ -14,8 +14,7 @@ from courtside.study.execution.script import run
 
 
 def main(paths, check_json, check_csv, *, names, override, takes, unit=None):
-    found = file_formats.rename(file_formats.read(paths.calibration_path, unit), names)
-    found = file_formats.with_principal_points(found, override.get("principal_point_px", {}))
+    found = file_formats.read_session(paths.calibration_path, names, override, unit)
     # Everything in px of the calibrated picture, which is what the file's numbers are of.
     shown, static = camera.read_toml(paths.cameras_toml), None
     if paths.static_csv:

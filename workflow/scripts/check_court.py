@@ -15,8 +15,7 @@ from courtside.study.execution.script import run
 
 
 def main(paths, check_json, check_csv, *, names, override, unit=None):
-    found = file_formats.rename(file_formats.read(paths.calibration_path, unit), names)
-    found = file_formats.with_principal_points(found, override.get("principal_point_px", {}))
+    found = file_formats.read_session(paths.calibration_path, names, override, unit)
     court, shown = court_files.read(paths.court_yaml), camera.read_toml(paths.cameras_toml)
     proposed = click_proposals.read(paths.proposals_csv, [one.name for one in shown], court.points)
     # Everything in px of the calibrated picture, which is what the file's numbers are of.

@@ -1,4 +1,4 @@
-"""Find a court by its painted lines: static pictures, court -> points to be confirmed, verdicts."""
+"""Find a court by its painted lines: pictures, court -> points to be confirmed, verdicts."""
 
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court_lines import verdict

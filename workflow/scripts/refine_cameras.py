@@ -79,8 +79,7 @@ def in_file(path, names, override, unit):
     """Return the cameras of a calibration file in their own pictures, None of another base."""
     if not path:
         return None
-    found = file_formats.rename(file_formats.read(path, unit), names)
-    return file_formats.with_principal_points(found, override.get("principal_point_px", {}))
+    return file_formats.read_session(path, names, override, unit)
 
 
 def points(paths, base, weights):

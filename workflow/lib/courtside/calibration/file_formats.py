@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -136,6 +137,17 @@ def known_lenses(
     if path is not None:
         return {lens.name: lens for lens in rename(read(path), names)}
     return {lens.name: lens for toml in tomls for lens in camera_files.read_toml(toml)}
+
+
+def read_session(
+    path: StrPath, names: Mapping[str, str], override: Mapping[str, Any], unit: str | None = None
+) -> list[Camera]:
+    """Read the cameras of a session from a file, with the numbers that its `calibration` replaces.
+
+    `names` are as of `rename`; `override` may hold `principal_point_px`.
+    """
+    found = rename(read(path, unit), names)
+    return with_principal_points(found, override.get("principal_point_px", {}))
 
 
 def with_principal_points(

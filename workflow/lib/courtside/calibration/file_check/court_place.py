@@ -54,9 +54,7 @@ class Place:
     either_end: bool
     off_px: NDArray  # (C,): median over points, per axis; NaN where a camera shows no court
     alone_px: NDArray  # (C,): the same of the place that fits this camera best
-    away_m: (
-        NDArray  # (C,): of the court's middle, as this camera alone sees it, from the common one
-    )
+    away_m: NDArray  # (C,): between the court's middle as this camera alone and as all see it
     limit_px: NDArray  # (C,): more is too much
 
     def wrong(self) -> NDArray:
@@ -83,8 +81,7 @@ class Verdict:
     """One warning for each camera that is wrong, the faults, and what all cameras share."""
 
     warnings: list[str]
-    faults: list[Fault]
-    cameras: tuple[Camera, ...]  # without the faults
+    faults: list[Fault]  # each with the cameras without it and without those before
     place: Place | None  # None where fewer than two cameras show the court
 
 
@@ -95,10 +92,10 @@ def judge(cameras: Sequence[Camera], xy: NDArray, court: Court, *, either_end: b
     """
     place, mended = locate(cameras, xy, court, either_end=either_end), tuple(cameras)
     if place is None:
-        return Verdict([], [], mended, None)
+        return Verdict([], [], None)
     if place.n_agreeing() < 2:
         is_one_court = (place.away_m[place.wrong()] <= ELSEWHERE_M).any()
-        return Verdict([_nobody_agrees(cameras, place)] * bool(is_one_court), [], mended, place)
+        return Verdict([_nobody_agrees(cameras, place)] * bool(is_one_court), [], place)
     warnings, found = [], []
     for at in place.wrong():
         if place.off_px_of(mended, at) <= place.limit_px[at]:  # exchanged with one before
@@ -109,7 +106,7 @@ def judge(cameras: Sequence[Camera], xy: NDArray, court: Court, *, either_end: b
             found.append(fault)
             mended = fault.cameras
     warnings += [shared] if (shared := _shared_fault(place)) else []
-    return Verdict(warnings, found, mended, place)
+    return Verdict(warnings, found, place)
 
 
 def locate(
@@ -138,7 +135,7 @@ def locate(
     off_px[shown], alone_px[shown], away_m[shown] = views.off_px(common), np.inf, np.inf
     for k, (at, place) in enumerate(zip(shown, views.alone(), strict=True)):
         if place:
-            alone_px[at] = views.off_px(place)[k]
+            alone_px[at] = _off_px(views.cameras[k], views.xy[k], place.points(court.xyz))
             away_m[at] = np.linalg.norm(place.points(middle) - common.points(middle))
     return Place(court, common, xy, either_end, off_px, alone_px, away_m, limit_px)
 
@@ -270,7 +267,7 @@ def _explained(cameras: tuple[Camera, ...], at: int, place: Place) -> tuple[str,
     Nothing is said of a camera that sees a court metres away, unless a fault without free numbers
     brings it here.
     """
-    view, limit_px = place.xy[at], place.limit_px[at]
+    ends, limit_px = place.ends(at), place.limit_px[at]
     xyz = place.world_from_court.points(place.court.xyz)
     line = (
         f"camera {cameras[at].name} of the file does not see the court's lines where the others "
@@ -278,13 +275,13 @@ def _explained(cameras: tuple[Camera, ...], at: int, place: Place) -> tuple[str,
     )
 
     def score(fault: Fault) -> float:
-        spread_px = min(_spread_px(fault.cameras[at], one, xyz) for one in place.ends(at))
+        spread_px = min(_spread_px(fault.cameras[at], one, xyz) for one in ends)
         return float(np.log(max(spread_px, FLOOR_PX)) + PRICE * fault.n_free)
 
     tried = [one for one in faults.simple(cameras) if one.cameras[at] is not cameras[at]]
     is_elsewhere = place.away_m[at] > ELSEWHERE_M
     if not is_elsewhere:
-        tried += faults.fitted(cameras, at, xyz, view, WAYS)
+        tried += faults.fitted(cameras, at, xyz, place.xy[at], WAYS)
     best = min(tried, key=score)
     left_px = place.off_px_of(best.cameras, at)
     if left_px <= limit_px and (best.n_free == 0 or place.alone_px[at] <= limit_px):

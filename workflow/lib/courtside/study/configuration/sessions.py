@@ -211,13 +211,13 @@ class Session:
         """Return the names of the recordings of the hall: of cameras before takes, and of walks."""
         return [*(name for name, camera in self.cameras.items() if camera.static), *self.walks]
 
-    def take_of_hall(self, camera: str) -> str | None:
+    def first_take(self, camera: str) -> str | None:
         """Return the first take that a camera films; None without one."""
         return next((name for name, take in self.takes.items() if camera in take.videos), None)
 
     def shows_court(self) -> bool:
         """Say whether painted lines can check a calibration file: all cameras film the court."""
-        filmed = (one.static or self.take_of_hall(name) for name, one in self.cameras.items())
+        filmed = (one.static or self.first_take(name) for name, one in self.cameras.items())
         return bool(self.calibration_file and self.court and len(self.cameras) > 1 and all(filmed))
 
     def films_boards(self) -> bool:

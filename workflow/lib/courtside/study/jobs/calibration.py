@@ -23,7 +23,7 @@ def of_hall(job: Job) -> list[str]:
     return [
         job.fill(paths.STATIC, camera=name)
         if camera.static
-        else job.fill(paths.BACKGROUND, camera=name, take=session.take_of_hall(name))
+        else job.fill(paths.BACKGROUND, camera=name, take=session.first_take(name))
         for name, camera in session.cameras.items()
     ]
 

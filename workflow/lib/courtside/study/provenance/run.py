@@ -12,6 +12,7 @@ from courtside.study.errors import InputError
 from courtside.study.execution import files, summary
 from courtside.study.execution import verdicts as verdict_files
 from courtside.study.provenance import environment, provenance
+from courtside.study.targets.calibration import file_checks
 
 N_WARNINGS = 3  # of one calibration, on the terminal
 
@@ -134,9 +135,7 @@ def warnings(study: Study) -> list[str]:
     for session in study.sessions.values():
         ways = [] if session.virtual else session.take_calibrations()
         read = {paths.CALIBRATION_QUALITY.format(session=session.name, calibration=w) for w in ways}
-        if "file" in ways:
-            for check in (paths.COURT_CHECK, paths.CALIBRATION_CHECK):
-                read.add(check.format(session=session.name, suffix="json"))
+        read |= set() if session.virtual else set(file_checks(session))
         for path in (path for path in sorted(read) if Path(path).is_file()):
             told = files.read_json(Path(path)).get("warnings", [])
             found += [f"Warning: {session.name}: {line}; see {path}" for line in told[:N_WARNINGS]]
