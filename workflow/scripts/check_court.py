@@ -32,6 +32,7 @@ def main(paths, check_json, check_csv, *, names, override, unit=None):
     tables.write(check_csv, rows, float_format="%.3f")
     content = {
         "warnings": judged.warnings,
+        "cameras": judged.of_camera,
         "faults": [{"what": one.what, "advice": one.advice} for one in judged.faults],
         "n_agreeing": place.n_agreeing() if place else 0,
     }

@@ -9,10 +9,11 @@ from courtside.quality import causes
 from fixtures.people import judged
 
 SAME = dict.fromkeys(("c0", "c1", "c2", "c3"), (0, 1))
+LINES = "does not see the court's lines where the others do: 16.3 px away"
 
 
-def found(cameras, at=2):
-    return causes.find(judged.gathered(cameras), at, found_limit=0.9)
+def found(cameras, at=2, by_lines=""):
+    return causes.find(judged.gathered(cameras), at, found_limit=0.9, by_lines=by_lines)
 
 
 @pytest.mark.parametrize("degrees", [1.0, -2.0, 3.0])
@@ -99,3 +100,28 @@ def test_a_person_whom_the_others_do_not_place():
 def test_nobody_is_followed_in_any_camera():
     cause = found(judged.followed(judged.footage(), dict.fromkeys(SAME, (-1, -1))))
     assert cause.name == causes.IDENTITY and "none of them is followed" in cause.sentence
+
+
+@pytest.mark.parametrize("fault", ["keypoints", "calibration", "two cameras"])
+def test_painted_lines_decide_where_no_test_of_people_does(fault):
+    cameras = judged.footage(n_cameras=2 if fault == "two cameras" else 4)
+    at = len(cameras) - 1
+    if fault == "keypoints":
+        view = cameras[at].tracklets
+        view.xy[...] += np.random.default_rng(0).normal(0, 25, view.xy.shape)
+    else:
+        cameras = judged.turned(cameras, at, 2.0)
+    cause = found(cameras, at, LINES)
+    assert cause.name == causes.CALIBRATION
+    assert cause.sentence == f"its calibration is off: it {LINES}"
+
+
+@pytest.mark.parametrize("fault", ["detection", "clock", "identity"])
+def test_painted_lines_do_not_hide_what_a_test_of_people_shows(fault):
+    cameras = {
+        "detection": lambda: judged.footage(hidden={2: 0.5}),
+        "clock": lambda: judged.footage(offset_s={2: 0.1}),
+        "identity": lambda: judged.followed(judged.footage(), SAME | {"c2": (1, 0)}),
+    }[fault]()
+    assert found(cameras, 2, LINES) == found(cameras, 2)
+    assert found(cameras, 2).name == fault

@@ -1,5 +1,7 @@
 """Verdicts: a fault of one camera is that camera's, its cause is named, and the rest is good."""
 
+from types import MappingProxyType
+
 import numpy as np
 import pytest
 
@@ -10,9 +12,9 @@ from fixtures.people import judged
 SAME = dict.fromkeys(("c0", "c1", "c2", "c3"), (0, 1))
 
 
-def wholes(cameras):
+def wholes(cameras, by_lines=MappingProxyType({})):
     """Return {(camera, person): row} of the verdicts, and the table."""
-    table = verdict.judge(judged.gathered(cameras))
+    table = verdict.judge(judged.gathered(cameras), by_lines)
     rows = table[table["measure"] == WHOLE]
     return {(row.camera, row.person): row for row in rows.itertuples()}, table
 
@@ -53,6 +55,21 @@ def test_of_three_cameras_that_contradict_each_other_none_is_blamed_for_sure():
     assert len(wrong) > 1
     assert all(verdict.ANY in row.sentence for row in wrong)
     assert rows[ALL, ALL].cause == causes.CALIBRATION
+
+
+def test_painted_lines_tell_the_wrong_one_of_three_cameras():
+    cameras = judged.turned(judged.footage(n_cameras=3, height_m=1.0), 1, 1.0)
+    words = "does not see the court's lines where the others do"
+    rows, _ = wholes(cameras, {"c1": words})
+    assert rows["c1", ALL].verdict != GOOD and rows["c1", ALL].cause == causes.CALIBRATION
+    assert rows["c1", ALL].sentence == f"Camera c1: its calibration is off: it {words}."
+    assert {rows[name, ALL].verdict for name in ("c0", "c2")} == {GOOD}
+    assert rows[ALL, ALL].sentence.endswith(rows["c1", ALL].sentence)
+
+
+def test_painted_lines_alone_make_no_verdict_on_a_take():
+    rows, _ = wholes(judged.footage(), {"c1": "does not see the court's lines"})
+    assert {row.verdict for row in rows.values()} == {GOOD}
 
 
 @pytest.mark.parametrize("n_cameras", [2, 4])

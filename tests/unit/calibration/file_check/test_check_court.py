@@ -54,7 +54,9 @@ def test_a_turned_camera_of_a_file_is_named_though_its_video_is_cropped(tmp_path
     assert [fault["what"] for fault in told["faults"]] == [
         "the direction or principal point of camera c1 is wrong"
     ]
-    assert len(told["warnings"]) == 1 and told["n_agreeing"] == 3
+    assert list(told["cameras"]) == ["c1"] and len(told["warnings"]) == 1
+    assert told["warnings"][0] == f"camera c1 of the file {told['cameras']['c1']}"
+    assert told["n_agreeing"] == 3
     assert table.camera.tolist() == ["c0", "c1", "c2", "c3"]
     assert table.off_px.idxmax() == 1
 
@@ -64,5 +66,5 @@ def test_without_a_court_in_two_pictures_nothing_is_said(tmp_path):
     seen = views(true)
     seen[1:] = np.nan
     told, table = checked(tmp_path, true, true, seen)
-    assert told == {"warnings": [], "faults": [], "n_agreeing": 0}
+    assert told == {"warnings": [], "cameras": {}, "faults": [], "n_agreeing": 0}
     assert table.empty

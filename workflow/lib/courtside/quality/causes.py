@@ -1,7 +1,8 @@
 """Tests of why a camera disagrees with the others: detection, identity, clock, calibration, video.
 
 Each test changes one property of one camera and checks whether its keypoints then match the joints
-from the other cameras. Errors are in heights of the person in that picture.
+from the other cameras. Errors are in heights of the person in that picture. What the painted lines
+of a court say of a camera decides where no test does.
 """
 
 from dataclasses import dataclass
@@ -35,6 +36,7 @@ class Cause:
 
     name: str  # `detection`, `identity`, `clock`, `calibration`, `exchanged` (video), `unknown`
     sentence: str  # what the test found
+    is_shown: bool = True  # by a test, not only what is left when all tests failed
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,13 +58,20 @@ class _Camera:
         return float(np.median(frames[known])) if enough else float("nan")
 
 
-def find(seen: Seen, camera: int, *, found_limit: float) -> Cause:
+def find(seen: Seen, camera: int, *, found_limit: float, by_lines: str = "") -> Cause:
     """Return the likelier cause of a camera's disagreement with the others.
 
     `found_limit` is the share of persons found below which detection alone explains it. If the
     other cameras cannot triangulate the person, or there are only two cameras, the cause is
-    unknown.
+    unknown. `by_lines` is what the court's painted lines say against the camera's calibration.
     """
+    cause = _by_people(seen, camera, found_limit)
+    if by_lines and (cause.name == CALIBRATION or not cause.is_shown):
+        return Cause(CALIBRATION, f"its calibration is off: it {by_lines}")
+    return cause
+
+
+def _by_people(seen: Seen, camera: int, found_limit: float) -> Cause:
     there = np.isfinite(seen.others[camera]).all(axis=-1).mean(axis=-1) >= views.HALF
     expected = seen.expected(camera)
     some = np.any(views.shown(seen.rows[camera][:, seen.at]), axis=0)
@@ -74,11 +83,12 @@ def find(seen: Seen, camera: int, *, found_limit: float) -> Cause:
         words = (
             "two cameras contradict each other, and no third camera shows which of them is wrong"
         )
-        return Cause(UNKNOWN, words)
+        return Cause(UNKNOWN, words, is_shown=False)
     if not (there & expected).any() and not seen.followed[camera].any():
         return Cause(IDENTITY, "people are found there, but none of them is followed")
     if not (there & expected).any():
-        return Cause(UNKNOWN, "the other cameras do not agree on where the person is")
+        words = "the other cameras do not agree on where the person is"
+        return Cause(UNKNOWN, words, is_shown=False)
     return _by_tests(_of_camera(seen, camera, there & expected), absent)
 
 
@@ -144,13 +154,13 @@ def _unexplained(one: _Camera, before: float, absent: float) -> Cause:
     """Return the cause if no test succeeds: no matching person was found, or keypoints are poor."""
     if before > FITS:
         words = "nobody found in it is the person that the other cameras see"
-        return Cause(DETECTION, words)
+        return Cause(DETECTION, words, is_shown=False)
     if absent > SOME:
-        return Cause(DETECTION, _absent(absent))
+        return Cause(DETECTION, _absent(absent), is_shown=False)
     errors = np.linalg.norm(one.seen.errors(one.at, one.nearest), axis=-1)
     poor = float((errors > views.AGREED)[np.isfinite(errors)].mean())
     words = f"its keypoints are poor: {poor:.0%} of them are not where the other cameras see them"
-    return Cause(DETECTION, words)
+    return Cause(DETECTION, words, is_shown=False)
 
 
 def _absent(share: float) -> str:

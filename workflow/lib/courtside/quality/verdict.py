@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from itertools import chain
+from types import MappingProxyType
 from typing import NamedTuple
 
 import pandas as pd
@@ -63,46 +64,51 @@ def worst(verdicts: list[str]) -> str:
     return max(verdicts, key=ORDER.index, default=GOOD)
 
 
-def judge(seen: Seen) -> pd.DataFrame:
+def judge(seen: Seen, by_lines: Mapping[str, str] = MappingProxyType({})) -> pd.DataFrame:
     """Judge a take: a row for each measure of each camera and person, and for each as a whole.
+
+    `by_lines` is what a court's painted lines say against a camera's calibration, by its name.
 
     Columns `COLUMNS`. A row with the measure `WHOLE` has the verdict, the likelier cause where it
     is not good, and one sentence; that with `ALL` cameras and persons is the take's. A take failed
     if a person failed in it, or half of its cameras; another camera that is not good makes it
     doubtful.
     """
-    by_camera = _cameras(seen)
+    by_camera = _cameras(seen, by_lines)
     by_person = [_person(seen, at) for at in range(len(seen.points.person_id))]
     take = _take([rows[0] for rows in by_camera], [rows[0] for rows in by_person])
     return pd.DataFrame([take, *chain(*by_camera, *by_person)], columns=COLUMNS)
 
 
-def _cameras(seen: Seen) -> list[list[dict]]:
+def _cameras(seen: Seen, by_lines: Mapping[str, str]) -> list[list[dict]]:
     """Return the rows of each camera, that of the whole first.
 
     A wrong camera shifts the joints that the other cameras are compared with. If the others agree
-    without it, it is left out and the others are judged again.
+    without it, or painted lines say that it is the wrong one, it is left out and the others are
+    judged again.
     """
     fixed: dict[int, list[dict]] = {}
     while True:
         others = [at for at in range(len(seen.cameras)) if at not in fixed]
-        odd = _odd_one(seen, others)
         fewer = bool(fixed) or not all(seen.followed[at].any() for at in others)
         agreed = fewer and disagreement(seen, others) <= AGREED
-        judged = {at: _camera(seen, at, agreed) for at in others}
-        if odd is None or judged[odd][0]["verdict"] == GOOD:
-            rows = fixed | _uncertain(judged)
+        judged = {at: _camera(seen, at, agreed, by_lines) for at in others}
+        suspects = _suspects(seen, others, by_lines)
+        odd = next((at for at in suspects if judged[at][0]["verdict"] != GOOD), None)
+        if odd is None:
+            rows = fixed | _uncertain(judged, by_lines)
             return [rows[at] for at in range(len(seen.cameras))]
         fixed[odd] = judged[odd]
         seen = without(seen, (*seen.out, odd))
 
 
-def _uncertain(judged: dict[int, list[dict]]) -> dict[int, list[dict]]:
+def _uncertain(judged: dict[int, list[dict]], by_lines: Mapping[str, str]) -> dict[int, list[dict]]:
     """Mark cameras that contradict one another: any of them may be the wrong one."""
     wrong = [
         at
         for at, (whole, *rows) in judged.items()
         if whole["verdict"] != GOOD
+        and whole["camera"] not in by_lines
         and any(row["measure"] == "reprojection" and row["verdict"] != GOOD for row in rows)
     ]
     if len(wrong) < 2:
@@ -117,10 +123,15 @@ def _uncertain(judged: dict[int, list[dict]]) -> dict[int, list[dict]]:
     return found
 
 
-def _odd_one(seen: Seen, others: list[int]) -> int | None:
-    """Return the camera without which the others agree far better, None if there is none."""
+def _suspects(seen: Seen, others: list[int], by_lines: Mapping[str, str]) -> list[int]:
+    """Return the cameras that may be the wrong one.
+
+    First that without which the others agree far better, then those that painted lines speak
+    against. Of two cameras none is suspected.
+    """
     if len(others) < 3:
-        return None
+        return []
+    named = [at for at in others if seen.cameras[at].name in by_lines]
     rest = {
         at: disagreement(seen, [one for one in others if one != at])
         for at in others
@@ -128,8 +139,8 @@ def _odd_one(seen: Seen, others: list[int]) -> int | None:
     }
     ranked = sorted((value, at) for at, value in rest.items() if value == value)
     if len(ranked) < 3 or ranked[0][0] > causes.NEARER * ranked[1][0]:
-        return None
-    return ranked[0][1]
+        return named
+    return [ranked[0][1], *named]
 
 
 def _judged(
@@ -164,7 +175,7 @@ def _whole(camera: str, person: str, verdict: str, cause: str, sentence: str) ->
     return {**about, "verdict": verdict, "cause": cause, "sentence": sentence}
 
 
-def _camera(seen: Seen, at: int, agreed: bool) -> list[dict]:
+def _camera(seen: Seen, at: int, agreed: bool, by_lines: Mapping[str, str]) -> list[dict]:
     """Judge a camera: its rows, that of the whole first.
 
     `agreed`: all cameras agree except those that are left out or track nobody. The errors are then
@@ -181,7 +192,8 @@ def _camera(seen: Seen, at: int, agreed: bool) -> list[dict]:
     verdict = worst([row["verdict"] for row in counted])
     if verdict == GOOD:
         return [_whole(name, ALL, GOOD, "", f"Camera {name}: {AGREES}."), *rows]
-    why = causes.find(seen, at, found_limit=OF_CAMERA["found"].doubtful)
+    limit, lines = OF_CAMERA["found"].doubtful, by_lines.get(name, "")
+    why = causes.find(seen, at, found_limit=limit, by_lines=lines)
     return [_whole(name, ALL, verdict, why.name, f"Camera {name}: {why.sentence}."), *rows]
 
 

@@ -78,11 +78,18 @@ class Place:
 
 @dataclass(frozen=True, eq=False)
 class Verdict:
-    """One warning for each camera that is wrong, the faults, and what all cameras share."""
+    """What is wrong with each camera, the faults, and what all cameras share."""
 
-    warnings: list[str]
+    of_camera: dict[str, str]  # what is wrong, by the camera's name, in words that follow this name
+    shared: list[str]  # warnings about all cameras together
     faults: list[Fault]  # each with the cameras without it and without those before
     place: Place | None  # None where fewer than two cameras show the court
+
+    @property
+    def warnings(self) -> list[str]:
+        """One for each camera that is wrong, and what all cameras share."""
+        each = [f"camera {name} of the file {words}" for name, words in self.of_camera.items()]
+        return each + self.shared
 
 
 def judge(cameras: Sequence[Camera], xy: NDArray, court: Court, *, either_end: bool) -> Verdict:
@@ -92,21 +99,22 @@ def judge(cameras: Sequence[Camera], xy: NDArray, court: Court, *, either_end: b
     """
     place, mended = locate(cameras, xy, court, either_end=either_end), tuple(cameras)
     if place is None:
-        return Verdict([], [], None)
+        return Verdict({}, [], [], None)
     if place.n_agreeing() < 2:
         is_one_court = (place.away_m[place.wrong()] <= ELSEWHERE_M).any()
-        return Verdict([_nobody_agrees(cameras, place)] * bool(is_one_court), [], place)
-    warnings, found = [], []
+        return Verdict({}, [_nobody_agrees(cameras, place)] * bool(is_one_court), [], place)
+    of_camera, found = {}, []
     for at in place.wrong():
         if place.off_px_of(mended, at) <= place.limit_px[at]:  # exchanged with one before
             continue
-        line, fault = _explained(mended, int(at), place)
-        warnings += [line] if line else []
+        words, fault = _explained(mended, int(at), place)
+        if words:
+            of_camera[cameras[at].name] = words
         if fault:
             found.append(fault)
             mended = fault.cameras
-    warnings += [shared] if (shared := _shared_fault(place)) else []
-    return Verdict(warnings, found, place)
+    shared = _shared_fault(place)
+    return Verdict(of_camera, [shared] if shared else [], found, place)
 
 
 def locate(
@@ -262,16 +270,16 @@ def _away_px(camera: Camera, view: NDArray, xyz: NDArray) -> NDArray:
 
 
 def _explained(cameras: tuple[Camera, ...], at: int, place: Place) -> tuple[str, Fault | None]:
-    """Return what is wrong with a camera, as a warning, and the fault; None if unknown.
+    """Return what is wrong with a camera, in words, and the fault; None if unknown.
 
     Nothing is said of a camera that sees a court metres away, unless a fault without free numbers
     brings it here.
     """
     ends, limit_px = place.ends(at), place.limit_px[at]
     xyz = place.world_from_court.points(place.court.xyz)
-    line = (
-        f"camera {cameras[at].name} of the file does not see the court's lines where the others "
-        f"do: {place.off_px[at]:.1f} px away, expected {limit_px:.1f} or less; "
+    words = (
+        "does not see the court's lines where the others do: "
+        f"{place.off_px[at]:.1f} px away, expected {limit_px:.1f} or less; "
     )
 
     def score(fault: Fault) -> float:
@@ -285,13 +293,13 @@ def _explained(cameras: tuple[Camera, ...], at: int, place: Place) -> tuple[str,
     best = min(tried, key=score)
     left_px = place.off_px_of(best.cameras, at)
     if left_px <= limit_px and (best.n_free == 0 or place.alone_px[at] <= limit_px):
-        return line + f"probably {best.what} ({best.advice}); then {left_px:.1f} px are left", best
+        return words + f"probably {best.what} ({best.advice}); then {left_px:.1f} px are left", best
     if is_elsewhere:
         return "", None
     if place.alone_px[at] > limit_px:
-        line += f"no place of this camera fits them better than to {place.alone_px[at]:.1f} px: "
-        return line + "calibrate its lens again", None
-    return line + "calibrate it again", None
+        words += f"no place of this camera fits them better than to {place.alone_px[at]:.1f} px: "
+        return words + "calibrate its lens again", None
+    return words + "calibrate it again", None
 
 
 def _nobody_agrees(cameras: Sequence[Camera], place: Place) -> str:

@@ -158,6 +158,8 @@ def judged(job: Job) -> list[dict[str, Any]]:
         }
         files = {name: one.fill(pattern) for name, pattern in patterns.items()}
         more = {"pose2d": keypoints_2d(one), "skeleton": one.skeleton_file().as_posix()}
+        if labels["calibration"] == "file" and session.shows_court():
+            more["court_check"] = one.fill(paths.COURT_CHECK, suffix="json")
         found.append({"labels": labels, **files, **more})
     return found
 
