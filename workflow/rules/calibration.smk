@@ -3,8 +3,9 @@
 Inputs: a calibration made elsewhere, or ties from structure from motion and clicked court points,
 or these alone.
 Outputs: results/{session}/calibration/{calibration}/, results/{session}/pages/clicking.html.
-Steps: import_cameras (`file`), check_court (by painted lines), check_cameras (by static points and
-people), calibrate_cameras (`sfm-n40`, the default), align_cameras (`paper-n40`, `paper-global-n40`,
+Steps: import_cameras (`file`); checks of a file: check_videos (whether each video is of its camera),
+check_court (by painted lines), check_cameras (by static points and people);
+calibrate_cameras (`sfm-n40`, the default), align_cameras (`paper-n40`, `paper-global-n40`,
 `sim3-n40`),
 calibrate_lens and resect_cameras (`known18`, `known8-board`, `dlt18`), resect_together (`known`:
 all points, all cameras), calibrate_boards (`board`), calibrate_wand (`wand`),
@@ -54,6 +55,24 @@ rule check_cameras:
         "../scripts/check_cameras.py"
 
 
+rule check_videos:
+    input:
+        cameras_toml=paths.part(paths.CAMERAS, calibration="file"),
+        pictures=of_job(calibration.pictures_of_halls),
+    output:
+        check_json=paths.part(paths.VIDEO_CHECK, suffix="json"),
+        check_csv=paths.part(paths.VIDEO_CHECK, suffix="csv"),
+    log:
+        "results/{session}/logs/check_videos/file.log",
+    # Before detection: what is wrong with cameras is told early, also where a later step fails.
+    priority: 50
+    params:
+        code=code("check_videos.py"),
+        halls=of_job(calibration.halls),
+    script:
+        "../scripts/check_videos.py"
+
+
 rule check_court:
     input:
         calibration_path=lambda w: session_of(w).calibration_file,
@@ -65,8 +84,7 @@ rule check_court:
         check_csv=paths.part(paths.COURT_CHECK, suffix="csv"),
     log:
         "results/{session}/logs/check_court/file.log",
-    # Before detection: what is wrong with cameras is told early, also where a later step fails.
-    priority: 50
+    priority: 50  # likewise
     params:
         code=code("check_court.py"),
         names=lambda w: session_of(w).calibration_camera_names(),

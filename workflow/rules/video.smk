@@ -83,6 +83,7 @@ rule estimate_background:
         "results/{session}/logs/estimate_background/{take}.{camera}.log",
     benchmark:
         "results/{session}/benchmarks/estimate_background/{take}.{camera}.tsv"
+    priority: 50  # for check_videos and check_court
     params:
         code=code("estimate_background.py"),
         step=step("estimate_background"),

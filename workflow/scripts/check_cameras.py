@@ -26,7 +26,7 @@ def main(paths, check_json, check_csv, *, names, override, takes, unit=None):
     seen = verdict.Seen(static, joints)
     judged = verdict.judge(found, seen, residuals.height_px(views))
     for line in judged.warnings:
-        log.logger.warning("%s", line)
+        log.tell(line, check_json)
     rows = verdict.by_camera(found, seen)
     tables.write(check_csv, rows, float_format="%.3f")
     content = {

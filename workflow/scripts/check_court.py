@@ -26,7 +26,7 @@ def main(paths, check_json, check_csv, *, names, override, unit=None):
     either_end = any("either" in place for view in proposed.values() for place in view.values())
     judged = court_place.judge(found, np.stack(xy), court, either_end=either_end)
     for line in judged.warnings:
-        log.logger.warning("%s", line)
+        log.tell(line, check_json)
     place = judged.place
     rows = court_place.by_camera(found, place) if place else pd.DataFrame(columns=court_place.ROWS)
     tables.write(check_csv, rows, float_format="%.3f")

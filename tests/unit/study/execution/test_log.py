@@ -90,6 +90,12 @@ def test_warnings_reach_the_log_and_a_run_that_ends_well_returns_zero(tmp_path):
     assert "thin data" in text
 
 
+def test_what_is_told_is_in_the_log_and_on_the_terminal(tmp_path):
+    done, text = run(tmp_path, "log.tell('camera c1 was turned', 'check.json')")
+    assert done.stderr == "Warning: camera c1 was turned; see check.json\n"
+    assert text.endswith("WARNING camera c1 was turned\n")
+
+
 def test_a_second_run_starts_a_new_log(tmp_path):
     run(tmp_path, "raise InputError('first')")
     _, text = run(tmp_path, "raise InputError('second')")

@@ -178,6 +178,21 @@ def test_the_hall_is_seen_in_static_pictures_or_in_the_first_take(job):
     ]
 
 
+def test_the_hall_is_filmed_by_static_recordings_and_in_takes_without_them(job, study):
+    folder = "results/walk-4cams-tiny"
+    one = job(session="walk-4cams-tiny")
+    static, hall = calibration.halls(one)
+    assert (static["take"], list(static["pictures"])) == ("", ["cam01", "cam02", "cam03"])
+    assert hall["take"] == "balancing"
+    assert hall["pictures"]["cam03"] == f"{folder}/static/cam03.png"
+    assert hall["pictures"]["cam04"] == f"{folder}/takes/balancing/background/cam04.png"
+    assert calibration.pictures_of_halls(one) == list(hall["pictures"].values())
+    filmed = {name: replace(c, static="s.mp4") for name, c in one.session.cameras.items()}
+    session = replace(one.session, cameras=filmed)
+    assert session.filmed_halls() == {"": ["cam01", "cam02", "cam03", "cam04"]}
+    assert replace(session, cameras={"cam01": filmed["cam01"]}).filmed_halls() == {}
+
+
 def test_scales_are_those_of_cameras_whose_videos_are_scaled(job):
     one = job(session="walk-4cams-tiny")
     assert calibration.scales(one) == {}

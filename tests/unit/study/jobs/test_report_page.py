@@ -81,7 +81,10 @@ def test_a_session_is_told_with_its_first_calibration_and_its_overrides(content)
     assert (real["calibration"], real["mapper"], real["virtual"]) == ("file", None, False)
     assert real["files"] == {
         "quality": {"file": "results/walk-4cams-tiny/calibration/file/quality.json"},
-        "checks": ["results/walk-4cams-tiny/calibration/file/check.json"],
+        "checks": [
+            "results/walk-4cams-tiny/calibration/file/videos.json",
+            "results/walk-4cams-tiny/calibration/file/check.json",
+        ],
     }
     assert (plain["calibration"], plain["mapper"], plain["n_images"]) == ("known18", "global", 12)
     assert plain["files"]["model"] == "results/plain-tiny/sfm/global-n12-o0/summary.json"

@@ -102,7 +102,8 @@ def test_walks_without_fixed_cameras_become_models_only(study):
 
 def test_calibration_files_that_are_used_are_checked(study):
     assert calibration.every_file_check(study) == [
-        "results/walk-4cams-tiny/calibration/file/check.json"
+        "results/walk-4cams-tiny/calibration/file/videos.json",
+        "results/walk-4cams-tiny/calibration/file/check.json",
     ]
     session = study.sessions["walk-4cams-tiny"]
     empty = replace(session, takes={}, static_points=None)
@@ -116,12 +117,14 @@ def test_painted_lines_check_a_file_where_all_cameras_film_the_court(study):
     assert not calibration.checks_court(session)
     on_court = replace(session, court="badminton")
     assert calibration.file_checks(on_court) == [
+        "results/walk-4cams-tiny/calibration/file/videos.json",
         "results/walk-4cams-tiny/calibration/file/court.json",
         "results/walk-4cams-tiny/calibration/file/check.json",
     ]
     empty = replace(on_court, takes={}, static_points=None)
-    assert calibration.file_checks(empty) == []
+    assert not calibration.checks_court(empty)
     filmed = {name: replace(one, static="s.mp4") for name, one in session.cameras.items()}
     assert calibration.file_checks(replace(empty, cameras=filmed)) == [
-        "results/walk-4cams-tiny/calibration/file/court.json"
+        "results/walk-4cams-tiny/calibration/file/videos.json",
+        "results/walk-4cams-tiny/calibration/file/court.json",
     ]

@@ -71,6 +71,7 @@ REFINEMENT = CALIBRATION + "/refinement.csv"
 KNOCKS = CALIBRATION + "/knocks.csv"
 CALIBRATION_CHECK = SESSION + "/calibration/file/check.{suffix}"  # json or csv
 COURT_CHECK = SESSION + "/calibration/file/court.{suffix}"  # likewise
+VIDEO_CHECK = SESSION + "/calibration/file/videos.{suffix}"  # likewise
 COURT_PROPOSALS = CALIBRATION + "/proposals.csv"
 FOUND_COURT = SESSION + "/calibration/court_lines/{part}"  # found.json or proposals.csv
 LENS = SESSION + "/calibration/lens/{camera}.toml"

@@ -310,7 +310,8 @@ def _nobody_agrees(cameras: Sequence[Camera], place: Place) -> str:
     )
     return (
         f"the cameras of the file see the court's lines at different places: {far} from the place "
-        "that fits best; too few agree to say which are wrong; calibrate again"
+        "that fits best; too few agree to say which are wrong; check that each video is of its "
+        "camera, or calibrate again"
     )
 
 

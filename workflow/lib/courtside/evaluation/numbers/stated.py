@@ -185,6 +185,19 @@ VIEWS = {  # the columns that the documents show of their tables
             "with": "{static.command}",
         },
     ),
+    "exchanged-videos": View(
+        "exchanged-videos",
+        {
+            "pictures": "{row}",
+            "sessions": "{sessions}",
+            "right cameras, told as exchanged": "{right}",
+            "two exchanged: told rightly": "{exchanged}",
+            "all off by one: told rightly": "{shifted}",
+            "one wrong otherwise: told as exchanged": "{otherwise}",
+            "by": "{right.origin}",
+            "with": "{right.command}",
+        },
+    ),
     "contacts": View(
         "contacts",
         {

@@ -220,6 +220,21 @@ class Session:
         filmed = (one.static or self.first_take(name) for name, one in self.cameras.items())
         return bool(self.calibration_file and self.court and len(self.cameras) > 1 and all(filmed))
 
+    def filmed_halls(self) -> dict[str, list[str]]:
+        """Return the cameras that film the hall together, by take; "" for static recordings.
+
+        Takes whose cameras all have static recordings are not named: these show the hall.
+        """
+        static = [name for name, camera in self.cameras.items() if camera.static]
+        of_takes = {
+            name: [camera for camera in self.cameras if camera in take.videos]
+            for name, take in self.takes.items()
+        }
+        halls = {"": static} | {
+            take: shown for take, shown in of_takes.items() if not set(shown) <= set(static)
+        }
+        return {name: shown for name, shown in halls.items() if len(shown) > 1}
+
     def films_boards(self) -> bool:
         """Say whether the session is virtual and its cameras take pictures of a chessboard."""
         return bool(self.virtual and self.virtual.get("boards"))

@@ -37,6 +37,15 @@ class _LogFile(logging.FileHandler):
             print(self.format(record), file=sys.stderr)
 
 
+def tell(warning: str, path: StrPath) -> None:
+    """Log a warning, and show it on the terminal at once: a run may go on for an hour after it.
+
+    `path` is the file that holds it, and more.
+    """
+    logger.warning("%s", warning)
+    print(f"Warning: {warning}; see {path}", file=sys.stderr, flush=True)
+
+
 def _log_exception(
     kind: type[BaseException], error: BaseException, trace: TracebackType | None
 ) -> None:

@@ -28,6 +28,29 @@ def of_hall(job: Job) -> list[str]:
     ]
 
 
+def halls(job: Job) -> list[dict[str, Any]]:
+    """Return the pictures of a hall by camera, of the static recordings and of each take."""
+    session = job.session
+    return [
+        {
+            "take": take,
+            "pictures": {
+                name: job.fill(paths.BACKGROUND, camera=name, take=take)
+                if take and not session.cameras[name].static
+                else job.fill(paths.STATIC, camera=name)
+                for name in shown
+            },
+        }
+        for take, shown in session.filmed_halls().items()
+    ]
+
+
+def pictures_of_halls(job: Job) -> list[str]:
+    """Return all these pictures, each once."""
+    files = (path for hall in halls(job) for path in hall["pictures"].values())
+    return list(dict.fromkeys(files))
+
+
 def of_full_size(job: Job) -> list[str]:
     """Return of each fixed camera a picture or video of the size that its clicks are in."""
     session = job.session

@@ -134,9 +134,10 @@ def warnings(study: Study) -> list[str]:
     found = []
     for session in study.sessions.values():
         ways = [] if session.virtual else session.take_calibrations()
-        read = {paths.CALIBRATION_QUALITY.format(session=session.name, calibration=w) for w in ways}
-        read |= set() if session.virtual else set(file_checks(session))
-        for path in (path for path in sorted(read) if Path(path).is_file()):
+        name = session.name
+        read = [paths.CALIBRATION_QUALITY.format(session=name, calibration=way) for way in ways]
+        read += [] if session.virtual else file_checks(session)
+        for path in (path for path in read if Path(path).is_file()):
             told = files.read_json(Path(path)).get("warnings", [])
             found += [f"Warning: {session.name}: {line}; see {path}" for line in told[:N_WARNINGS]]
             more = len(told) - N_WARNINGS

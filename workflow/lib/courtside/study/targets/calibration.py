@@ -24,10 +24,19 @@ def every_file_check(study: Study) -> list[str]:
 
 
 def file_checks(session: Session) -> list[str]:
-    """Return the checks of a session's calibration file: by painted lines, and by what else."""
+    """Return the checks of a session's calibration file: by pictures, painted lines, and others."""
+    checks = {
+        paths.VIDEO_CHECK: checks_videos(session),
+        paths.COURT_CHECK: checks_court(session),
+        paths.CALIBRATION_CHECK: checks_file(session),
+    }
     known = {"session": session.name, "suffix": "json"}
-    by_lines = [paths.COURT_CHECK.format(**known)] * checks_court(session)
-    return by_lines + [paths.CALIBRATION_CHECK.format(**known)] * checks_file(session)
+    return [path.format(**known) for path, is_made in checks.items() if is_made]
+
+
+def checks_videos(session: Session) -> bool:
+    """Return whether the calibration file of a session is used and pictures can check it."""
+    return "file" in session.take_calibrations() and bool(session.filmed_halls())
 
 
 def checks_court(session: Session) -> bool:
