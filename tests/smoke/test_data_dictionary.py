@@ -29,6 +29,7 @@ PLACES = {
     "plans/*/growth.csv": [f"{FIGURES} | plans/\\<plan>/growth"],
     "plans/*/map.csv": [f"{FIGURES} | error_map"],
     "*/calibration/file/check.csv": ["Columns of the check of a calibration file"],
+    "*/calibration/file/videos.csv": ["Columns of the check of videos"],
     "*/calibration/*/refinement.csv": ["Columns of the refinement by people"],
     "*/calibration/*/knocks.csv": ["Columns of the knocks"],
     "*/pose2d_steadied/*.csv": [SHAKE],

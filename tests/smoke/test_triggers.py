@@ -143,7 +143,7 @@ def test_a_video_with_other_content_reruns_its_camera_and_what_joins_cameras(kep
     video = kept / DEMO / "videos/cam01.mp4"
     with changed(video, video.read_bytes() + b"\0"):
         jobs = planned(root=kept)
-    own = {"extract_static": 1, "check_movement": 1, "detect_pose": 1}
+    own = {"extract_static": 1, "check_movement": 1, "check_videos": 1, "detect_pose": 1}
     assert jobs == together(own, REAL_FUSED)
 
 
@@ -176,7 +176,8 @@ def test_raw_files_that_are_only_touched_rerun_nothing(kept):
 def test_what_is_too_large_to_be_compared_goes_by_its_date(kept):
     with changed(kept / DEMO / "videos/cam04.mp4"):
         jobs = planned("--max-checksum-file-size", "1000", root=kept)
-    assert jobs == together({"estimate_background": 1, "detect_pose": 1}, REAL_FUSED)
+    own = {"estimate_background": 1, "check_videos": 1, "detect_pose": 1}
+    assert jobs == together(own, REAL_FUSED)
 
 
 def test_an_older_date_hides_a_change_from_snakemake_but_not_from_verify_study(kept):
@@ -223,6 +224,7 @@ def test_a_pin_of_an_artefact_fetches_it_and_reruns_what_is_made_of_it(kept):
     with edited(pins, sha256, sha256[::-1]):
         jobs = planned(root=kept)
     films = {"extract_static": 3, "check_movement": 3, "estimate_background": 1, "detect_pose": 4}
+    films["check_videos"] = 1
     assert jobs == together({"fetch_pose2sim": 1, "import_cameras": 1}, films, REAL_FUSED)
 
 
@@ -236,7 +238,8 @@ def test_a_key_of_a_session_reruns_its_steps(kept):
     assert jobs == {rule: n for rule, n in REAL_FUSED.items() if rule not in before}
     with edited(session, "trim_s: [0.0, 0.4]", "trim_s: [0.0, 0.3]"):
         jobs = planned(root=kept)
-    assert jobs == together({"estimate_background": 1, "detect_pose": 4}, REAL_FUSED)
+    shorter = {"estimate_background": 1, "check_videos": 1, "detect_pose": 4}
+    assert jobs == together(shorter, REAL_FUSED)
 
 
 def test_a_sighting_names_people_anew(kept):
@@ -298,7 +301,7 @@ def test_sessions_that_are_added_rerun_only_the_table_that_they_share(kept):
     with edited(study, "single-view-tiny]", "single-view-tiny, walk-again, plain-again]"):
         jobs = planned(root=kept)
     real = {"import_cameras": 1, "extract_static": 3, "check_movement": 3}
-    real |= {"estimate_background": 1, "detect_pose": 4, **REAL_FUSED}
+    real |= {"estimate_background": 1, "check_videos": 1, "detect_pose": 4, **REAL_FUSED}
     del real["export_overlay_video"]  # the study names the takes whose videos it writes
     found = {"simulate_plain_again": 1, "extract_static": 2, "extract_frames": 1}
     found |= {"extract_features": 1, "match_images": 1, "map_images": 2, "adjust_network": 2}

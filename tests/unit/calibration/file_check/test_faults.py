@@ -85,13 +85,13 @@ def test_free_numbers_are_fitted_to_what_others_see():
     longer = seen_by[1].K.copy()
     longer[[0, 1], [0, 1]] *= 1.04
     spoilt = [seen_by[0], replace(seen_by[1], K=longer), *seen_by[2:]]
-    focal, turned, moved = faults.fitted(spoilt, 1, xyz, xy, verdict.FREE)
+    focal, turned, zoomed, moved = faults.fitted(spoilt, 1, xyz, xy, verdict.FREE)
     assert focal.what == "the focal length of camera c1 is 4.0 % too long"
-    assert [one.n_free for one in (focal, turned, moved)] == [1, 3, 6]
+    assert [one.n_free for one in (focal, turned, zoomed, moved)] == [1, 3, 4, 6]
     np.testing.assert_allclose(focal.cameras[1].K, seen_by[1].K, rtol=1e-4)
     away = cameras.turned(seen_by[1], [0.01, -0.02, 0.005])
     spoilt[1] = away
-    _, turned, _ = faults.fitted(spoilt, 1, xyz, xy, verdict.FREE)
+    _, turned, _, _ = faults.fitted(spoilt, 1, xyz, xy, verdict.FREE)
     np.testing.assert_allclose(
         turned.cameras[1].cam_from_world, seen_by[1].cam_from_world, atol=1e-4
     )

@@ -38,10 +38,14 @@ def test_good_cameras_are_good(seed):
         assert all(px < 4 for px in message.px.values())
 
 
-def scaled_focal(camera):
+def scaled_focal(camera, factor=1.12):
     matrix = camera.K.copy()
-    matrix[[0, 1], [0, 1]] *= 1.12
+    matrix[[0, 1], [0, 1]] *= factor
     return replace(camera, K=matrix)
+
+
+def turned_zoomed(camera):
+    return cameras.turned(scaled_focal(camera, 1.05), [0.02, 0.01, 0])
 
 
 @pytest.mark.parametrize(
@@ -65,6 +69,15 @@ def test_a_spoilt_camera_and_what_is_wrong_are_named(spoil, what, by):
     assert what in message.warnings[0]
     assert len(message.faults) == 1
     assert message.mended_px[by] < 0.7 * message.px[by]
+
+
+def test_a_turned_and_zoomed_camera_is_named_by_points_over_its_picture():
+    """People stay near its middle, where a focal length changes little."""
+    true = hall.four_cameras()
+    static, _ = seen(true)
+    wrong = [true[0], turned_zoomed(true[1]), *true[2:]]
+    message = verdict.judge(wrong, verdict.Seen(static, None), person_px=300.0)
+    assert "direction and focal length of camera c1 are wrong" in message.warnings[0]
 
 
 def test_exchanged_cameras_are_named():

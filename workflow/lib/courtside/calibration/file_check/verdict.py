@@ -18,8 +18,8 @@ from courtside.geometry.camera import Camera
 
 FEWEST_STATIC, FEWEST_JOINTS = 4, 60  # ASSUME: fewer say nothing
 FLOOR_PX = 0.5  # ASSUME: below, residuals say nothing: clicks and networks are no better
-PRICE = {0: 0.05, 1: 0.1, 3: 0.2, 6: 0.3}  # ASSUME: of a fault, by its free numbers
-FREE = (faults.FOCAL, faults.TURNED, faults.MOVED)
+PRICE = {0: 0.05, 1: 0.1, 3: 0.2, 4: 0.25, 6: 0.3}  # ASSUME: of a fault, by its free numbers
+FREE = (faults.FOCAL, faults.TURNED, faults.ZOOMED, faults.MOVED)
 MOST_MIRRORED = 8  # coordinates mirrored together are tried up to so many: 256 ways
 # ASSUME: the least gain of an explanation without and with free numbers; and what is too much
 # without an explanation: of static points as a share of the longer side of the picture, of joints
