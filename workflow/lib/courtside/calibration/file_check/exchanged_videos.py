@@ -30,8 +30,8 @@ NEAR = 2e-3  # ASSUME: of the picture's longer side, from an epipolar line
 # pictures, many in another with repeated patterns. A pair has at least the share `CHANCE`.
 TURNS, TURNED_DEG, TYPICAL, CHANCE, SEED = 40, (2.0, 10.0), 0.9, 0.012, 0
 # ASSUME: how much more likely the pictures must be if cameras are exchanged, as a logarithm, and
-# the largest share of it that the cameras as they are may have. In virtual halls, exchanged
-# cameras gain 22 and more where enough is seen in common, and wrong ones of other kinds up to 12.
+# the largest share of it that the cameras as they are may have. Exchanged cameras of virtual halls
+# gain 22 and more where their pictures have enough in common (docs/measured.md).
 SURE, LEFT = 15.0, 0.5
 FEW = 6  # cameras: 720 orders
 APART = 5.0  # ASSUME: of two exchanges, the worse by less than this is possible, too
@@ -46,8 +46,8 @@ class Verdict:
     """Of which camera each picture is, and what each pair of pictures says."""
 
     names: dict[str, str]  # the camera that a picture is of, by the camera that it is given for
-    # Exchanges that explain the pictures as well: in a regular ring of cameras it makes no
-    # difference which two face each other's pictures.
+    # Exchanges that explain the pictures as well: in a regular ring of cameras, one exchange looks
+    # like another.
     also: list[tuple[str, str]]
     table: pd.DataFrame  # of each pair, with the columns `ROWS`
 
@@ -142,18 +142,10 @@ class _Search:
     def best(self) -> tuple[list[int], list[Pair]]:
         """Return the camera of each picture, and single exchanges that are as likely.
 
-        Of a few cameras all orders are tried; of more, two are exchanged as long as this gains.
         Cameras whose pictures are exchanged among them stay so if together they gain by far.
         """
         own = list(range(len(self.cameras)))
-        order = own
-        if len(own) <= FEW:
-            order = max((list(one) for one in permutations(own)), key=self.evidence)
-        while len(own) > FEW:
-            nearer = max(_exchanges(order), key=self.evidence)
-            if self.evidence(nearer) <= self.evidence(order):
-                break
-            order = nearer
+        order = self._most_likely(own)
         for circle in _circles(order):
             back = [k if k in circle else order[k] for k in own]
             before, after = self.evidence(back, circle), self.evidence(order, circle)
@@ -165,6 +157,15 @@ class _Search:
         alike = [o for o in _exchanges(own) if o != order and most - self.evidence(o) < APART]
         pairs = [[k for k in own if other[k] != k] for other in alike]
         return order, [(one, other) for one, other in pairs]
+
+    def _most_likely(self, own: list[int]) -> list[int]:
+        """Try all orders of a few cameras; of more, exchange two as long as this gains."""
+        if len(own) <= FEW:
+            return max((list(order) for order in permutations(own)), key=self.evidence)
+        order, nearer = own, max(_exchanges(own), key=self.evidence)
+        while self.evidence(nearer) > self.evidence(order):
+            order, nearer = nearer, max(_exchanges(nearer), key=self.evidence)
+        return order
 
     def evidence(self, order: Sequence[int], some: Collection[int] = ()) -> float:
         """Return how likely the pictures are against chance, as a logarithm.
@@ -204,7 +205,7 @@ def _circles(order: Sequence[int]) -> list[set[int]]:
 
 
 def _against_chance(near: int, n: int, chance: float) -> float:
-    """Return how likely it is that so many of `n` matches are near lines, against chance."""
+    """Return how likely so many of `n` matches near lines are, against chance, as a logarithm."""
     if near <= chance * n:
         return 0.0
     far, share = n - near, near / n
