@@ -12,8 +12,8 @@ from courtside.study.execution.script import run
 from courtside.video import images
 
 
-def main(cameras_toml, check_json, check_csv, *, halls):
-    cameras = {one.name: one for one in camera.read_toml(cameras_toml)}
+def main(paths, check_json, check_csv, *, halls):
+    cameras = {one.name: one for one in camera.read_toml(paths.cameras_toml)}
     warnings, rows = [], []
     for hall in halls:
         pictures = [images.read(path, cv2.IMREAD_GRAYSCALE) for path in hall["pictures"].values()]

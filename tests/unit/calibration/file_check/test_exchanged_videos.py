@@ -5,6 +5,7 @@ import runpy
 from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
+from types import SimpleNamespace
 
 import cv2
 import numpy as np
@@ -168,7 +169,8 @@ def test_the_step_names_the_take_of_exchanged_videos(tmp_path, capfd):
     ]
     script = runpy.run_path(str(ROOT / "workflow" / "scripts" / "check_videos.py"))
     told, table = tmp_path / "videos.json", tmp_path / "videos.csv"
-    script["main"](tmp_path / "cameras.toml", told, table, halls=halls)
+    paths = SimpleNamespace(cameras_toml=tmp_path / "cameras.toml")
+    script["main"](paths, told, table, halls=halls)
     (line,) = json.loads(told.read_text())["warnings"]
     assert line.startswith("take shot: the videos of c0 and c2 are exchanged; correct the session")
     assert capfd.readouterr().err == f"Warning: {line}; see {told}\n"
