@@ -18,7 +18,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from courtside.geometry import epipolar
+from courtside.geometry import epipolar, rotations
 from courtside.geometry.camera import Camera, turned
 
 SIDE_PX = 1280  # longer side of the pictures that features are taken from
@@ -118,9 +118,8 @@ def by_chance(cameras: Sequence[Camera], matches: Matches) -> dict[Pair, float]:
     """Return the share of each pair's matches that is near the lines of wrong cameras."""
     rng, counts = np.random.default_rng(SEED), []
     for _ in range(TURNS):
-        axes = rng.normal(size=(len(cameras), 3))
-        angles = np.deg2rad(rng.uniform(*TURNED_DEG, size=(len(cameras), 1)))
-        turns = angles * axes / np.linalg.norm(axes, axis=1, keepdims=True)
+        axes = rotations.unit(rng.normal(size=(len(cameras), 3)))
+        turns = axes * np.deg2rad(rng.uniform(*TURNED_DEG, size=(len(cameras), 1)))
         wrong = [turned(camera, turn) for camera, turn in zip(cameras, turns, strict=True)]
         counts.append(near_lines(wrong, matches))
     return {
