@@ -31,7 +31,7 @@ def test_errors_are_those_beside_the_known_offset():
     for view in views:
         view.xy[...] += rng.normal(0, 1, view.xy.shape)
     table = joint_correction.read(OFFSETS)
-    true = record.xyz - np.nan_to_num(joint_correction.offsets(record, table, {"p1": "m"}))
+    true = record.xyz - np.nan_to_num(joint_correction.offsets(record, table, {"p1": "m"}, cameras))
     truth = true_motion.Truth(record.joints, record.person_id, record.time_s, true)
     seen = [Footage(c, view, Clock()) for c, view in zip(cameras, views, strict=True)]
     given = walker.SKELETON, {"p1": "m"}, table, truth, OPTIONS

@@ -64,6 +64,19 @@ def test_views_that_were_not_accepted_do_not_count_unless_none_was():
     assert np.abs(seen.gains[2:]).max() < 0.02
 
 
+def test_between_two_cameras_that_face_each_other_no_ray_moves_a_joint_far():
+    """On their line the rays cross nowhere: triangulation would multiply an offset without end."""
+    cameras = scene.ring(2, radius_m=10.0, height_m=1.0)
+    along = cameras[1].centre_in_world - cameras[0].centre_in_world
+    along /= np.linalg.norm(along)
+    aside = np.cross(along, [0.0, 0.0, 1.0])
+    xyz = np.array([0.0, 0.0, 1.0]) + np.array([0.0, 0.001, 0.1, 1.0, 6.0])[:, None] * aside
+    seen = offset_vectors.views(cameras, xyz, np.ones((len(xyz), 2), dtype=bool))
+    assert np.linalg.norm(seen.gains, axis=(-2, -1), ord=2).max() < 2.3
+    assert np.linalg.norm(seen.gains[:, 0] @ along, axis=-1).max() < 1e-9
+    np.testing.assert_allclose(seen.gains[:, -1].sum(axis=0), np.eye(3), atol=1e-9)
+
+
 @pytest.mark.parametrize("joint", skeleton.LIMBS)
 def test_names_are_those_of_the_vectors(joint):
     found = every(persons(), joint, "left", scene.ring(3))

@@ -40,22 +40,11 @@ def smooth(points: Keypoints3D, cutoff_hz: ArrayLike, order: int) -> Keypoints3D
     (`_spread`). It never decreases, because these errors last longer than the filter's impulse
     response.
     """
-    if order < 2 or order % 2:
-        raise InputError(
-            f"filter_motion.order: expected an even number of 2 or more, found {order}"
-        )
+    xyz, covariance = smooth_xyz(points, cutoff_hz, order), points.covariance_2d.copy()
     if len(points.time_s) < 2:
         return points
-    each_hz = np.broadcast_to(np.asarray(cutoff_hz, dtype=float), points.joints.shape)
-    check_cutoff(float(each_hz.max()), points.rate_hz)
-    xyz, covariance = points.xyz.copy(), points.covariance_2d.copy()
     network = points.covariance_network.copy()
-    for one_hz in np.unique(each_hz):
-        joints = np.flatnonzero(each_hz == one_hz)
-        for person in range(len(xyz)):
-            xyz[person][:, joints] = filtering.zero_lag_points(
-                points.xyz[person][:, joints], points.rate_hz, float(one_hz), order
-            )
+    each_hz = np.broadcast_to(np.asarray(cutoff_hz, dtype=float), points.joints.shape)
     for person, joint in np.ndindex(xyz.shape[0], xyz.shape[2]):
         covariance[person, :, joint] = _covariance(
             points.xyz[person, :, joint],
@@ -71,6 +60,26 @@ def smooth(points: Keypoints3D, cutoff_hz: ArrayLike, order: int) -> Keypoints3D
             order,
         )
     return replace(points, xyz=xyz, covariance_2d=covariance, covariance_network=network)
+
+
+def smooth_xyz(points: Keypoints3D, cutoff_hz: ArrayLike, order: int) -> NDArray:
+    """Return the positions (P, T, J, 3) m of `smooth` alone, in a fraction of its time."""
+    if order < 2 or order % 2:
+        raise InputError(
+            f"filter_motion.order: expected an even number of 2 or more, found {order}"
+        )
+    xyz = points.xyz.copy()
+    if len(points.time_s) < 2:
+        return xyz
+    each_hz = np.broadcast_to(np.asarray(cutoff_hz, dtype=float), points.joints.shape)
+    check_cutoff(float(each_hz.max()), points.rate_hz)
+    for one_hz in np.unique(each_hz):
+        joints = np.flatnonzero(each_hz == one_hz)
+        for person in range(len(xyz)):
+            xyz[person][:, joints] = filtering.zero_lag_points(
+                points.xyz[person][:, joints], points.rate_hz, float(one_hz), order
+            )
+    return xyz
 
 
 def _spread(covariance: NDArray, rate_hz: float, cutoff_hz: float, order: int) -> NDArray:

@@ -43,6 +43,10 @@ SEEN = "seen "  # begins the names of vectors that depend on the view
 # ASSUME: weight of a view that was not accepted, over one that was: enough for a joint between two
 # gaps, where no view was accepted, and nothing beside an accepted one.
 UNUSED = 1e-3
+# ASSUME: along a direction in which views weigh less than this share of the best direction (two
+# views within 26 degrees of one line), an offset counts less than the rays would make of it. There,
+# small errors of the shares would become large offsets.
+LEAST_STRENGTH = 0.05
 
 
 @dataclass(frozen=True)
@@ -70,7 +74,9 @@ def views(cameras: Sequence[Camera], xyz: NDArray, accepted: NDArray) -> Views:
     weight = np.where(accepted.T, 1.0, UNUSED) * (focal_px[:, None] / away) ** 2
     flat = weight[..., None, None] * (np.eye(3) - ways[..., :, None] * ways[..., None, :])
     whole = np.where(np.isfinite(flat).all(axis=(0, -2, -1))[:, None, None], flat.sum(0), np.eye(3))
-    return Views(ways, np.linalg.solve(whole, flat))
+    strength, axes = np.linalg.eigh(whole)
+    strength = np.maximum(strength, LEAST_STRENGTH * strength[:, -1:])
+    return Views(ways, axes / strength[:, None] @ np.swapaxes(axes, -2, -1) @ flat)
 
 
 def every(
