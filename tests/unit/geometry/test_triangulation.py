@@ -111,6 +111,55 @@ def test_missing_and_low_scores_are_not_used():
     assert found.error_px[0, 1] == pytest.approx(300 * np.sqrt(2))
 
 
+def weak_views(n=200, low=0.02, seed=5):
+    """Return cameras, points, keypoints and scores: two cameras face each other, two see little.
+
+    The points are near the line between the first and the third camera. All keypoints have noise,
+    those of the second and fourth camera 2.5 times as much, and scores `low`.
+    """
+    views, rng = scene.ring(4, radius_m=10.0, height_m=1.0), np.random.default_rng(seed)
+    along = views[2].centre_in_world - views[0].centre_in_world
+    xyz = [0, 0, 1.0] + rng.uniform(-0.1, 0.1, (n, 1)) * along + rng.normal(0, 0.1, (n, 3))
+    score = np.tile([[1.0], [low], [1.0], [low]], n)
+    noise_px = np.where(score < 1, 5.0, 2.0)[..., None] * rng.normal(size=(4, n, 2))
+    return views, xyz, scene.views(views, xyz) + noise_px, score
+
+
+WEAK = {"sigma_px": 1, "max_error_px": 7.0, "min_score": 0.05}
+
+
+def test_low_scores_are_used_where_the_other_views_leave_a_direction_open():
+    views, xyz, xy, score = weak_views()
+    alone = triangulation.triangulate_robust(views, xy, score, **WEAK)
+    found = triangulation.triangulate_robust(views, xy, score, **WEAK, weak_m=0.12)
+    before, after = (np.linalg.norm(each.xyz - xyz, axis=1) for each in (alone, found))
+    assert np.nanmedian(before) > 0.2
+    assert np.nanmedian(after) < 0.06 and np.nanquantile(after, 0.95) < 0.12
+    assert found.accepted[[1, 3]].any(axis=0)[np.isfinite(after)].mean() > 0.95
+    np.testing.assert_allclose(found.weight[1, found.accepted[1]], np.sqrt(0.02))
+    assert not alone.accepted[[1, 3]].any()
+
+
+def test_low_scores_change_nothing_where_the_other_views_determine_the_point():
+    views, _xyz, xy, score = weak_views()
+    score[1] = 0.5  # three views
+    alone = triangulation.triangulate_robust(views, xy, score, **WEAK)
+    found = triangulation.triangulate_robust(views, xy, score, **WEAK, weak_m=0.12)
+    seen = alone.accepted[1]
+    assert seen.sum() > 50
+    np.testing.assert_array_equal(found.xyz[seen], alone.xyz[seen])
+    assert not found.accepted[3, seen].any()
+
+
+def test_wrong_keypoints_of_low_scores_are_left_out():
+    views, _xyz, xy, score = weak_views()
+    xy[[1, 3]] += [0.0, 150.0]
+    alone = triangulation.triangulate_robust(views, xy, score, **WEAK)
+    found = triangulation.triangulate_robust(views, xy, score, **WEAK, weak_m=0.12)
+    assert not found.accepted[[1, 3]].any()
+    np.testing.assert_array_equal(found.xyz, alone.xyz)
+
+
 def test_views_that_contradict_give_nothing():
     views, xyz = scene.ring(2), scene.points(1)
     xy = scene.views(views, xyz)

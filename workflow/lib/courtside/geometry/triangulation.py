@@ -21,6 +21,13 @@ START = 12.0  # the first kernel, in units of the last
 GRADUATION = 1.6  # each round narrows the kernel by this factor
 SETTLING = 5  # steps with the last kernel
 WIDEST = 2.0  # beyond this many limits a view is never used
+# Of points that need the views of low scores, too (`weak_m`). ASSUME: chosen on the players of the
+# development sessions (docs/measured.md): there keypoints are 0.02 of the person's height off, 0.4
+# of the limit, and their squared error grows with the inverse root of the score.
+USUAL = 0.4  # standard deviation of a keypoint, in units of the limit
+WIDER = 0.125  # the limit grows with the score to the power of minus this
+LEAST_SCORE = 1e-4  # for the limit, lower scores count as this
+BETTER = 0.9  # of its standard deviation: a point solved again is kept if its own is smaller
 BATCH = 20000  # points at a time: keeps the working set in the cache and memory flat
 
 
@@ -32,6 +39,7 @@ class Triangulated:
     covariance: NDArray  # (N, 3, 3) m2: from the keypoints' own noise; NaN where missing
     accepted: NDArray  # (C, N): views that the point rests on
     error_px: NDArray  # (C, N): from keypoint, accepted or not, to projection; NaN without either
+    weight: NDArray  # (C, N): of the views before any of them fades, 1 for score 1; 0 if not used
 
 
 def triangulate(xy: NDArray, weight: NDArray, cam_from_world: NDArray) -> NDArray:
@@ -82,6 +90,7 @@ def triangulate_robust(
     min_views: int = 2,
     min_score: float = 0.0,
     fade_px: ArrayLike | None = None,
+    weak_m: float | None = None,
 ) -> Triangulated:
     """Triangulate points, leaving out views that disagree.
 
@@ -92,8 +101,14 @@ def triangulate_robust(
     wide: a view fades as it disagrees instead of switching off, which keeps a point from jumping
     between frames when a view is near the limit (a slightly wrong calibration causes this). Views
     beyond twice the limit have no weight. Accepted are the views within the limit, and where these
-    are fewer than `min_views`, the closest ones within twice the limit. Raises `ValueError` if the
-    inputs disagree on the number of cameras or points, or `min_views` is below 2.
+    are fewer than `min_views`, the closest ones within twice the limit.
+
+    Views along nearly one line, such as two cameras that face each other, leave a point uncertain
+    along it. If its standard deviation exceeds `weak_m`, the point is solved again with the views
+    below `min_score`, too, weighted by the root of their scores, and kept if it is less uncertain.
+
+    Raises `ValueError` if the inputs disagree on the number of cameras or points, or `min_views` is
+    below 2.
 
     Parameters
     ----------
@@ -103,9 +118,11 @@ def triangulate_robust(
     max_error_px : float or (C, N) float; the limit: a view is accepted if its keypoint lies this
         close to the projected point
     min_views : fewest accepted views of a point, at least 2
-    min_score : keypoints below it are not used
+    min_score : keypoints below it are not used, except where `weak_m` needs them
     fade_px : float or (C, N) float; a view with this reprojection error has a quarter of its
         weight; 4/3 of the limit by default
+    weak_m : metres, from keypoints with a standard deviation of 0.4 of the limit; None solves no
+        point again
     """
     check(cameras, xy, score, min_views)
     sigma_px = np.broadcast_to(sigma_px, xy.shape[1:2])
@@ -122,6 +139,7 @@ def triangulate_robust(
             min_score=min_score,
             limit_px=limit_px[:, piece],
             fade_px=fading_px[:, piece],
+            weak_m=np.inf if weak_m is None else weak_m,
         )
         for piece in pieces
     ]
@@ -130,6 +148,7 @@ def triangulate_robust(
         covariance=np.concatenate([part.covariance for part in parts]),
         accepted=np.concatenate([part.accepted for part in parts], axis=1),
         error_px=np.concatenate([part.error_px for part in parts], axis=1),
+        weight=np.concatenate([part.weight for part in parts], axis=1),
     )
 
 
@@ -154,18 +173,64 @@ def _solve(
     min_score: float,
     limit_px: NDArray,
     fade_px: NDArray,
+    weak_m: float,
 ) -> Triangulated:
-    seen = np.isfinite(xy).all(axis=-1) & np.isfinite(score)
-    usable = seen & (score >= min_score) & (score > 0)
-    views = Views(cameras, xy, np.where(usable, score, 0.0))
+    seen = np.isfinite(xy).all(axis=-1) & np.isfinite(score) & (score > 0)
+    weight = np.where(seen & (score >= min_score), score, 0.0)
+    found = _weighted(cameras, xy, weight, sigma_px, min_views, limit_px, fade_px)
+    spread_m = _spread_m(found, sigma_px, limit_px)
+    weak = np.flatnonzero(spread_m > weak_m)
+    if not len(weak):
+        return found
+    root = np.sqrt(np.where(seen, score, 0.0)[:, weak])
+    wider = np.clip(np.nan_to_num(score[:, weak]), LEAST_SCORE, 1.0) ** -WIDER
+    limits_px = limit_px[:, weak] * wider, fade_px[:, weak] * wider
+    again = _weighted(cameras, xy[:, weak], root, sigma_px[weak], min_views, *limits_px)
+    better = _spread_m(again, sigma_px[weak], limit_px[:, weak]) < BETTER * spread_m[weak]
+    return _replaced(found, weak[better], again, better)
+
+
+def _weighted(
+    cameras: Sequence[Camera],
+    xy: NDArray,
+    weight: NDArray,
+    sigma_px: NDArray,
+    min_views: int,
+    limit_px: NDArray,
+    fade_px: NDArray,
+) -> Triangulated:
+    """Triangulate with these weights (C, N), 0 for a view that is not used."""
+    views = Views(cameras, xy, weight)
     xyz = np.full((xy.shape[1], 3), np.nan)
-    accepted = np.zeros_like(usable)
-    at = np.flatnonzero(usable.sum(axis=0) >= min_views)
+    accepted = np.zeros(weight.shape, dtype=bool)
+    at = np.flatnonzero((weight > 0).sum(axis=0) >= min_views)
     if len(at):
         found = _select_and_refine(views.of(at), limit_px[:, at], fade_px[:, at], min_views)
         xyz[at], accepted[:, at] = found
     covariance = _noise_covariance(views, xyz, accepted, sigma_px)
-    return Triangulated(xyz, covariance, accepted, _reprojection_px(cameras, xy, xyz))
+    return Triangulated(xyz, covariance, accepted, _reprojection_px(cameras, xy, xyz), weight)
+
+
+def _spread_m(found: Triangulated, sigma_px: NDArray, limit_px: NDArray) -> NDArray:
+    """Return the standard deviation (N,) m of points by keypoints of the usual error.
+
+    NaN where missing; infinite where the views leave a direction open.
+    """
+    usual = USUAL * np.median(limit_px, axis=0) / sigma_px
+    spread_m = np.sqrt(np.trace(found.covariance, axis1=1, axis2=2)) * usual
+    return np.where(np.isnan(spread_m) & np.isfinite(found.xyz[:, 0]), np.inf, spread_m)
+
+
+def _replaced(
+    found: Triangulated, at: NDArray, other: Triangulated, which: NDArray
+) -> Triangulated:
+    """Put the points `which` of another triangulation at the indices `at`."""
+    result = {name: values.copy() for name, values in vars(found).items()}
+    for name in ("xyz", "covariance"):
+        result[name][at] = getattr(other, name)[which]
+    for name in ("accepted", "error_px", "weight"):
+        result[name][:, at] = getattr(other, name)[:, which]
+    return Triangulated(**result)
 
 
 def _select_and_refine(
@@ -307,6 +372,7 @@ def triangulate_plain(
         covariance=_noise_covariance(views, xyz, used, np.broadcast_to(sigma_px, len(xyz))),
         accepted=used & np.isfinite(xyz[:, 0]),
         error_px=_reprojection_px(cameras, xy, xyz),
+        weight=views.weight,
     )
 
 
