@@ -151,6 +151,16 @@ def test_low_scores_change_nothing_where_the_other_views_determine_the_point():
     assert not found.accepted[3, seen].any()
 
 
+def test_two_views_alone_are_not_weighted_anew():
+    views, _, xy, score = weak_views(low=0.1)
+    xy[1:3] = np.nan  # a right angle, but one view of a low score
+    alone = triangulation.triangulate_robust(views, xy, score, **WEAK)
+    found = triangulation.triangulate_robust(views, xy, score, **WEAK, weak_m=0.01)
+    assert np.isfinite(alone.xyz).all(axis=1).mean() > 0.9
+    np.testing.assert_array_equal(found.xyz, alone.xyz)
+    np.testing.assert_array_equal(found.weight, alone.weight)
+
+
 def test_wrong_keypoints_of_low_scores_are_left_out():
     views, _xyz, xy, score = weak_views()
     xy[[1, 3]] += [0.0, 150.0]

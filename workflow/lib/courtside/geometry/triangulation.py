@@ -104,8 +104,9 @@ def triangulate_robust(
     are fewer than `min_views`, the closest ones within twice the limit.
 
     Views along nearly one line, such as two cameras that face each other, leave a point uncertain
-    along it. If its standard deviation exceeds `weak_m`, the point is solved again with the views
-    below `min_score`, too, weighted by the root of their scores, and kept if it is less uncertain.
+    along it. If its standard deviation exceeds `weak_m` and three views show it, the point is solved
+    again with the views below `min_score`, too, weighted by the root of their scores, and kept if
+    it is less uncertain.
 
     Raises `ValueError` if the inputs disagree on the number of cameras or points, or `min_views` is
     below 2.
@@ -179,7 +180,7 @@ def _solve(
     weight = np.where(seen & (score >= min_score), score, 0.0)
     found = _weighted(cameras, xy, weight, sigma_px, min_views, limit_px, fade_px)
     spread_m = _spread_m(found, sigma_px, limit_px)
-    weak = np.flatnonzero(spread_m > weak_m)
+    weak = np.flatnonzero((spread_m > weak_m) & (seen.sum(axis=0) > 2))
     if not len(weak):
         return found
     root = np.sqrt(np.where(seen, score, 0.0)[:, weak])

@@ -101,6 +101,16 @@ VIEWS = {  # the columns that the documents show of their tables
             "with": "{view.command}",
         },
     ),
+    "low-scores": View(
+        "low-scores",
+        {
+            "limb joints, median / 95 % / 99 %, mm": "{row}",
+            "without views of low scores": "{without}",
+            "with them where they are needed (used)": "{used}",
+            "joints": "{used.n}",
+            "with": "{used.command}",
+        },
+    ),
     "offset-cameras": View(
         "offset-cameras",
         {

@@ -72,14 +72,14 @@ def exported_labels(job: Job) -> list[dict[str, str]]:
     return [{**job.wildcards, "stage": stage} for stage in job.stages()]
 
 
-def fitted_takes(study: Study, model: str) -> list[dict[str, Any]]:
+def fitted_takes(study: Study, model: str, calibration: str = "known18") -> list[dict[str, Any]]:
     """Return the files of every virtual take of a study that offsets of a network are fitted on.
 
-    And the sexes of its persons, `sex_of`. People were found with cameras from 18 points.
+    And the sexes of its persons, `sex_of`. People were found with the cameras of `calibration`.
     """
     found = []
     for session in study.sessions.values():
-        of = {"session": session.name, "model": model, "calibration": "known18"}
+        of = {"session": session.name, "model": model, "calibration": calibration}
         for name, take in session.takes.items() if session.virtual else ():
             job = Job(study, {**of, "take": name})
             found.append(
