@@ -104,9 +104,9 @@ def triangulate_robust(
     are fewer than `min_views`, the closest ones within twice the limit.
 
     Views along nearly one line, such as two cameras that face each other, leave a point uncertain
-    along it. If its standard deviation exceeds `weak_m` and three views show it, the point is solved
-    again with the views below `min_score`, too, weighted by the root of their scores, and kept if
-    it is less uncertain.
+    along it. If its standard deviation exceeds `weak_m` and three views show it, it is solved again
+    with the views below `min_score`, too, weighted by the root of their scores, and kept if it is
+    less uncertain.
 
     Raises `ValueError` if the inputs disagree on the number of cameras or points, or `min_views` is
     below 2.
