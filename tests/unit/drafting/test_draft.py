@@ -95,6 +95,17 @@ def test_a_calibration_replaces_clicks_and_its_cameras_are_matched():
     assert "72x48" in text
 
 
+@pytest.mark.parametrize("there", ["cam_1", "Cam 01", "CAM-1"])
+def test_a_camera_of_a_name_with_other_signs_is_found_in_the_calibration(there):
+    films = [recording(f"data/north/serve/cam_{k}.mp4", n_frames=150) for k in (1, 2)]
+    cameras = {there: (64, 48), "cam_2": (64, 48)}
+    _, _, content = draft(*films, recording("data/north/c.toml", "calibration", cameras=cameras))
+    assert content["cameras"] == {
+        "cam1": {"name_in_calibration": there},
+        "cam2": {"name_in_calibration": "cam_2"},
+    }
+
+
 def test_a_camera_unknown_to_the_calibration_is_marked():
     calibration = recording("data/north/c.toml", "calibration", cameras={"int_1_img": (64, 48)})
     _, text, content = draft(*TAKE, calibration)

@@ -77,6 +77,16 @@ def test_a_view_that_was_not_used_is_joined_by_a_red_line(take):
     assert images[7][y, x].tolist() != list(COLOURS[2])
 
 
+def test_a_joint_that_projects_far_away_is_not_joined_by_a_line(take):
+    track = tracked(take)
+    near = track.reprojected.copy()
+    near[0, 5, 7] = np.nan
+    far = track.reprojected.copy()
+    far[0, 5, 7] = [3e12, -4e12]  # OpenCV takes no such coordinates
+    images = [drawn(take, replace(track, reprojected=xy))[5] for xy in (near, far)]
+    np.testing.assert_array_equal(*images)
+
+
 def test_the_skeleton_follows_the_clock(take):
     camera, view, points = take
     clock = Clock(offset_s=0.5, drift_ppm=100.0)

@@ -104,6 +104,26 @@ def test_every_missing_point_says_why():
     ]
 
 
+def test_a_joint_of_nearly_parallel_rays_is_nowhere():
+    time_s = np.arange(90) / 30
+    places = [(0.0, -6.0, 1.0), (0.4, -6.0, 1.0)]
+    cameras = [
+        replace(one, cam_from_world=scene.look_at(place, (place[0], 0.0, 1.0)))
+        for one, place in zip(scene.ring(2), places, strict=True)
+    ]
+    views = [view(camera, time_s) for camera in cameras]
+    rng = np.random.default_rng(0)
+    for seen in views:
+        seen.xy[...] += rng.normal(0, 1, seen.xy.shape)
+    for camera, seen in zip(cameras, views, strict=True):
+        seen.xy[0, 40, 3] = scene.opencv_projection(camera, np.array([[1.0, 300.0, 2.0]]))[0]
+    points = fusion.triangulate_take(cameras, views, SKELETON, ["p1"], **OPTIONS)
+    assert np.isnan(points.xyz[0, 40, 3]).all()
+    assert points.reason[0, 40, 3] == missing_reason.UNCERTAIN
+    assert points.n_views[0, 40, 3] == 0 and not points.accepted[0, 40, 3].any()
+    assert np.isfinite(points.xyz[0, :, 2]).all() and np.isfinite(points.xyz[0, 39, 3]).all()
+
+
 def test_the_measured_noise_gives_honest_ellipsoids():
     cameras = scene.ring(4)
     time_s = np.arange(600) / 60

@@ -173,6 +173,13 @@ def test_what_is_not_there_yet_is_left_to_its_job(hall):
     assert hall.said() == ([], [])
 
 
+def test_a_calibration_without_any_of_the_cameras_is_told_in_one_line(hall):
+    for name in hall.content["cameras"]:
+        hall.content["cameras"][name] = {"name_in_calibration": f"{name}_2"}
+    faults, _ = hall.said()
+    assert len(faults) == 1 and "found left, right, back; give each" in faults[0]
+
+
 def test_every_fault_is_told_at_once(hall):
     hall.film("left", size=(160, 90))
     hall.film("left", "lob", size=(160, 90))

@@ -90,9 +90,11 @@ def read(path: StrPath, unit: str | None = None) -> list[Camera]:
 
 def check_apart(path: StrPath, cameras: Sequence[Camera]) -> None:
     """Raise `InputError` if the cameras of a session are no plausible distance apart."""
+    if len(cameras) < 2:
+        return
     centres = np.array([camera.centre_in_world for camera in cameras])
     apart_m = float(np.linalg.norm(centres[:, None] - centres, axis=-1).max())
-    if len(cameras) > 1 and not APART_M[0] <= apart_m <= APART_M[1]:
+    if not APART_M[0] <= apart_m <= APART_M[1]:
         raise InputError(
             f"{path}: expected cameras {APART_M[0]:g} to {APART_M[1]:g} m apart, found "
             f"{apart_m:.3g} m between the farthest; {STATE_UNIT}"

@@ -128,7 +128,7 @@ def _name_there(guess: Guess, camera: str, calibrated: Mapping[str, tuple[int, i
     ways: tuple[Callable[[str], bool], ...] = (
         lambda there: there in (camera, guess.serials.get(camera)),
         lambda there: file_names.name(there, "") == camera,
-        lambda there: file_names.alike(there.lower(), camera),
+        lambda there: file_names.alike("_".join(file_names.words_of([there])), camera),
     )
     return next((there for like in ways for there in calibrated if like(there)), None)
 

@@ -146,7 +146,8 @@ def _drawn(
     detected, reprojected = track.detected[:, at], track.reprojected[:, at]
     stick_drawing.draw(image, reprojected, track.bones, colours[1], round(UNDER * thick), 3 * thick)
     stick_drawing.draw(image, detected, track.bones, colours[0], thick, 2 * thick)
-    apart = ~track.used[:, at] & np.isfinite(detected + reprojected).all(axis=-1)
+    drawn = stick_drawing.drawable(detected) & stick_drawing.drawable(reprojected)
+    apart = drawn & ~track.used[:, at]
     for start, stop in zip(detected[apart], reprojected[apart], strict=True):
         ends = stick_drawing.pixel(start), stick_drawing.pixel(stop)
         cv2.line(image, *ends, colours[2], thick, cv2.LINE_AA)

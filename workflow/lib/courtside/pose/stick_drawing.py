@@ -11,8 +11,8 @@ Colour = int | tuple[int, int, int]  # grey, or BGR
 
 
 def drawable(xy: NDArray) -> NDArray:
-    """Return which joints (J, 2) px can be drawn, (J,) bool."""
-    return np.isfinite(xy).all(axis=1) & (np.abs(xy) < FURTHEST_PX).all(axis=1)
+    """Return which joints (..., 2) px can be drawn, (...) bool."""
+    return (np.abs(xy) < FURTHEST_PX).all(axis=-1)  # NaN is not
 
 
 def pixel(place: NDArray) -> tuple[int, ...]:

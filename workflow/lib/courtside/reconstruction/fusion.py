@@ -20,6 +20,7 @@ from courtside.records.keypoints.skeleton import Skeleton
 # ASSUME: a joint with a larger standard deviation needs views of low scores, too. With 0.08 to 0.16
 # m the joints of the development sessions are as near the truth (docs/measured.md).
 WEAK_M = 0.12
+OPEN_M = 1.0  # ASSUME: a joint with a larger one is nowhere: rays that are nearly parallel
 
 
 def triangulate_take(
@@ -74,7 +75,8 @@ def triangulate_take(
     reason = why_missing(flat, found.xyz, min_score, min_views).reshape(points.xyz.shape[:-1])
     variance = keypoint_variance(points, found.weight.reshape(score.shape))
     covariance = points.covariance_2d * variance[:, None, None]
-    return replace(points, reason=reason, covariance_2d=covariance)
+    points = replace(points, reason=reason, covariance_2d=covariance)
+    return _without_open(points) if rule == "robust" else points
 
 
 def _limits(cameras, xy, score, joints, share, px) -> dict[str, NDArray]:
@@ -130,6 +132,24 @@ def _record(cameras, view, person_id, time_s, found, swapped) -> Keypoints3D:
         accepted=accepted,
         swapped=np.moveaxis(swapped, 0, -1),
         reason=np.zeros(shape, dtype=np.uint8),
+    )
+
+
+def _without_open(points: Keypoints3D) -> Keypoints3D:
+    """Leave out joints whose views leave them open: the standard deviation exceeds `OPEN_M`."""
+    variance = np.trace(points.covariance_2d, axis1=-2, axis2=-1)
+    is_open = np.isfinite(points.xyz[..., 0]) & ~(np.abs(variance) <= OPEN_M**2)
+    if not is_open.any():
+        return points
+    nothing = is_open[..., None]
+    return replace(
+        points,
+        xyz=np.where(nothing, np.nan, points.xyz),
+        covariance_2d=np.where(nothing[..., None], np.nan, points.covariance_2d),
+        n_views=np.where(is_open, 0, points.n_views),
+        reproj_error_px=np.where(nothing, np.nan, points.reproj_error_px),
+        accepted=points.accepted & ~nothing,
+        reason=np.where(is_open, missing_reason.UNCERTAIN, points.reason).astype(np.uint8),
     )
 
 

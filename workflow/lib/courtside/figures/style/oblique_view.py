@@ -14,6 +14,7 @@ from courtside.geometry.camera import Camera
 
 ROOM_M = 0.2  # around what is shown
 AXIS_M = 0.5  # length of the axes drawn
+MOST_STEPS = 50  # lines of a grid on the floor
 FLOOR = "#bbbbbb"
 
 
@@ -53,7 +54,7 @@ def figures(axis: Axes, sight: Sight, xyz: NDArray, stick: Stick) -> None:
 def floor(
     axis: Axes, sight: Sight, low: NDArray, high: NDArray, court: Court | None = None
 ) -> None:
-    """Draw the floor in a rectangle (corners in metres): the court's lines, or a grid of 1 m."""
+    """Draw the floor in a rectangle (corners in metres): the court's lines, or a grid."""
     low, high = np.asarray(low)[:2], np.asarray(high)[:2]
     corners = np.array([low, (high[0], low[1]), high, (low[0], high[1]), low])
     for x, y in [np.transpose(corners), *_painted(low, high, court)]:
@@ -64,7 +65,7 @@ def floor(
 def _painted(low: NDArray, high: NDArray, court: Court | None) -> NDArray:
     """Return the centre lines of painted lines, (2, 2) each: x of both ends, y of both ends."""
     if court is None:
-        xs, ys = (np.arange(np.ceil(a), b + 1e-9) for a, b in zip(low, high, strict=True))
+        xs, ys = grid_m(low, high)
         grid = [((x, x), (low[1], high[1])) for x in xs]
         return np.array(grid + [((low[0], high[0]), (y, y)) for y in ys])
     x0, y0, x1, y1 = np.asarray(court.lines_m).T
@@ -77,6 +78,18 @@ def _painted(low: NDArray, high: NDArray, court: Court | None) -> NDArray:
         (ends.max(axis=1) >= low).all() and (ends.min(axis=1) <= high).all() for ends in lines
     ]
     return lines[inside]
+
+
+def step_m(low: NDArray, high: NDArray) -> float:
+    """Return the distance of the lines of a grid: 1 m, in a very wide box 10 m and so on."""
+    return float(10.0 ** max(0.0, np.ceil(np.log10(np.max(high - low) / MOST_STEPS))))
+
+
+def grid_m(low: NDArray, high: NDArray) -> list[NDArray]:
+    """Return where the lines of a grid are along x and along y, between two corners, m."""
+    step = step_m(low, high)
+    pairs = zip(low[:2], high[:2], strict=True)
+    return [np.arange(np.ceil(a / step) * step, b + 1e-9, step) for a, b in pairs]
 
 
 def net(axis: Axes, sight: Sight, court: Court | None) -> None:

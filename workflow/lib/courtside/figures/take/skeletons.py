@@ -77,15 +77,16 @@ def _draw_space(axis: Axes, points: Keypoints3D, skeleton: Skeleton) -> None:
     axis.set(xlabel="x (m)", ylabel="y (m)", zlabel="z (m)")
     axis.set_box_aspect((high[0] - low[0], high[1] - low[1], high[2]), zoom=0.9)
     for each in (axis.xaxis, axis.yaxis, axis.zaxis):
-        each.set_major_locator(MultipleLocator(1.0))
+        each.set_major_locator(MultipleLocator(oblique_view.step_m(low, high)))
     axis.view_init(elev=18, azim=-60)
     axis.set_title("Skeletons and paths of wrists and ankles")
 
 
 def _floor(axis: Axes, low: NDArray, high: NDArray) -> None:
-    for x in np.arange(np.ceil(low[0]), high[0] + 1e-9):
+    xs, ys = oblique_view.grid_m(low, high)
+    for x in xs:
         axis.plot([x, x], [low[1], high[1]], [0, 0], color="#cccccc", linewidth=0.5)
-    for y in np.arange(np.ceil(low[1]), high[1] + 1e-9):
+    for y in ys:
         axis.plot([low[0], high[0]], [y, y], [0, 0], color="#cccccc", linewidth=0.5)
 
 
