@@ -64,6 +64,15 @@ def test_clocks_of_a_take_are_one_or_found_or_stated():
     assert found["c2"] == Clock(-3.0, note="stated by the session")
 
 
+def test_stated_clocks_of_all_cameras_need_no_motion():
+    views = take(0, seconds=0.5)  # too short to be synchronised by
+    known = {camera.name: camera for camera in CAMERAS}
+    offsets = {"c1": {"offset_s": 0.2}, "c2": {"offset_s": -3.0}}
+    found = camera_sync.of_take(views, known, synchronised=False, stated=offsets)
+    assert [found[name].offset_s for name in ("c0", "c1", "c2")] == [0.0, 0.2, -3.0]
+    assert found["c0"].status == "reference"
+
+
 def test_several_people_of_whom_cameras_see_some():
     found = camera_sync.synchronise(take(1, n_people=3, seconds=15.0), CAMERAS)
     for camera, truth in zip(("c1", "c2"), CLOCKS[1:], strict=True):

@@ -57,3 +57,11 @@ def test_irregular_frames_are_not_compared():
     looks = {"left": Glance((64, 48), SMALL, 600, 60.0)}
     looks["right"] = Glance((64, 48), SMALL, 600, 30.0, even=False)
     assert list(lengths.faults(looks, synchronised=True)) == []
+
+
+def test_videos_too_short_to_find_their_clocks_by_are_named():
+    looks = {c: Glance((64, 48), SMALL, n, 12.0) for c, n in (("left", 48), ("back", 24))}
+    (fault,) = lengths.too_few(looks)
+    assert "expected 30 frames or more" in fault and "found 24 (back)" in fault
+    assert not list(lengths.too_few({"left": looks["left"]}))
+    assert not list(lengths.too_few({"back": looks["back"]}))  # one camera has no other clock

@@ -21,7 +21,6 @@ from courtside.synchronisation.speed import Speeds
 
 MAX_OFFSET_S = 10.0  # ASSUME: cameras are started by hand within this time
 MIN_SCORE = 0.3  # the default of Pose2Sim
-FEWEST_FRAMES = 30  # ASSUME: a second of motion
 MAX_UNCERTAINTY_S = 0.02  # ASSUME: an offset less certain than half a frame at 25 Hz is not used
 # ASSUME: standard deviation of cameras' drifts; quartz clocks run within 200 ppm.
 PRIOR_DRIFT = 100e-6
@@ -29,6 +28,7 @@ HOPELESS = 10.0  # ASSUME: drifts are not estimated where they are less certain 
 KNOWN_DRIFT = 0.5  # share of the prior: a larger uncertainty means a mostly assumed drift
 READOUT_SPREAD_S = 0.01  # ASSUME: rolling shutters need up to about 20 ms from top to bottom
 SMOOTHING = 0.85  # of the longest frame interval: less would bias offsets to half frames
+REFERENCE = Clock(status="reference", note="the take's clock")
 PARTS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
 
 
@@ -45,7 +45,7 @@ def synchronise(
     the views; without them only the rhythm of the motion is compared. Offsets larger than
     `max_offset_s` are not tried, keypoints below `min_score` not used. Whether the clocks may be
     used tells `records.devices.clocks.fault_line`. An `InputError` if a camera has fewer than
-    `FEWEST_FRAMES` frames.
+    `clocks.FEWEST_FRAMES` frames.
 
     First every offset is tried on a coarse grid, camera after camera, the surest first. Then
     offsets and drifts of all cameras are adjusted together: with cameras, to minimise the epipolar
@@ -53,10 +53,11 @@ def synchronise(
     used.
     """
     for view in views:
-        if len(view.time_s) < FEWEST_FRAMES:
+        if len(view.time_s) < clocks.FEWEST_FRAMES:
             raise InputError(
-                f"camera {view.camera}: expected {FEWEST_FRAMES} frames or more to synchronise by, "
-                f"found {len(view.time_s)}; record a longer take"
+                f"camera {view.camera}: expected {clocks.FEWEST_FRAMES} frames or more to "
+                f"synchronise by, found {len(view.time_s)}; record a longer take, or state the "
+                "`clocks` of all cameras but the first"
             )
     time_s = _times(views[0].time_s)
     with warnings.catch_warnings():
@@ -69,7 +70,7 @@ def synchronise(
         sure = sorted(_connected(pairs))
         adjusted = _adjust(evidence, offset_s, sure, time_s)
     rows = [_row(view) for view in views]
-    found = {views[0].camera: Clock(status="reference", note="the take's clock")}
+    found = {views[0].camera: REFERENCE}
     for camera in range(1, len(views)):
         if camera in sure:
             own, known_s = adjusted.own(camera, time_s), views[camera].time_s
@@ -96,6 +97,8 @@ def of_take(
     """
     if synchronised:
         return clocks.one_clock([view.camera for view in views])
+    if all(view.camera in stated for view in views[1:]):
+        return {views[0].camera: REFERENCE} | clocks.stated(stated)
     known = [cameras[view.camera] for view in views] if cameras else None
     return synchronise(views, known, **options) | clocks.stated(stated)
 

@@ -95,6 +95,8 @@ class _Session:
     def _take_faults(self, name: str, take: Take) -> Iterator[str]:
         looks = self._takes[name]
         yield from lengths.faults(looks, synchronised=take.synchronised)
+        if self._session.take_calibrations() and not _has_clocks(take):
+            yield from lengths.too_few(looks)
         yield from stated_times.faults(self._session, take, looks)
         smalls = {camera: look.small for camera, look in looks.items()}
         known, what = self._known_views(name)
@@ -153,6 +155,11 @@ class _Session:
     def _paths(self) -> Iterable[str]:
         given = self._session.calibration_file
         return [*(path for files in self._sizes().values() for path in files), given or "\0"]
+
+
+def _has_clocks(take: Take) -> bool:
+    """Return whether the session states how the clocks of the cameras of a take differ."""
+    return take.synchronised or all(name in take.clocks for name in list(take.videos)[1:])
 
 
 def _filmed_by_devices(session: Session) -> list[str]:

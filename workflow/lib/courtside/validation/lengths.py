@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 
+from courtside.records.devices.clocks import FEWEST_FRAMES
 from courtside.video.glance import Glance
 
 # Started and stopped together, cameras differ by one frame; half a frame more for rounding.
@@ -37,6 +38,18 @@ def faults(looks: Mapping[str, Glance], *, synchronised: bool) -> Iterator[str]:
             "expected one rate of cameras that share a clock and have as many frames, found "
             f"{_listed(videos.rates, '{:.4g} Hz')}; export the videos again with their true rate, "
             "or say `synchronised: false`"
+        )
+
+
+def too_few(looks: Mapping[str, Glance]) -> Iterator[str]:
+    """Yield whether videos are too short to find the clocks of their cameras by."""
+    counts = {name: look.n_frames for name, look in looks.items() if look.n_frames}
+    few = {name: count for name, count in counts.items() if count < FEWEST_FRAMES}
+    if few and len(looks) > 1:
+        yield (
+            f"expected {FEWEST_FRAMES} frames or more of cameras whose clocks are to be found, "
+            f"found {_listed(few, '{}')}; record a longer take, state the `clocks` of all cameras "
+            "but the first, or say `synchronised: true` if they share a clock"
         )
 
 
