@@ -37,14 +37,14 @@ SHAPE = skeleton.read(ROOT / "config" / "skeletons" / "blazepose33.yaml")
 COMMAND = "`python benchmarks/joint_offsets.py results`"
 
 
-def takes_of(results):
+def takes_of(results, sessions=SESSIONS, calibration="known18"):
     """Return, by session, the files of its takes, as `error_fit.footage_with_truth` needs them."""
     folder = ROOT / "config"
     content = yaml_files.read(folder / "config.yaml")
-    content |= {"sessions": list(SESSIONS), "variations": [], "plans": []}
+    content |= {"sessions": list(sessions), "variations": [], "plans": []}
     study = configuration.load(content, str(folder / "config.yaml"), folder, root=ROOT)
-    found = {session: [] for session in SESSIONS}
-    for take in evaluation.fitted_takes(study, NETWORK):
+    found = {session: [] for session in sessions}
+    for take in evaluation.fitted_takes(study, NETWORK, calibration):
         files = {key: below(results, path) for key, path in take.items() if key != "sex_of"}
         found[files["session_truth"].parent.name].append({**take, **files})
     return found
@@ -67,15 +67,17 @@ def clips_of(takes):
     return found, truth.joints.tolist()
 
 
-def errors_m(points, clip, true_joints, table):
-    """Return the errors (N,) m of limb joints, less the offsets of a table; raw without one."""
+def errors_m(points, true, true_joints, table=None, sex_of=None, cameras=()):
+    """Return the errors (N,) m of limb joints against true ones (P, T, K, 3).
+
+    Less the offsets of a table; raw without one.
+    """
     if table is not None:
-        sex_of = dict.fromkeys(map(str, points.person_id), clip.sex)
-        moved = joint_correction.offsets(points, table, sex_of, clip.cameras)
+        moved = joint_correction.offsets(points, table, sex_of, cameras)
         points = replace(points, xyz=points.xyz - moved)
-    names, error, _ = joints.errors(points, true_joints, clip.true[None])
+    names, error, _ = joints.errors(points, true_joints, true)
     limbs = [names.index(joint) for joint in skeleton.JOINTS]
-    apart = np.linalg.norm(error[0][:, limbs], axis=-1).ravel()
+    apart = np.linalg.norm(error[:, :, limbs], axis=-1).ravel()
     return apart[np.isfinite(apart)]
 
 
@@ -89,7 +91,10 @@ def left_out(of_session, true_joints, session, way):
         names = of_session[session][0][1].joints.tolist()
         table = joint_correction.estimate(clips, names, true_joints)
         tested = [(points, clip) for other, points, clip in of_session[session] if other == body]
-        found += [errors_m(points, clip, true_joints, table) for points, clip in tested]
+        for points, clip in tested:
+            sex_of = dict.fromkeys(map(str, points.person_id), clip.sex)
+            given = clip.true[None], true_joints, table, sex_of, clip.cameras
+            found.append(errors_m(points, *given))
     return np.concatenate(found)
 
 
@@ -99,7 +104,7 @@ def rows_of(results):
     for session, takes in takes_of(results).items():
         of_session[session], true_joints = clips_of(takes)
     for session, words in SESSIONS.items():
-        raw = [errors_m(p, clip, true_joints, None) for _, p, clip in of_session[session]]
+        raw = [errors_m(p, clip.true[None], true_joints) for _, p, clip in of_session[session]]
         every = {"raw": np.concatenate(raw)}
         every |= {way: left_out(of_session, true_joints, session, way) for way in WAYS}
         for part, apart in every.items():

@@ -11,7 +11,6 @@ those of limb joints less the network's offsets, mm: median / 95 % / 99 %.
 
 import argparse
 import sys
-from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 
@@ -23,9 +22,8 @@ from courtside.evaluation import error_fit, joints
 from courtside.evaluation.numbers import stated
 from courtside.evaluation.numbers.players import NETWORK
 from courtside.reconstruction import fusion, joint_correction
-from courtside.study.configuration import configuration, yaml_files
-from courtside.study.jobs import evaluation
-from joint_offsets import SHAPE, below
+from courtside.study.configuration import yaml_files
+from joint_offsets import SHAPE, errors_m, takes_of
 
 SESSIONS = {  # the calibration that people were found with
     "players-dev": "known18",
@@ -37,28 +35,19 @@ CONFIG = ROOT / "config"
 COMMAND = "`python benchmarks/low_scores.py RESULTS ...`"
 
 
-def takes_of(folders, session):
-    """Return the files of the takes of one session."""
-    content = yaml_files.read(CONFIG / "config.yaml")
-    content |= {"sessions": [session], "variations": [], "plans": []}
-    study = configuration.load(content, str(CONFIG / "config.yaml"), CONFIG, root=ROOT)
-    (results,) = (folder for folder in folders if (folder / session / "takes").is_dir())
-    return [
-        {key: take[key] if key == "sex_of" else below(results, take[key]) for key in take}
-        for take in evaluation.fitted_takes(study, NETWORK, SESSIONS[session])
-    ]
-
-
 def rows_of(folders):
     """Yield the numbers of the table, and print them."""
     step = yaml_files.read(CONFIG / "config.yaml")["triangulate"]
     table = joint_correction.read(CONFIG / "joint_offsets" / f"{NETWORK}.csv")
-    for session in SESSIONS:
-        footage = list(error_fit.footage_with_truth(takes_of(folders, session)))
+    for session, calibration in SESSIONS.items():
+        (results,) = (folder for folder in folders if (folder / session / "takes").is_dir())
+        takes = takes_of(results, [session], calibration)[session]
+        footage = list(error_fit.footage_with_truth(takes))
         for count in (4, 3):
             for part, weak_m in (("without", np.inf), ("used", fusion.WEAK_M)):
-                apart = np.concatenate(list(errors_of(footage, count, table, step, weak_m)))
-                apart_mm = 1000 * apart[np.isfinite(apart)]
+                apart_mm = 1000 * np.concatenate(
+                    list(errors_of(footage, count, table, step, weak_m))
+                )
                 quantiles = np.quantile(apart_mm, [0.5, 0.95, 0.99])
                 printed = "{:.1f} / {:.1f} / {:.0f}".format(*quantiles)
                 label = f"`{session}`, " + ("four cameras" if count == 4 else "each three of them")
@@ -74,13 +63,8 @@ def errors_of(footage, count, table, step, weak_m):
         for own in combinations(seen, count):
             raw = error_fit.triangulated(own, SHAPE, list(sex_of), step)
             raw = raw.frames(error_fit.thin(raw))
-            moved = joint_correction.offsets(raw, table, sex_of, [one.camera for one in own])
-            placed = replace(raw, xyz=raw.xyz - moved)
-            names, error, _ = joints.errors(
-                placed, truth.joints.tolist(), joints.true_places(raw, truth)
-            )
-            limbs = [names.index(joint) for joint in error_fit.limbs.JOINTS]
-            yield np.linalg.norm(error[:, :, limbs], axis=-1).ravel()
+            true, cameras = joints.true_places(raw, truth), [one.camera for one in own]
+            yield errors_m(raw, true, truth.joints.tolist(), table, sex_of, cameras)
 
 
 def main():

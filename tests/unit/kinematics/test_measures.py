@@ -10,7 +10,6 @@ from courtside.kinematics import filtering, measures, shared_errors, skeleton_fi
 from courtside.kinematics.noise_propagation import Noise
 from courtside.reconstruction import joint_correction
 from courtside.records.keypoints import derived_joints, missing_reason
-from fixtures.cameras import scene
 from fixtures.people import footwork, walker
 
 CONFIG = Path(__file__).parents[3] / "config"
@@ -283,19 +282,6 @@ def test_two_people_are_measured_as_each_alone():
     )
 
 
-def pair_of_cameras(apart_deg, centre, away_m=20.0):
-    """Return two cameras that see a place (3,) under an angle, and the noise (3,) m of 0.7 px."""
-    half = np.radians(apart_deg) / 2
-    ways = np.array([[np.sin(half), -np.cos(half), 0.0], [-np.sin(half), -np.cos(half), 0.0]])
-    one, _ = scene.ring(2)
-    cameras = [
-        replace(one, name=name, cam_from_world=scene.look_at(centre + away_m * way, centre))
-        for name, way in zip("ab", ways, strict=True)
-    ]
-    sigma_m = 0.7 * away_m / scene.FOCAL_PX / np.sqrt(2)
-    return cameras, sigma_m / np.array([np.cos(half), np.sin(half), 1.0])
-
-
 @pytest.mark.parametrize("model", NETWORKS_WITH_OFFSETS)
 @pytest.mark.parametrize(
     ("apart_deg", "memory_s", "most"), [(90, 0.0, 1.05), (90, 0.08, 1.05), (150, 0.0, 1.1)]
@@ -305,7 +291,7 @@ def test_noise_of_corrected_skeletons_is_at_most_what_is_stated(model, apart_deg
     rate_hz, how = 30.0, measures.Filter(CUTOFFS_HZ)
     time_s, neck = footwork.neck(rate_hz, 20, seed=21)
     xyz, _ = footwork.body(neck, time_s)
-    cameras, sigma_m = pair_of_cameras(apart_deg, np.array([*footwork.BASE, 1.0]))
+    cameras, sigma_m = footwork.cameras(apart_deg)
 
     def corrected(record):
         smooth = skeleton_filter.smooth(record, how.cutoff_hz, how.order)
@@ -317,7 +303,7 @@ def test_noise_of_corrected_skeletons_is_at_most_what_is_stated(model, apart_deg
     record = footwork.record(xyz, time_s, sigma_m, memory_s, np.random.default_rng(0))
     clean = corrected(replace(record, xyz=xyz[None].copy()))
     ratios = {}
-    for seed in range(2):
+    for seed in range(4):
         record = footwork.record(xyz, time_s, sigma_m, memory_s, np.random.default_rng(seed))
         for name, point in corrected(record).items():
             for at, key in ((1, "velocity"), (2, "acceleration")):

@@ -46,10 +46,11 @@ def triangulate_take(
     tracklet per person, in the order of `person_id` (P,), by the network of `skeleton`. `fix_sides`
     exchanges left and right in views that contradict the others. `time_s` (T,) is of the result, on
     the reference clock; by default `resampling.common_times` of the views. The `rule` "robust"
-    weights and excludes views (`triangulation.triangulate_robust`, which the limits are of); "dlt"
-    uses all (`triangulation.triangulate_plain`). `max_error_share` and `fade_share` are in heights
-    of the person in each picture (`person_height.in_pictures`); `max_error_px` and `fade_px`, the
-    same everywhere, have precedence. A `ValueError` without a limit.
+    weights and excludes views (`triangulation.triangulate_robust`, which the limits are of), and
+    leaves out joints that their views leave open; "dlt" uses all
+    (`triangulation.triangulate_plain`). `max_error_share` and `fade_share` are in heights of the
+    person in each picture (`person_height.in_pictures`); `max_error_px` and `fade_px`, the same
+    everywhere, have precedence. A `ValueError` without a limit.
 
     The keypoints' standard deviation is measured per joint from the residuals of the accepted
     views, three degrees of freedom less per point. It contains what the views disagree on, but not
@@ -139,8 +140,6 @@ def _without_open(points: Keypoints3D) -> Keypoints3D:
     """Leave out joints whose views leave them open: the standard deviation exceeds `OPEN_M`."""
     variance = np.trace(points.covariance_2d, axis1=-2, axis2=-1)
     is_open = np.isfinite(points.xyz[..., 0]) & ~(np.abs(variance) <= OPEN_M**2)
-    if not is_open.any():
-        return points
     nothing = is_open[..., None]
     return replace(
         points,

@@ -165,33 +165,28 @@ def correct_then_filter(
     The covariance is that of `filtered` plus the scatter of the offsets. This scatter is slow, so
     the filter does not reduce it.
     """
-    moved = _steady_offsets(raw, filtered, table, sex_of, cutoff_hz, order, cameras)
+    slow_xyz = skeleton_filter.smooth_xyz(raw, np.minimum(cutoff_hz, VIEW_HZ), order)
+    moved = _steady_offsets(filtered, replace(raw, xyz=slow_xyz), table, sex_of, cameras)
     kept = keep(_corrected(raw, table, moved))
     xyz = skeleton_filter.smooth_xyz(kept, cutoff_hz, order)
     return replace(_corrected(filtered, table, moved), xyz=xyz)
 
 
 def _steady_offsets(
-    raw: Keypoints3D,
     filtered: Keypoints3D,
+    slow: Keypoints3D,
     table: pd.DataFrame,
     sex_of: Mapping[str, str | None],
-    cutoff_hz: ArrayLike,
-    order: int,
     cameras: Sequence[Camera],
 ) -> NDArray:
     """Return the offsets (P, T, J, 3) m without the noise of the joints that they are made from.
 
-    Offsets of the body are those of the `filtered` skeletons. Offsets that depend on the view use
-    skeletons below `VIEW_HZ`: two cameras that nearly face each other multiply noise in them.
+    Offsets of the body are those of the `filtered` skeletons. Offsets that depend on the view are
+    those of the `slow` ones: two cameras that nearly face each other multiply noise in them.
     """
     by_view = table["vector"].str.startswith(offset_vectors.SEEN)
     moved = offsets(filtered, table[~by_view], sex_of)
-    if by_view.any():
-        slow_hz = np.minimum(cutoff_hz, VIEW_HZ)
-        slow = replace(raw, xyz=skeleton_filter.smooth_xyz(raw, slow_hz, order))
-        moved = moved + offsets(slow, table[by_view], sex_of, cameras)
-    return moved
+    return moved + offsets(slow, table[by_view], sex_of, cameras) if by_view.any() else moved
 
 
 def read(path: StrPath) -> pd.DataFrame:

@@ -97,7 +97,7 @@ def of_take(
     """
     if synchronised:
         return clocks.one_clock([view.camera for view in views])
-    if all(view.camera in stated for view in views[1:]):
+    if clocks.are_stated([view.camera for view in views], stated):
         return {views[0].camera: REFERENCE} | clocks.stated(stated)
     known = [cameras[view.camera] for view in views] if cameras else None
     return synchronise(views, known, **options) | clocks.stated(stated)

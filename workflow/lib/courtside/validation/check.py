@@ -6,6 +6,7 @@ Recordings that jobs make or fetch are checked once they are there.
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from courtside.records.devices.clocks import are_stated
 from courtside.study.configuration.session_files import is_there
 from courtside.study.configuration.sessions import Session, Study, Take
 from courtside.study.errors import InputError
@@ -95,7 +96,8 @@ class _Session:
     def _take_faults(self, name: str, take: Take) -> Iterator[str]:
         looks = self._takes[name]
         yield from lengths.faults(looks, synchronised=take.synchronised)
-        if self._session.take_calibrations() and not _has_clocks(take):
+        has_clocks = take.synchronised or are_stated(list(take.videos), take.clocks)
+        if self._session.take_calibrations() and not has_clocks:
             yield from lengths.too_few(looks)
         yield from stated_times.faults(self._session, take, looks)
         smalls = {camera: look.small for camera, look in looks.items()}
@@ -155,11 +157,6 @@ class _Session:
     def _paths(self) -> Iterable[str]:
         given = self._session.calibration_file
         return [*(path for files in self._sizes().values() for path in files), given or "\0"]
-
-
-def _has_clocks(take: Take) -> bool:
-    """Return whether the session states how the clocks of the cameras of a take differ."""
-    return take.synchronised or all(name in take.clocks for name in list(take.videos)[1:])
 
 
 def _filmed_by_devices(session: Session) -> list[str]:

@@ -76,8 +76,9 @@ def _draw_space(axis: Axes, points: Keypoints3D, skeleton: Skeleton) -> None:
     axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(0, high[2]))
     axis.set(xlabel="x (m)", ylabel="y (m)", zlabel="z (m)")
     axis.set_box_aspect((high[0] - low[0], high[1] - low[1], high[2]), zoom=0.9)
+    step_m = oblique_view.step_m(low, high)
     for each in (axis.xaxis, axis.yaxis, axis.zaxis):
-        each.set_major_locator(MultipleLocator(oblique_view.step_m(low, high)))
+        each.set_major_locator(MultipleLocator(step_m))
     axis.view_init(elev=18, azim=-60)
     axis.set_title("Skeletons and paths of wrists and ankles")
 

@@ -1,7 +1,7 @@
 """Clocks of a take's cameras against the first camera's, with what is known of each, as JSON."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -61,6 +61,11 @@ def one_clock(cameras: Iterable[str]) -> dict[str, Clock]:
     first, *others = cameras
     shared = Clock(note="the session says that the cameras share a clock")
     return {first: Clock(status="reference"), **dict.fromkeys(others, shared)}
+
+
+def are_stated(cameras: Sequence[str], clocks: Collection[str]) -> bool:
+    """Return whether the clocks of all cameras but the first, the reference, are stated."""
+    return all(camera in clocks for camera in cameras[1:])
 
 
 def stated(numbers: Mapping[str, Mapping[str, Any]]) -> dict[str, Clock]:
