@@ -1,5 +1,6 @@
 """Chessboards: drawn ones, real ones against another vendor's lenses, and every refusal."""
 
+from dataclasses import replace
 from functools import cache
 
 import cv2
@@ -145,10 +146,12 @@ def test_all_real_boards_show_one_lens():
     differ by 27 px, these by less than 3.
     """
     folders = [WALK / "boards" / f"int_cam{number}_img" for number in (1, 2, 3, 4)]
-    lenses = [chessboard.calibrate(chessboard.find(folder, (4, 7))) for folder in folders]
-    pictures = [picture for folder in folders for picture in sorted(folder.glob("*.jpg"))]
-    assert len(pictures) == 28
-    together = chessboard.calibrate(chessboard.find(pictures, (4, 7)))
+    found = [chessboard.find(folder, (4, 7)) for folder in folders]
+    lenses = [chessboard.calibrate(boards) for boards in found]
+    paths = tuple(path for boards in found for path in boards.paths)
+    assert len(paths) + sum(len(boards.dropped) for boards in found) == 28
+    xy = np.concatenate([boards.xy for boards in found])
+    together = chessboard.calibrate(replace(found[0], paths=paths, xy=xy))
     assert together.n_used == sum(lens.n_used for lens in lenses) >= 24
     assert together.rms_px < 1.1 * max(lens.rms_px for lens in lenses) < 0.12
     for lens in lenses:

@@ -151,7 +151,7 @@ def test_clicks_of_a_racket_at_several_places_err_together_as_stated(
     monkeypatch.setattr(unit, "BEND_SIGMA", 0.0)
     monkeypatch.setattr(unit, "KNOWN_SIGMA_M", 0.0)
     off = []
-    for seed in range(400):
+    for seed in range(200):
         each, covariance = unit.by_lengths(SMALL, racket(seed, scatter_px, bias_px))
         off.append(np.log([one.metres / 2.5 for one in each]))
     found = np.cov(np.array(off).T)

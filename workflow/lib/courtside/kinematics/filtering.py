@@ -4,6 +4,7 @@ Every function returns a new record; the raw one is not changed.
 """
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 import scipy
@@ -83,6 +84,13 @@ def corrected_cutoff(cutoff_hz: float, rate_hz: float, order: int) -> float:
     return float(np.arctan(corrected) * rate_hz / np.pi)
 
 
+@lru_cache(maxsize=64)  # all joints of a group have the same; designing it takes as long as its use
+def _one_pass(cutoff_hz: float, rate_hz: float, order: int) -> NDArray:
+    """Return the second-order sections of one pass of `zero_lag`."""
+    one_pass_hz = corrected_cutoff(cutoff_hz, rate_hz, order)
+    return scipy.signal.butter(order, one_pass_hz, fs=rate_hz, output="sos")
+
+
 def zero_lag_points(xyz: NDArray, rate_hz: float, cutoff_hz: float, order: int) -> NDArray:
     """Apply `zero_lag` to points (T, n, 3), those that are known in the same frames at once."""
     known = np.isfinite(xyz).all(axis=2)
@@ -103,8 +111,7 @@ def zero_lag(lines: NDArray, rate_hz: float, cutoff_hz: float, order: int) -> ND
     effective order: twice that of each pass. Each end of a run is extended by its odd reflection
     over one period of the cut-off.
     """
-    one_pass_hz = corrected_cutoff(cutoff_hz, rate_hz, order // 2)
-    sections = scipy.signal.butter(order // 2, one_pass_hz, fs=rate_hz, output="sos")
+    sections = _one_pass(float(cutoff_hz), float(rate_hz), order // 2)
     pad = round(PAD_PERIODS * rate_hz / cutoff_hz)
     filtered = np.full(np.shape(lines), np.nan)
     for start, stop in runs(np.isfinite(lines).all(axis=1)):
