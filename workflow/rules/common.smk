@@ -69,6 +69,10 @@ try:
 except InputError as error:
     sys.exit("\n".join(f"Error: {line}" for line in str(error).splitlines()))
 
+# Threads of a job that can use several. With two cores, two jobs side by side keep them busier than
+# one with two threads, which waits until both are free; with more, all would wait for the longest.
+SEVERAL = 1 if workflow.resource_settings.cores in (1, 2) else 2
+
 DIGESTS = digest.Remembered(Path(".snakemake") / "courtside" / "code.json", PINS)
 
 

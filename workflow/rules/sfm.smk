@@ -18,7 +18,7 @@ rule extract_features:
         "results/{session}/logs/extract_features/all.log",
     benchmark:
         "results/{session}/benchmarks/extract_features/all.tsv"
-    threads: 2
+    threads: SEVERAL
     resources:
         mem_mb=3000,
     params:

@@ -6,10 +6,6 @@ Steps: simulate_session (one rule per session, named after it, because its files
 cameras), simulate_take (likewise, one per take).
 """
 
-# Processes that render a long film. With two cores two films side by side keep them busier than one
-# with two processes; more cores would wait for the longest film.
-RENDERING = 1 if workflow.resource_settings.cores in (1, 2) else 2
-
 for session in STUDY.sessions.values():
     if session.virtual is None:
         continue
@@ -40,7 +36,7 @@ for session in STUDY.sessions.values():
                 f"results/virtual/benchmarks/simulate_session/{session.name}.tsv"
             # As its takes.
             priority: int(max((take.virtual["seconds"] for take in filming), default=0))
-            threads: RENDERING if session.virtual["walk_frames"] > 24 else 1
+            threads: SEVERAL if session.virtual["walk_frames"] > 24 else 1
             resources:
                 mem_mb=2000,
             params:
@@ -69,7 +65,7 @@ for session in STUDY.sessions.values():
             benchmark:
                 f"results/virtual/benchmarks/simulate_take/{session.name}.{take.name}.tsv"
             priority: int(take.virtual["seconds"])  # the longest first, or they are left to the end
-            threads: RENDERING if take.virtual["seconds"] > 4 else 1
+            threads: SEVERAL if take.virtual["seconds"] > 4 else 1
             resources:
                 mem_mb=2500,
             params:
