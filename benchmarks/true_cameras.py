@@ -1,12 +1,11 @@
 """How much of the error of virtual players is of their cameras: corrected by both, the same 2D.
 
-    python benchmarks/true_cameras.py RESULTS [--takes players-b/footwork ...] [--model NETWORK]
-        [--fusion all-robust] [--offsets FILE]
+    python benchmarks/true_cameras.py RESULTS
 
 RESULTS is of a default run. Skeletons of its 3D keypoints, and of the same 2D keypoints
-triangulated anew by the cameras as they truly are, are filtered, corrected by the offsets of FILE
-(config/joint_offsets), and compared with the truth: median and 95 % over the limbs' joints, mean
-error along x, y and z, median of the elbows, mm.
+triangulated anew by the cameras as they truly are, are filtered, corrected, and compared with the
+truth: median and 95 % over the limbs' joints, and the mean error along x, y and z, mm. The rows
+become `docs/numbers/true_cameras.csv`.
 """
 
 import argparse
@@ -20,13 +19,20 @@ from many_sessions import ROOT
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
 from courtside.evaluation import error_fit, joints
+from courtside.evaluation.numbers import stated
 from courtside.evaluation.numbers.players import NETWORK
 from courtside.kinematics import cutoffs, skeleton_filter
 from courtside.reconstruction import joint_correction
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.configuration import yaml_files
 
-TAKES = ("players-b/footwork", "players-a/shot", "repeats/m3-1", "repeats/f3-1", "repeats/f4-1")
+TAKES = (
+    ("players-b/footwork", "all-robust"),
+    ("players-b/footwork", "three-robust"),
+    ("players-a/shot", "all-robust"),
+    *((f"repeats/{take}", "all-robust") for take in ("m3-1", "f3-1", "f4-1")),
+)
+COMMAND = "`python benchmarks/true_cameras.py RESULTS`"
 SHAPE = skeleton.read(ROOT / "config" / "skeletons" / "blazepose33.yaml")
 
 
@@ -79,37 +85,34 @@ def errors_mm(points, truth):
     return np.nanpercentile(np.linalg.norm(limb_errors(points, truth), axis=-1), [50, 95])
 
 
-def line(points, truth):
-    """Return what the errors of skeletons are, in words."""
-    error = limb_errors(points, truth)
-    elbows = error[:, :, [at for at, name in enumerate(skeleton.JOINTS) if name.endswith("elbow")]]
-    apart, shift = np.linalg.norm(error, axis=-1), np.nanmean(error, axis=(0, 1, 2))
-    return (
-        f"median {np.nanmedian(apart):.1f}, 95 % {np.nanpercentile(apart, 95):.1f}, "
-        f"shift ({', '.join(f'{one:.1f}' for one in shift)}), "
-        f"elbows {np.nanmedian(np.linalg.norm(elbows, axis=-1)):.1f} mm"
-    )
+def rows_of(results):
+    """Yield the numbers of the table, and print them."""
+    offsets = ROOT / "config" / "joint_offsets" / f"{NETWORK}.csv"
+    table, step = joint_correction.read(offsets), yaml_files.read(ROOT / "config" / "config.yaml")
+    for name, fusion in TAKES:
+        files = Take(results, name, NETWORK, fusion)
+        ((seen, sex_of, truth),) = error_fit.footage_with_truth([files.take])
+        true = error_fit.triangulated(seen, SHAPE, list(sex_of), step["triangulate"])
+        cameras = [one.camera for one in seen]
+        label = f"`{name}`, {len(cameras)} cameras"
+        for part, raw in (("study", files.raw), ("true", true)):
+            points = stages(raw, table, sex_of, step, cameras)["corrected"]
+            error = limb_errors(points, truth)
+            n, shift = int(np.isfinite(error[..., 0]).sum()), np.nanmean(error, axis=(0, 1, 2))
+            for what, printed in (
+                (part, "{:.1f} / {:.1f}".format(*errors_mm(points, truth))),
+                (f"{part}_shift", ", ".join(f"{one:.1f}" for one in shift)),
+            ):
+                print(label, what, printed, flush=True)
+                row = "true-cameras", label, what, printed, "mm", name.split("/")[0]
+                yield *row, n, 0, "benchmark", COMMAND
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("results", type=Path)
-    parser.add_argument("--takes", nargs="+", default=TAKES)
-    parser.add_argument("--model", default=NETWORK)
-    parser.add_argument("--fusion", default="all-robust")
-    parser.add_argument("--offsets", type=Path, help="a file of config/joint_offsets")
-    given = parser.parse_args()
-    own = ROOT / "config" / "joint_offsets" / f"{given.model}.csv"
-    table = joint_correction.read(given.offsets or own)
-    step = yaml_files.read(ROOT / "config" / "config.yaml")
-    for name in given.takes:
-        files = Take(given.results, name, given.model, given.fusion)
-        ((seen, sex_of, truth),) = error_fit.footage_with_truth([files.take])
-        raw = error_fit.triangulated(seen, SHAPE, list(sex_of), step["triangulate"])
-        cameras = [one.camera for one in seen]
-        for words, points in (("cameras of the study", files.raw), ("true cameras", raw)):
-            corrected = stages(points, table, sex_of, step, cameras)["corrected"]
-            print(f"{name}, {words}: {line(corrected, truth)}")
+    rows = list(rows_of(parser.parse_args().results))
+    stated.write(ROOT / stated.FOLDER / "true_cameras.csv", rows)
 
 
 if __name__ == "__main__":

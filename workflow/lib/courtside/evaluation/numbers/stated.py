@@ -111,14 +111,16 @@ VIEWS = {  # the columns that the documents show of their tables
             "with": "{used.command}",
         },
     ),
-    "offset-cameras": View(
-        "offset-cameras",
+    "true-cameras": View(
+        "true-cameras",
         {
             "corrected, median / 95 %, mm": "{row}",
-            "offsets fitted by clicked cameras": "{before}",
-            "by true cameras (used)": "{after}",
-            "by": "{after.origin}",
-            "with": "{after.command}",
+            "cameras of the study": "{study}",
+            "true cameras": "{true}",
+            "mean error along x, y, z: cameras of the study": "{study_shift}",
+            "true cameras: mean error": "{true_shift}",
+            "joints": "{true.n}",
+            "with": "{true.command}",
         },
     ),
     "looks": View(
@@ -130,16 +132,6 @@ VIEWS = {  # the columns that the documents show of their tables
             "another body, 4 cameras": "{other}",
             "by": "{four.origin}",
             "with": "{four.command}",
-        },
-    ),
-    "looks-reported": View(
-        "looks-reported",
-        {
-            "`blazepose-heavy`, mm": "{row}",
-            "one look": "{before}",
-            "`flip_test`": "{after}",
-            "by": "{after.origin}",
-            "with": "{after.command}",
         },
     ),
     "persons-found": View(
