@@ -280,10 +280,12 @@ def test_a_study_of_the_session_alone_is_written_once(tmp_path):
         "sessions": ["north"],
         "plans": [],
         "variations": [],
+        "calibrations": list(session_draft.WAYS),
         "export_overlay_video": {"takes": ["north/a", "north/b"]},
     }
     folder = schemas.SCHEMAS.parents[1] / "config"
     config = yaml.safe_load((folder / "config.yaml").read_text())
+    assert set(session_draft.WAYS) <= set(config["calibrations"]) & set(config["take_calibrations"])
     videos = config["export_overlay_video"] | said["export_overlay_video"]
     config |= said | {"export_overlay_video": videos}
     assert schemas.faults(config, "config", "north.yaml") == []
@@ -346,7 +348,7 @@ def test_few_pictures_of_a_walk_are_asked_for():
     _, _, content = draft(*TAKE, short)
     assert content["override"] == {
         "sweep": {"n_images": [16], "n_offsets": 1},
-        "calibrations": ["sfm-n16", "known18"],
+        "calibrations": ["sfm-n16"],
         "take_calibrations": ["sfm-n16"],
     }
 

@@ -206,6 +206,20 @@ def test_court_points_that_nobody_has_clicked_are_waited_for(tmp_path):
     assert found.calibrations() == ["sfm-n40", "known18"]
 
 
+def test_ways_that_need_more_points_than_the_court_has_are_left_out(tmp_path):
+    (tmp_path / "p.csv").touch()
+    ways = {"calibrations": ["known", "known18", "known8", "dlt20", "known10"]}
+    content = {"description": "d", "cameras": {"a": None, "b": None}, "court_points": "p.csv"}
+    file = schemas.SCHEMAS.parents[1] / "config" / "sessions" / "s.yaml"
+    for court, found in (
+        ("badminton", ["known", "known18", "known8"]),
+        ("volleyball", ["known", "known8", "known10"]),
+        ("basketball", ["known", "known8", "dlt20"]),
+    ):
+        made = session_files.session("s", file, content | {"court": court}, ways, tmp_path)
+        assert made.calibrations() == found
+
+
 def test_a_session_replaces_numbers_of_its_calibration_file():
     stated = {"principal_point_px": {"a": [1.0, 2.0]}, "reason": "mirrored in the file"}
     content = CONTENT | {"calibration": {"file": "c.toml", **stated}, "static_points": "p.csv"}

@@ -47,7 +47,7 @@ def text(guess: Guess, *, title: str, folder: str, court: str = "badminton") -> 
     clicked = measured and court != "none"
     lines += [*_cameras(guess), *_walks(guess), *_places(guess, folder, clicked)]
     lines += [*_synchronised(guess), *_takes(guess)]
-    lines += [*_override(guess, clicked), *_unused(guess)]
+    lines += [*_override(guess), *_unused(guess)]
     return "\n".join(lines) + "\n"
 
 
@@ -237,9 +237,9 @@ def _devices(guess: Guess, take: str) -> list[str]:
     return ["    devices:", *lines] if lines else []
 
 
-def _override(guess: Guess, clicked: bool) -> list[str]:
+def _override(guess: Guess) -> list[str]:
     """Return the key of what differs from the study: few bridging images, imported keypoints."""
-    keys, remarks = _fewer_images(guess, clicked), []
+    keys, remarks = _fewer_images(guess), []
     remarks += ["the walks give no more bridging images"] * bool(keys)
     filmed = [name for name, take in guess.takes.items() if take]
     if guess.keypoints and set(guess.keypoints) == set(filmed):
@@ -250,7 +250,7 @@ def _override(guess: Guess, clicked: bool) -> list[str]:
     return [f"override: {{{', '.join(keys)}}}  {MARK} {'; '.join(remarks)}"] * bool(keys)
 
 
-def _fewer_images(guess: Guess, clicked: bool) -> list[str]:
+def _fewer_images(guess: Guess) -> list[str]:
     """Return the keys that ask for as many bridging images as walks give, where they are few."""
     if not guess.walks:
         return []
@@ -260,8 +260,8 @@ def _fewer_images(guess: Guess, clicked: bool) -> list[str]:
         return []
     keys = [f"sweep: {{n_images: [{n_images}], n_offsets: 1}}"]
     if guess.cameras and guess.calibration is None:
-        ways = [f"sfm-n{n_images}", *["known18"] * clicked]
-        keys += [f"calibrations: [{', '.join(ways)}]", f"take_calibrations: [sfm-n{n_images}]"]
+        ways = f"calibrations: [sfm-n{n_images}]"
+        keys += [ways, f"take_{ways}"]
     return keys
 
 
@@ -316,6 +316,7 @@ def _quoted(value: str) -> str:
     return json.dumps(value, ensure_ascii=False)
 
 
+WAYS = ("file", "sfm-n40", "known", "board", "wand")  # of `calibrations` in config.yaml
 USUAL_IMAGES, EVERY_S = 40, 0.5  # `sweep.n_images` and `extract_frames.every_s` of config.yaml
 USABLE = 0.8  # ASSUME: share of a walk's frames that are sharp and differ
 SHOWN = 5  # files that are not used, on the terminal; the draft lists all
@@ -333,6 +334,7 @@ def write_study(path: Path, session: str, takes: Iterable[str]) -> str:
         f"sessions: [{session}]",
         "plans: []",
         "variations: []",
+        f"calibrations: [{', '.join(WAYS)}] # without ways that are only compared with these",
         f"export_overlay_video: {{takes: [{filmed}]}} # videos with the skeletons drawn in",
     ]
     try:

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from courtside.study import paths
-from courtside.study.configuration import consent
+from courtside.study.configuration import consent, schemas
 from courtside.study.configuration.sessions import Device, FixedCamera, Session, Subject, Take
 from courtside.study.configuration.yaml_files import Content
-from courtside.study.errors import StrPath
+from courtside.study.errors import InputError, StrPath
 
 KINDS = {  # of devices, by the ending of their recording; a folder is one of a depth camera
     ".bvh": "inertial",
@@ -84,6 +84,7 @@ def session(
         people=of_configuration(content.get("people"), config),
         walks=recordings.get("walks") or {k: w.get("video") or w["images"] for k, w in walks},
         court_points=recordings.get("court_points") or clicked,
+        point_sets=_point_sets(config / paths.COURT_YAML.format(court=content["court"])),
         placed=bool(clicked) and has_places(Path(root) / str(clicked)),
         also_known="known" in content.get("override", {}).get("calibrations", []),
         unclicked=unclicked,
@@ -94,6 +95,15 @@ def session(
         halfbody=content.get("halfbody"),
         parameters=_merged(parameters, content.get("override", {})),
     )
+
+
+def _point_sets(court_yaml: Path) -> frozenset[int] | None:
+    """Return how many points a court and its sets have; None of a court that cannot be read."""
+    try:
+        court = schemas.read(court_yaml, "court")
+    except InputError:  # what is wrong is told where the court is needed
+        return None
+    return frozenset(map(len, [court["points"], *court["sets"].values()]))
 
 
 def _calibration(content: Content) -> dict[str, Any]:

@@ -107,6 +107,8 @@ class Session:
     # The cameras that play `centre`, `left`, `right` in the paper's rule for three cameras
     halfbody: dict[str, str] | None
     parameters: dict[str, Any]  # the steps' parameters of the study, with this session's overrides
+    # Numbers of points of the court's sets, all of its points among them; None where unknown
+    point_sets: frozenset[int] | None = None
     placed: bool = False  # whether the file of court points states their places itself
     # Whether cameras are calibrated from points alone, too, where there are better ways
     also_known: bool = False
@@ -129,7 +131,7 @@ class Session:
         return {name: c.name_in_calibration or name for name, c in self.cameras.items()}
 
     def calibrations(self) -> list[str]:
-        """Return the study's calibrations for which this session has recordings."""
+        """Return the study's calibrations for which this session has recordings and a court."""
         clicked, walked = self.court_points is not None and bool(self.cameras), bool(self.walks)
         others = walked or self.calibration_file or self.board or self.wand
         alone = clicked and (self.also_known or not others)
@@ -152,6 +154,8 @@ class Session:
             if way.base:
                 return filmed and allowed(Calibration.parse(way.base))
             if way.lines and not clicked:
+                return False
+            if way.n_points and self.point_sets and way.n_points not in self.point_sets:
                 return False
             return (
                 alone if way.name == "known" else possible[way.kind] and (boards or not way.board)
