@@ -99,6 +99,21 @@ def test_a_board_that_the_others_contradict_is_left_out(folder):
     assert lens.K[0, 0] == pytest.approx(600, rel=0.005)
 
 
+def test_the_lens_is_that_of_the_boards_that_are_left(folder, monkeypatch):
+    """Where one board after the other is off, the last solution is of those that are counted."""
+    boards, solved = chessboard.find(folder, INNER), []
+    many = replace(boards, paths=boards.paths * 5, xy=np.concatenate([boards.xy] * 5))
+
+    def solve(xy, _):
+        solved.append(len(xy))
+        return 0.1, K, DIST, 1.0, np.array([9.0] + [0.1] * (len(xy) - 1))
+
+    monkeypatch.setattr(chessboard, "_solve", solve)
+    lens = chessboard.calibrate(many)
+    assert len(solved) == chessboard.MAX_ROUNDS + 1
+    assert lens.n_used == solved[-1] == 30 - chessboard.MAX_ROUNDS
+
+
 def test_three_boards_are_too_few(folder, tmp_path):
     some(folder, tmp_path, range(3))
     cv2.imwrite(str(tmp_path / "9.png"), np.zeros(SIZE[::-1], np.uint8))

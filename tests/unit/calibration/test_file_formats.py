@@ -419,6 +419,15 @@ def test_known_lenses_are_those_of_the_file_otherwise_of_the_study(tmp_path):
     assert list(file_formats.known_lenses(None, {}, tomls)) == ["left"]
 
 
+def test_lenses_do_not_depend_on_where_their_cameras_stood(tmp_path):
+    pose = np.column_stack([np.eye(3), [0.0, 0.0, 5000.0]])
+    far = replace(cameras.plain("left", (1920, 1080), 1.0), cam_from_world=pose)
+    cameras.write_toml(tmp_path / "mm.toml", [far], source="test")
+    with pytest.raises(InputError, match="expected it within 300 m"):
+        file_formats.read(tmp_path / "mm.toml")
+    assert file_formats.known_lenses(tmp_path / "mm.toml", {"a": "left"}, [])["a"].K[0, 0] == 1920
+
+
 def test_renaming_picks_and_orders():
     picked = file_formats.rename(named("Cam 1", "Cam 2", "Cam 3"), {"left": "Cam 3", "c": "Cam 1"})
     assert [camera.name for camera in picked] == ["left", "c"]

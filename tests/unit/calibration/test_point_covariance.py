@@ -54,6 +54,18 @@ def test_sensitivity_is_that_of_displaced_cameras():
         np.testing.assert_allclose(change, expected, atol=2e-3 * np.abs(expected).max() + 1e-9)
 
 
+def test_places_in_parts_and_no_place_at_all(monkeypatch):
+    network = pair()
+    covariance = np.diag(np.concatenate([SMALL, SMALL, SMALL_LENS, SMALL_LENS]) ** 2)
+    whole = point_covariance.point_covariance(network, covariance, XYZ)
+    monkeypatch.setattr(point_covariance, "PLACES", 1)
+    in_parts = point_covariance.point_covariance(network, covariance, XYZ)
+    np.testing.assert_array_equal(in_parts, whole)
+    nothing = np.zeros((0, 3))
+    assert point_covariance.point_covariance(network, covariance, nothing).shape == (0, 3, 3)
+    assert point_covariance.field(network, covariance)(nothing).shape[:2] == (0, 3)
+
+
 def test_covariance_is_that_of_drawn_cameras():
     network, rng = pair(), np.random.default_rng(0)
     clicks = seen_by(network)

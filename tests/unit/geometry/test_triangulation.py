@@ -1,5 +1,7 @@
 """Triangulation against exact truth, OpenCV, NumPy, statistics, and a board of known size."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pandas as pd
@@ -282,6 +284,15 @@ def test_a_wrong_view_is_used_and_a_doubtful_one_is_not():
     found = triangulation.triangulate_plain(cameras, xy, score, sigma_px=1.0, min_score=0.5)
     np.testing.assert_allclose(found.xyz, PLAIN_XYZ, atol=1e-7)
     assert not found.accepted[0].any()
+
+
+def test_a_view_beyond_the_fold_of_its_lens_is_not_accepted():
+    cameras = [replace(one, dist=np.array([-0.3, 0, 0, 0, 0])) for one in scene.ring(3)]
+    xy = scene.views(cameras, PLAIN_XYZ)
+    xy[0, 3] = [-9000.0, -9000.0]
+    found = triangulation.triangulate_plain(cameras, xy, np.ones((3, 50)), sigma_px=1.0)
+    assert found.accepted[:, 3].tolist() == [False, True, True]
+    np.testing.assert_allclose(found.xyz, PLAIN_XYZ, atol=1e-6)
 
 
 def test_points_of_too_few_views_are_missing():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from courtside.calibration import file_formats
-from courtside.calibration.boards import adjustment, corners
+from courtside.calibration.boards import adjustment, corners, start
 from courtside.calibration.boards.board import Board
 from courtside.calibration.bundle.problem import IMAGE
 from courtside.study.errors import InputError
@@ -101,6 +101,10 @@ def test_other_faults_are_one_line():
     rows = {key: getattr(seen, key)[few] for key in ("camera", "picture", "corner", "xy")}
     with pytest.raises(InputError, match=r"camera c0: expected 4 pictures or more .*give `lenses`"):
         adjustment.calibrate(BOARD, replace(seen, **rows), SIZES)
+    parts = seen.corner < 3
+    rows = {key: getattr(seen, key)[parts] for key in ("camera", "picture", "corner", "xy")}
+    with pytest.raises(InputError, match=r"camera c0: expected 4 pictures .* found 0; "):
+        start.lens("c0", SIZES["c0"], BOARD, replace(seen, **rows), 0)
     mixed = np.random.default_rng(1).permutation(len(BOARD.corners))[seen.corner]
     with pytest.raises(
         InputError, match=r"board: expected corners that .* found \d+ %.*check `squares`"

@@ -64,6 +64,7 @@ def test_neighbours_are_one_square_apart():
     [
         ({"dictionary": "DICT_4X4_51"}, "board.dictionary: expected one of .*found DICT_4X4_51"),
         ({"kind": "chessboard", "squares": [8, 6]}, "board.squares: .*turned round: use another"),
+        ({"kind": "chessboard", "squares": [4, 3]}, "4 or more along both sides, found 4 and 3"),
         ({"marker_m": 0.1}, r"board.marker_m: expected less than square_m \(0.1\), found 0.1"),
     ],
 )

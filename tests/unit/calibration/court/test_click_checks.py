@@ -1,11 +1,12 @@
 """Wrong clicks are found, named, and told from line centres, where the truth is exact."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from courtside.calibration.bundle import selection
+from courtside.calibration.bundle import selection, solver, variance_components
 from courtside.calibration.court import click_checks, court, joint_adjustment, sfm_alignment
 from courtside.geometry import camera as camera_models
 from courtside.geometry import similarity
@@ -163,6 +164,24 @@ def test_the_sigma_is_that_of_repeated_clicks():
     assert abs(np.mean(off)) < 3 / np.sqrt(40)
     assert np.std(off) == pytest.approx(1, abs=3 / np.sqrt(80))
     assert np.ptp(sigmas) < 0.2 * np.mean(sigmas)
+
+
+def test_the_weights_of_ties_and_painted_lines_count():
+    """Ties of a factor are ties of less information; lines are more knowledge of the cameras."""
+    xyz = COURT.xyz + 0.4 * court.to_line_centres(COURT)
+    ties, clicks = ties_of(0.0), clicks_of(xyz, CLICK_SIGMA_PX, 3)
+
+    def shift(knowledge, **weights):
+        own = replace(ties, knowledge=knowledge)
+        return click_checks.inward_shift(own, clicks, COURT, **WEIGHTS, **weights)
+
+    known = ties.knowledge
+    factors = replace(variance_components.none(2), ties=9.0)
+    loose, lines = solver.scaled(known, 1 / 9), solver.scaled(known, 3.0)
+    np.testing.assert_allclose(shift(known, factors=factors), shift(loose), rtol=1e-6)
+    both = solver.total([known, lines])
+    np.testing.assert_allclose(shift(known, lines=lines), shift(both), rtol=1e-6)
+    assert shift(known)[1] < 0.8 * shift(loose)[1]
 
 
 def test_points_without_a_line_say_nothing():

@@ -48,6 +48,13 @@ def test_the_same_cameras_are_not_better(scores):
     assert set(same.values()) == {"not better"} and not held_out.better(same)
 
 
+def test_blocks_that_only_one_of_both_knows_say_nothing():
+    before, after = (held_out.Score() for _ in range(2))
+    before.share |= {0: 0.02, 1: 0.04, 2: np.nan, 3: 0.02}
+    after.share |= {0: 0.01, 2: 0.01, 3: 0.01, 4: 0.01}
+    assert held_out.change(before, after)[0] == pytest.approx(np.log(0.5))
+
+
 def test_one_verdict_against_is_enough():
     assert not held_out.better({"joints": "better", "court": "not better"})
     assert held_out.better({"joints": "better"})

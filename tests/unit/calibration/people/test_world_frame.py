@@ -9,6 +9,8 @@ from courtside.calibration.people import prior, world_frame
 from courtside.calibration.records import covariance
 from courtside.geometry import rotations
 from courtside.geometry.similarity import Sim3
+from courtside.records.keypoints import skeleton
+from courtside.study.errors import InputError
 from fixtures.cameras import corner_cameras
 from fixtures.people import tracks_made
 
@@ -28,6 +30,15 @@ def test_the_floor_is_found_under_feet_from_any_axes():
     x = [world.camera(camera).centre_in_world for camera in elsewhere]
     assert (x[1] - x[0])[1] == pytest.approx(0, abs=1e-9)
     assert (x[1] - x[0])[0] > 0
+
+
+@pytest.mark.parametrize("hidden", [["ankle"], ["knee", "ankle"], ["hip", "knee", "elbow"]])
+def test_people_without_legs_tell_no_floor(hidden):
+    joints = np.concatenate(WALK).copy()
+    at = [k for k, name in enumerate(skeleton.JOINTS) if name.split("_")[1] in hidden]
+    joints[:, at] = np.nan
+    with pytest.raises(InputError, match="expected hips, knees and ankles that two cameras see"):
+        world_frame.floor(joints, TRUE)
 
 
 def test_points_on_the_floor_tell_its_height_and_three_of_them_its_tilt():

@@ -94,6 +94,12 @@ def test_other_programs_place_the_same_markers(tmp_path, program, text):
     np.testing.assert_allclose(found.xy[:, 1], [[[0, 0], [99, 9]]] * 2)
 
 
+def test_a_frame_of_empty_cells_is_a_frame_and_an_empty_line_is_none(tmp_path):
+    found = read(tmp_path, f"{HEADER}\n1,1,2,2,3,3,4,4\n,,,,,,,\n\n9,1,2,2,3,3,4,4\n\n",
+                 program="dltdv8")  # fmt: skip
+    np.testing.assert_array_equal(found.xy[0, :, 0, 0], [0, np.nan, 8])
+
+
 def test_a_measured_marker_beside_a_gap_is_kept(tmp_path):
     rows = [f"{camera},{k / 10},{m},{10 * k},{5 * n}" for camera in ("cam_a", "cam_b")
             for k in (0, 1, 2, 8, 9) for n, m in enumerate("ab")]  # fmt: skip

@@ -147,12 +147,13 @@ def calibrate(boards: Boards, *, name: str = "camera") -> Lens:
     """
     paths, xy = list(boards.paths), list(boards.xy)
     dropped = dict(boards.dropped)
-    for _ in range(MAX_ROUNDS):
+    for n_left_out in range(MAX_ROUNDS + 1):
         if len(xy) < FEWEST:
             raise InputError(_too_few(name, len(xy), dropped))
         rms_px, matrix, dist, f_sigma_px, errors = _solve(xy, boards)
         worst = int(np.argmax(errors))
-        if errors[worst] <= max(FINE_PX, OUTLIER * np.median(errors)):
+        is_fine = errors[worst] <= max(FINE_PX, OUTLIER * np.median(errors))
+        if is_fine or n_left_out == MAX_ROUNDS:
             break
         dropped[paths.pop(worst)] = "off"
         xy.pop(worst)

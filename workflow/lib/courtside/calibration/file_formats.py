@@ -63,7 +63,7 @@ def read(path: StrPath, unit: str | None = None) -> list[Camera]:
     stated twice or has to be and is not, or a camera is incomplete, impossible or named twice.
     """
     path = Path(path)
-    found, replaceable = _in_folder(path) if path.is_dir() else _in_file(path)
+    found, replaceable = _found(path)
     if unit is not None and replaceable is None:
         raise InputError(
             f"{path}: expected `unit` under calibration in the session file for a file that states "
@@ -134,10 +134,11 @@ def known_lenses(
 ) -> dict[str, Camera]:
     """Return the known lenses by camera: of a calibration at `path`, else of the study's `tomls`.
 
-    `names` are as for `rename`.
+    `names` are as for `rename`. Poses in the calibration, and their unit, do not matter.
     """
     if path is not None:
-        return {lens.name: lens for lens in rename(read(path), names)}
+        found = camera_fields.check_distinct(path, _found(Path(path))[0])
+        return {lens.name: lens for lens in rename(found, names)}
     return {lens.name: lens for toml in tomls for lens in camera_files.read_toml(toml)}
 
 
@@ -193,6 +194,10 @@ def _text(path: Path) -> str:
     with reading(path, f"a text file, {known.FORMS}", "check it"):
         # Motive writes .mcal in UTF-16, with or without its mark.
         return data.decode("utf-16" if wide else "utf-8-sig")
+
+
+def _found(path: Path) -> Found:
+    return _in_folder(path) if path.is_dir() else _in_file(path)
 
 
 def _in_folder(path: Path) -> Found:

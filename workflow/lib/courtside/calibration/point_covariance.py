@@ -31,7 +31,7 @@ def sensitivity(network: Network, xyz: ArrayLike) -> NDArray:
     full = np.zeros((len(image_idx), 2, network.n_columns))
     np.put_along_axis(full, view.columns()[:, None, :].repeat(2, axis=1), by_camera, axis=2)
     full, by_point = (  # by image and point -> by point, all images together
-        of_views.reshape(n_images, n_points, 2, -1)
+        of_views.reshape(n_images, n_points, 2, of_views.shape[2])
         .transpose(1, 0, 2, 3)
         .reshape(n_points, 2 * n_images, of_views.shape[2])
         for of_views in (full, by_point)
@@ -45,8 +45,8 @@ def point_covariance(network: Network, covariance: NDArray, xyz: NDArray) -> NDA
     The covariance of the keypoints' noise must be added. `covariance` (K, K) is that of the columns
     of the `network` of the fixed cameras, `xyz` (N, 3) are m.
     """
-    by_column = sensitivity(network, xyz)
-    return by_column @ covariance @ by_column.transpose(0, 2, 1)
+    found = (sensitivity(network, part) for part in _parts(xyz))
+    return np.concatenate([by @ covariance @ by.transpose(0, 2, 1) for by in found])
 
 
 def field(network: Network, covariance: NDArray) -> Callable[[NDArray], NDArray]:
@@ -62,10 +62,14 @@ def field(network: Network, covariance: NDArray) -> Callable[[NDArray], NDArray]
     root = unit[:, None] * (axes * np.sqrt(np.maximum(extent, 0.0)))[:, extent > 0]
 
     def at(xyz: NDArray) -> NDArray:
-        parts = np.array_split(xyz, len(xyz) // PLACES + 1)
-        return np.concatenate([sensitivity(network, part) @ root for part in parts])
+        return np.concatenate([sensitivity(network, part) @ root for part in _parts(xyz)])
 
     return at
+
+
+def _parts(xyz: NDArray) -> list[NDArray]:
+    """Split places (N, 3) so that at most `PLACES` are worked on at once."""
+    return np.array_split(xyz, len(xyz) // PLACES + 1)
 
 
 def of_columns(normal: Normal) -> NDArray:

@@ -222,7 +222,7 @@ def read_toml(path: StrPath) -> list[Camera]:
     """Read cameras, in metres, from a TOML file as this study, Pose2Sim and aniposelib write it.
 
     The file holds one table per camera with `name size matrix distortions rotation translation`, in
-    the order of the result; `[metadata]` may hold `unit`: m (where absent), cm or mm. Raises
+    the order of the result; `[metadata]` may hold `unit`, m where absent. Raises
     `InputError` if the file is not TOML or a camera is incomplete, impossible or named twice.
     """
     with reading(path, "TOML", camera_fields.EXPORT_AGAIN):

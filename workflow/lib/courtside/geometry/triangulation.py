@@ -371,7 +371,7 @@ def triangulate_plain(
     return Triangulated(
         xyz=xyz,
         covariance=_noise_covariance(views, xyz, used, np.broadcast_to(sigma_px, len(xyz))),
-        accepted=used & np.isfinite(xyz[:, 0]),
+        accepted=(views.weight > 0) & np.isfinite(xyz[:, 0]),
         error_px=_reprojection_px(cameras, xy, xyz),
         weight=views.weight,
     )

@@ -84,7 +84,7 @@ def _limits(cameras, xy, score, joints, share, px) -> dict[str, NDArray]:
     """Return the limit and where a view fades, (C, P, T) px, from (limit, fade) in shares or px."""
     if share[0] is None and px[0] is None:
         raise ValueError("expected max_error_share or max_error_px, found neither")
-    if None in px:
+    if not px[0]:
         height_px = person_height.in_pictures(cameras, xy, score, joints)
     limit_px = np.full(score.shape[:3], float(px[0])) if px[0] else share[0] * height_px
     if px[1]:

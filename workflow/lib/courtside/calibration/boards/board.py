@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from courtside.study.errors import InputError
 
 KINDS = ("charuco", "chessboard", "tags", "aprilgrid")
+LEAST_SQUARES = 4  # of a chessboard along one side: OpenCV finds no smaller ones
 MARKER_SHARE = 0.75  # of a square, where the session does not say it: as most programs print them
 # Of Kalibr's AprilGrid: family, cells of black around the bits, and the share as in its examples.
 FAMILY, BORDER, GRID_SHARE = "DICT_APRILTAG_36h11", 2, 1 / 1.3
@@ -65,6 +66,11 @@ class Board:
             raise InputError(
                 f"board.squares: expected an odd and an even number of squares, found {columns} "
                 f"and {rows}; such a chessboard looks the same when it is turned round: use another"
+            )
+        if made.kind == "chessboard" and min(columns, rows) < LEAST_SQUARES:
+            raise InputError(
+                f"board.squares: expected {LEAST_SQUARES} or more along both sides, found "
+                f"{columns} and {rows}; count squares, not the corners between them"
             )
         if not 0 < marker_m < square_m:
             raise InputError(

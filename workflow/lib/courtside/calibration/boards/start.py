@@ -65,12 +65,12 @@ def lens(name: str, size: Sequence[int], board: Board, seen: Corners, camera: in
     Raises `InputError` if it has fewer than four views of six corners.
     """
     rows = [at for at in _views(seen, camera) if len(at) >= FEWEST_CORNERS]
-    rows = [rows[k] for k in np.unique(np.linspace(0, len(rows) - 1, MOST_VIEWS).astype(int))]
     if len(rows) < FEWEST_VIEWS:
         raise InputError(
             f"camera {name}: expected {FEWEST_VIEWS} pictures or more with {FEWEST_CORNERS} "
             f"corners of the board, found {len(rows)}; {HOW}, or give `lenses`"
         )
+    rows = [rows[k] for k in np.unique(np.linspace(0, len(rows) - 1, MOST_VIEWS).astype(int))]
     width, height = size
     focal = float(max(width, height))
     guess = np.array([[focal, 0, (width - 1) / 2], [0, focal, (height - 1) / 2], [0, 0, 1]])

@@ -1,6 +1,6 @@
 """Choice and weights of tie points, control points, frames and the fixed cameras of a network."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -58,7 +58,7 @@ def thin(
     """Keep a random choice of the points that tie images well.
 
     Observations farther than `max_error_px` from their point's projection are dropped, then points
-    with fewer than two, or with less than `min_angle_deg` between their two most different rays. A
+    with fewer than two, or whose rays are all within half of `min_angle_deg` of their mean. A
     random choice does better than the points seen under the widest angles: those are often wrong.
     More points than a few thousand do not help: their errors come from the features and are not
     independent.
@@ -202,7 +202,7 @@ def cameras(
     return found
 
 
-def of_cameras(known: Iterable[Camera]) -> Network:
+def of_cameras(known: Sequence[Camera]) -> Network:
     """Return the network of cameras without points: the inverse of `cameras`."""
     lenses = []
     for camera in known:

@@ -22,7 +22,7 @@ class View:
     camera: Camera
     court: Court
     blur_px: float  # of the picture, standard deviation
-    polarity: int  # 1 where lines are lighter than the floor, -1 where darker
+    polarity: int  # 1 where lines are lighter than the floor, -1 where darker, 0: either
 
     @classmethod
     def of(cls, image: NDArray, camera: Camera, court: Court, lines: str) -> "View":

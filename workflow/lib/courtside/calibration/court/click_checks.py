@@ -228,7 +228,8 @@ def inward_shift(
     for share in SHIFTS:
         moved = replace(court, xyz=court.xyz + share * inwards)
         solved = joint_adjustment.solve(ties, clicks, moved, max_iterations=30, **weights)
-        costs.append(solver.cost(solved.network, ties.knowledge))
+        known = joint_adjustment.knowledge(ties, solved.factors, weights.get("lines"))
+        costs.append(solver.cost(solved.network, known))
     bend, slope, _ = np.polyfit(SHIFTS, costs, 2)
     if bend < 1e-9 * max(costs[0], 1.0):
         return 0.0, np.inf

@@ -285,9 +285,9 @@ def solve(
     network = selection.add_control_points(
         network, court.xyz, court.sigma_m, images, sigma_px=sigmas, loss_scale=click_loss
     )
-    known = [solver.scaled(ties.knowledge, 1 / factors.ties), *([lines] if lines else [])]
+    known = knowledge(ties, factors, lines)
     network, normal = solver.adjust(
-        network, quadratic=solver.total(known), max_iterations=max_iterations, tolerance=1e-7
+        network, quadratic=known, max_iterations=max_iterations, tolerance=1e-7
     )
     _check_placed(ties, normal)
     cameras = selection.cameras(network, ties.cameras, ties.sizes)
@@ -295,6 +295,14 @@ def solve(
     shifts = _shift_columns(network)
     covariance[shifts], covariance[:, shifts] = 0.0, 0.0  # of the clicks, not of the cameras
     return Solution(cameras, network, covariance, factors)
+
+
+def knowledge(
+    ties: Ties, factors: Factors, lines: solver.Quadratic | None = None
+) -> solver.Quadratic:
+    """Return what is known besides clicks: of ties with their factor, and of painted lines."""
+    known = [solver.scaled(ties.knowledge, 1 / factors.ties), *([lines] if lines else [])]
+    return solver.total(known)
 
 
 def solve_by_edges(ties: Ties, clicks: ClickedPoints, court: Court, **options: Any) -> Solution:

@@ -278,6 +278,11 @@ def _places(joints: NDArray) -> NDArray:
     """Return some of the known joints (T, J, 3) as points (N, 3)."""
     places = joints.reshape(-1, 3)
     places = places[np.isfinite(places).all(axis=1)]
+    if not len(places):
+        raise InputError(
+            "people: expected joints on whose places two cameras agree, found none; check that the "
+            "videos are of the same take, and the clocks of the cameras"
+        )
     return places[np.linspace(0, len(places) - 1, MOST_PLACES).astype(int)]
 
 

@@ -99,7 +99,8 @@ def _people(found: Score, cameras, seen: Seen, block: NDArray, limits: Limits) -
 
 def change(before: Score, after: Score) -> tuple[float, float]:
     """Return the mean over blocks of the logarithm of the ratio of joints, and how sure it is."""
-    blocks = [b for b in before.share if np.isfinite([before.share[b], after.share[b]]).all()]
+    known = [{b for b, share in one.share.items() if np.isfinite(share)} for one in (before, after)]
+    blocks = sorted(set.intersection(*known))
     ratio = np.log([after.share[b] / before.share[b] for b in blocks])
     sure = SURE * ratio.std(ddof=1) / np.sqrt(len(ratio)) if len(ratio) > 1 else np.inf
     return float(ratio.mean()) if len(ratio) else 0.0, float(sure)

@@ -16,6 +16,7 @@ from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
 from courtside.geometry.similarity import Sim3
 from courtside.records.keypoints import skeleton
+from courtside.study.errors import InputError
 
 ANKLE = 0.055  # ASSUME: height of the ankle of a standing foot over the person's (players-dev)
 STANDING = 0.1  # the quantile of the ankles' heights that belongs to standing feet
@@ -28,15 +29,22 @@ TINY_STEP = 1e-6  # of a similarity, for numerical derivatives
 def floor(xyz: NDArray, cameras: Sequence[Camera], on_floor: NDArray | None = None) -> Sim3:
     """Return `world_from_cameras` for joints (T, J, 3) m of all persons, NaN where unknown.
 
+    Raises `InputError` if no ankles are known, or no legs or arms to tell the size of a person by.
+
     The floor is the plane of the lowest ankles. If people stay in one place, it is perpendicular to
     the mean line from ankles to shoulders. Points `on_floor` (P, 3) replace its height, and its
     tilt if three or more are not on one line.
     """
     place = {name: xyz[:, at] for at, name in enumerate(skeleton.JOINTS)}
-    upward = rotations.unit(unit.middle(place, "shoulder") - unit.middle(place, "ankle"))
-    up = rotations.unit(np.nanmedian(upward, axis=0))
     ankles = np.concatenate([place["left_ankle"], place["right_ankle"]])
     ankles = ankles[np.isfinite(ankles).all(axis=1)]
+    if not len(ankles) or not np.isfinite(unit.length(xyz)):
+        raise InputError(
+            "people: expected hips, knees and ankles that two cameras see, found none; film whole "
+            "bodies, with the feet in the picture"
+        )
+    upward = rotations.unit(unit.middle(place, "shoulder") - unit.middle(place, "ankle"))
+    up = rotations.unit(np.nanmedian(upward, axis=0))
     middle = np.median(ankles, axis=0)
     centres = [camera.centre_in_world for camera in cameras]
     turn = axes(up, centres[1] - centres[0])

@@ -196,7 +196,8 @@ def _theirs(path: StrPath, wand: Wand, sizes: Sequence[tuple[int, int]], program
         Path(path).open(newline="", encoding="utf-8-sig") as stream,
     ):
         lines = [[cell.strip() for cell in row] for row in csv.reader(stream, strict=True)]
-    lines = [row for row in lines if any(row)]
+    # A row of empty cells is a frame in which nothing is seen, an empty line is none.
+    lines = [row for row in lines if len(row) > 1 or any(row)]
     header = lines[0] if lines else []
     plain = bool(header) and not any(
         re.search("[A-Za-z]", re.sub("(?i)nan", "", c)) for c in header
