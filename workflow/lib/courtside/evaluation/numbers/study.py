@@ -30,7 +30,7 @@ SUMMED_UP = {  # what was measured: table, regular expression of its row, what i
         "^all ",
         "{walk18} cm in the median hall, {walk18_worst} cm in the worst",
     ),
-    "the same with the court's painted lines: median hall, worst hall, cm; in 90 % ellipsoids": (
+    "the same with the court's lines: median, worst hall, cm; points in 90 % ellipsoids": (
         "walk-lines",
         "^the six halls",
         "{both}",

@@ -126,7 +126,7 @@ VIEWS = {
             "corrected, without the shift of the skeleton": (
                 "{corrected_unshifted} / {corrected_unshifted_p95}"
             ),
-            "90 % hold, raw / filtered / corrected (least take), %": " / ".join(
+            "in 90 % ellipsoids, %: raw / filtered / corrected (least take)": " / ".join(
                 f"{{{stage}_coverage}} ({{{stage}_least}})" for stage in STAGES
             ),
             "joints": "{raw_median.n}",
@@ -140,7 +140,7 @@ VIEWS = {
             "corrected: shift of the skeleton; without it": (
                 "{corrected_shift}; {corrected_unshifted} / {corrected_unshifted_p95}"
             ),
-            "90 % hold, raw / filtered / corrected, %": " / ".join(
+            "in 90 % ellipsoids, %: raw / filtered / corrected": " / ".join(
                 f"{{{stage}_coverage}}" for stage in STAGES
             ),
             "missing, raw / corrected, %": "{raw_missing} / {corrected_missing}",
@@ -209,7 +209,7 @@ VIEWS = {
                     "hand": "set by hand, same cameras",
                 }.items()
             },
-            "90 % hold, raw / filtered / corrected, %": " / ".join(
+            "in 90 % ellipsoids, %: raw / filtered / corrected": " / ".join(
                 f"{{{stage}_coverage_90}}" for stage in STAGES
             ),
             "missing, raw / corrected, %": "{raw_missing} / {corrected_missing}",
@@ -288,7 +288,7 @@ VIEWS = {
         {
             "joint, take": "{row}",
             **_stages("{STAGE_median} / {STAGE_p95}"),
-            "90 % hold, raw / filtered / corrected, %": " / ".join(
+            "in 90 % ellipsoids, %: raw / filtered / corrected": " / ".join(
                 f"{{{stage}_coverage}}" for stage in STAGES
             ),
             "n": "{raw_median.n}",
