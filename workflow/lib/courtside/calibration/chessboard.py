@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.geometry.camera import plain
 from courtside.study.errors import InputError, StrPath
 from courtside.video import images
 
@@ -179,9 +180,7 @@ def _too_few(name: str, count: int, dropped: Mapping[Path, str]) -> str:
 def _solve(xy: Sequence[NDArray], boards: Boards) -> tuple[float, NDArray, NDArray, float, NDArray]:
     """Return rms px, K, dist, sigma of the focal length px, and each board's error px."""
     board = np.column_stack([_grid(boards.inner_corners), np.zeros(len(xy[0]))]).astype(np.float32)
-    width, height = boards.size
-    focal = float(max(width, height))
-    start = np.array([[focal, 0, (width - 1) / 2], [0, focal, (height - 1) / 2], [0, 0, 1]])
+    start = plain("", boards.size, 1.0).K.copy()  # OpenCV writes its result there
     rms, matrix, dist, _, _, sigma, _, errors = cv2.calibrateCameraExtended(
         [board] * len(xy),
         [corners.astype(np.float32) for corners in xy],

@@ -28,13 +28,11 @@ def sensitivity(network: Network, xyz: ArrayLike) -> NDArray:
     point_idx = np.tile(np.arange(n_points), n_images)
     view = problem.with_points(network, xyz, image_idx, point_idx, np.zeros((len(image_idx), 2)))
     _, by_camera, by_point = problem.linearised(view)
-    full = np.zeros((len(image_idx), 2, network.n_columns))
-    np.put_along_axis(full, view.columns()[:, None, :].repeat(2, axis=1), by_camera, axis=2)
     full, by_point = (  # by image and point -> by point, all images together
         of_views.reshape(n_images, n_points, 2, of_views.shape[2])
         .transpose(1, 0, 2, 3)
         .reshape(n_points, 2 * n_images, of_views.shape[2])
-        for of_views in (full, by_point)
+        for of_views in (view.over_columns(by_camera), by_point)
     )
     return -np.linalg.pinv(by_point) @ full
 

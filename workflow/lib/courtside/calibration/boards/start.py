@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from courtside.calibration.boards.board import Board
 from courtside.calibration.boards.corners import Corners
 from courtside.geometry import rotations
-from courtside.geometry.camera import Camera
+from courtside.geometry.camera import Camera, plain
 from courtside.study.errors import InputError
 
 FEWEST_CORNERS = 6  # ASSUME: of a view that is to tell a pose by itself
@@ -71,20 +71,18 @@ def lens(name: str, size: Sequence[int], board: Board, seen: Corners, camera: in
             f"corners of the board, found {len(rows)}; {HOW}, or give `lenses`"
         )
     rows = [rows[k] for k in np.unique(np.linspace(0, len(rows) - 1, MOST_VIEWS).astype(int))]
-    width, height = size
-    focal = float(max(width, height))
-    guess = np.array([[focal, 0, (width - 1) / 2], [0, focal, (height - 1) / 2], [0, 0, 1]])
+    guess = plain(name, (size[0], size[1]), 1.0).K.copy()  # OpenCV writes its result there
     flags = cv2.CALIB_USE_INTRINSIC_GUESS | cv2.CALIB_FIX_ASPECT_RATIO
     flags |= cv2.CALIB_ZERO_TANGENT_DIST | cv2.CALIB_FIX_K3
     _, matrix, dist, *_ = cv2.calibrateCamera(
         [board.corners[seen.corner[at]].astype(np.float32) for at in rows],
         [seen.xy[at].astype(np.float32) for at in rows],
-        (width, height),
+        (size[0], size[1]),
         guess,
         np.zeros(5),
         flags=flags,
     )
-    return Camera(name, (width, height), matrix, dist.ravel()[:5], np.eye(3, 4))
+    return Camera(name, (size[0], size[1]), matrix, dist.ravel()[:5], np.eye(3, 4))
 
 
 def poses(board: Board, seen: Corners, ideal: NDArray, world: str | None) -> Poses:

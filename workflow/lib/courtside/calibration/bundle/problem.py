@@ -73,6 +73,12 @@ class Network:
         first = IMAGE * len(self.cam_from_world) + len(LENS) * self.lens_of_image[self.image_idx]
         return np.concatenate([image, first[:, None] + np.arange(len(LENS))], axis=1)
 
+    def over_columns(self, by_camera: NDArray) -> NDArray:
+        """Return derivatives by `columns` (M, 2, 19) as those by all columns of the network."""
+        whole = np.zeros((len(by_camera), 2, self.n_columns))
+        np.put_along_axis(whole, self.columns()[:, None, :].repeat(2, axis=1), by_camera, axis=2)
+        return whole
+
     def moved(self, step: NDArray, step_xyz: NDArray) -> "Network":
         """Return the network after a step of its image and lens parameters, and of its points."""
         images, lenses = np.split(step, [IMAGE * len(self.cam_from_world)])

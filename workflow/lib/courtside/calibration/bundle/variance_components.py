@@ -124,8 +124,7 @@ def _rows(network: Network) -> tuple[NDArray, NDArray]:
     residual, by_camera, by_point = problem.linearised(network)
     size = network.n_columns
     rows = np.zeros((len(residual), 2, size + 3 * len(network.xyz)))
-    columns = network.columns()[:, None, :].repeat(2, axis=1)
-    np.put_along_axis(rows, columns, by_camera, axis=2)
+    rows[:, :, :size] = network.over_columns(by_camera)
     places = size + 3 * network.point_idx[:, None, None] + np.arange(3)
     np.put_along_axis(rows, places.repeat(2, axis=1), by_point, axis=2)
     return residual, rows / network.axis_sigma_px[:, :, None]
@@ -138,7 +137,7 @@ def _covariance(network: Network, quadratic: solver.Quadratic, rows: NDArray) ->
     information[:size, :size] += quadratic.information
     diagonal = np.zeros(len(information))
     diagonal[size:] = np.repeat(network.xyz_sigma**-2.0, 3)
-    diagonal[_shift_columns(network)] = _shift_information(network)
+    diagonal[shift_columns(network)] = _shift_information(network)
     information += np.diag(diagonal)
     moves = np.concatenate([np.ones((len(network.flex), len(POSE))), network.flex_sigma], axis=1)
     free = np.diag(information) > 0
@@ -150,7 +149,7 @@ def _covariance(network: Network, quadratic: solver.Quadratic, rows: NDArray) ->
     return covariance
 
 
-def _shift_columns(network: Network) -> NDArray:
+def shift_columns(network: Network) -> NDArray:
     """Return the columns of each image's shift, (V, 2)."""
     images = np.arange(len(network.cam_from_world))
     return IMAGE * images[:, None] + [IMAGE - 2, IMAGE - 1]

@@ -292,7 +292,7 @@ def solve(
     _check_placed(ties, normal)
     cameras = selection.cameras(network, ties.cameras, ties.sizes)
     covariance = uncertainty.of_columns(normal)
-    shifts = _shift_columns(network)
+    shifts = variance_components.shift_columns(network)
     covariance[shifts], covariance[:, shifts] = 0.0, 0.0  # of the clicks, not of the cameras
     return Solution(cameras, network, covariance, factors)
 
@@ -348,11 +348,6 @@ def _with_bias(ties: Ties, click_bias_px: float, factors: Factors) -> Network:
     flex_sigma[:, 3:] = [[click_sigma(click_bias_px, size)] for size in ties.sizes]
     flex_sigma *= np.sqrt(factors.bias)
     return replace(network, flex_sigma=flex_sigma)
-
-
-def _shift_columns(network: Network) -> NDArray:
-    first = IMAGE * np.arange(len(network.cam_from_world))
-    return np.concatenate([first + IMAGE - 2, first + IMAGE - 1])
 
 
 def _check_placed(ties: Ties, normal: solver.Normal) -> None:

@@ -235,9 +235,7 @@ def _linearised(
     seen = problem.with_points(network, xyz, image, np.arange(len(xyz)), xy)
     residual, by_camera, by_point = problem.linearised(seen)
     by_camera[:, :, len(POSE) : IMAGE] = 0.0  # no flex: a static camera
-    rows = np.zeros((len(xyz), 2, network.n_columns))
-    np.put_along_axis(rows, seen.columns()[:, None].repeat(2, axis=1), by_camera, axis=2)
-    return residual, rows, by_point
+    return residual, seen.over_columns(by_camera), by_point
 
 
 def _of_edges(solved: Solution, found: Mapping[str, Edges], court: Court) -> _Observations:

@@ -13,8 +13,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from courtside.geometry import rotations
-from courtside.geometry.camera import Camera, project
+from courtside.geometry.camera import Camera, project, turned
 
 # ASSUME: the ratios between sizes that cameras record and programs work with.
 SCALES = (1 / 2, 2 / 3, 3 / 4, 4 / 3, 3 / 2, 2)
@@ -164,20 +163,15 @@ def _focal(camera: Camera, free: NDArray) -> Camera:
     return replace(camera, K=matrix)
 
 
-def _turned(camera: Camera, free: NDArray) -> Camera:
-    rotation = rotations.rotation_from_rodrigues(free[:3])
-    return replace(camera, cam_from_world=rotation @ camera.cam_from_world)
-
-
 def _moved(camera: Camera, free: NDArray) -> Camera:
-    moved = _turned(camera, free)
+    moved = turned(camera, free[:3])
     pose = moved.cam_from_world.copy()
     pose[:, 3] += free[3:]
     return replace(camera, cam_from_world=pose)
 
 
 def _turned_zoomed(camera: Camera, free: NDArray) -> Camera:
-    return _focal(_turned(camera, free), free[3:])
+    return _focal(turned(camera, free[:3]), free[3:])
 
 
 def _lens(camera: Camera, free: NDArray) -> Camera:
@@ -187,7 +181,7 @@ def _lens(camera: Camera, free: NDArray) -> Camera:
 
 
 FOCAL = Way(1, "focal length", "calibrate its lens again", _focal)
-TURNED = Way(3, "direction or principal point", "calibrate it again: it was turned", _turned)
+TURNED = Way(3, "direction or principal point", "calibrate it again: it was turned", turned)
 ZOOMED = Way(
     4, "direction and focal length", "calibrate it again: it was turned and zoomed", _turned_zoomed
 )

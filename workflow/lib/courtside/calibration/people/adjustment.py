@@ -120,7 +120,8 @@ def refine(
     """
     names, sizes = [c.name for c in cameras], [c.size for c in cameras]
     found = [_without_k3(camera) for camera in cameras]
-    seen = replace(seen.thinned(), xy=_seen_without_k3(cameras, seen.thinned().xy))
+    seen = seen.thinned()
+    seen = replace(seen, xy=_seen_without_k3(cameras, seen.xy))
     if clicks is not None:
         clicks = replace(clicks, xy=_seen_without_k3(cameras, clicks.xy))
     alike = scatter = 1.0
@@ -192,7 +193,7 @@ def _sigma_share(points, score, height_px, n_joints) -> NDArray:
     """Return the scatter (J,) of each joint: three degrees of freedom less per point."""
     inside = points.accepted
     squares = np.where(inside, np.nan_to_num(score * (points.error_px / height_px) ** 2), 0.0)
-    freedom = np.maximum(2 * inside.sum(axis=0) - 3, 0) * inside.any(axis=0)
+    freedom = np.maximum(2 * inside.sum(axis=0) - 3, 0)
     by_joint = (part.reshape(-1, n_joints).sum(axis=0) for part in (squares.sum(axis=0), freedom))
     total, count = by_joint
     pooled = total.sum() / max(count.sum(), 1)

@@ -62,7 +62,7 @@ def score(fit: Fit, seen: Seen, points: Points, limits: Limits) -> Score:
     found, block = Score(), seen.blocks(BLOCKS)
     for odd in (0, 1):
         held, clicks = block % 2 != odd, points.court if points.fitted else None
-        left = None if points.court is None else _left(points.court)
+        left = None if points.court is None else points.court.clicked.any(axis=0)
         if clicks is not None and left is not None:
             turn = np.cumsum(left) % 2 == odd
             clicks, left = clicks.of(left & ~turn), left & turn
@@ -77,10 +77,6 @@ def score(fit: Fit, seen: Seen, points: Points, limits: Limits) -> Score:
             off = (there - points.court.xy)[:, left]
             found.squares.setdefault("court", []).append(_known(off**2))
     return found
-
-
-def _left(clicks: Clicks) -> NDArray:
-    return np.isfinite(clicks.xy).all(axis=2).any(axis=0)
 
 
 def _known(squares: NDArray) -> NDArray:

@@ -72,7 +72,7 @@ def _narrow(cameras: Sequence[Camera], joints: NDArray) -> Iterator[str]:
 def _loose(cameras: Sequence[Camera], seen: Seen, limits: Limits) -> Iterator[str]:
     """Yield a warning for each camera that shares few joints with the others."""
     accepted = views.placed(cameras, seen, limits.score, limits.limit, limits.fade).accepted
-    tied = (accepted & (accepted.sum(axis=0) >= 2)).sum(axis=1)
+    tied = accepted.sum(axis=1)
     usual = float(np.median(tied))
     for camera, count in zip(cameras, tied, strict=True):
         if count < LEAST_TIED * usual:
