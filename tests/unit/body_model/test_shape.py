@@ -50,3 +50,13 @@ def test_feet_and_other_points_are_placed_where_they_are_seen():
     weight = np.ones(points.xyz.shape[1:3])
     again = shape.with_points(bare, origin, turned, points.xyz[0], weight)
     np.testing.assert_allclose(again.places, true.places, atol=1e-6)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("part", ["heel", "foot_index"])
+def test_feet_whose_heels_or_toes_are_never_seen_stay_at_the_ankle(part):
+    _, place, _ = seen()
+    gone = {name: np.full_like(line, np.nan) for name, line in place.items() if part in name}
+    bare = shape.of_lengths(segments.model(), moving_model.LENGTHS, moving_model.JOINTS)
+    found = shape.with_feet(bare, place | gone)
+    np.testing.assert_array_equal(found.places, bare.places)

@@ -80,3 +80,17 @@ def test_a_person_who_is_never_seen_has_no_motion():
     assert np.isnan(motion.root).all()
     assert np.isnan(take.joints(points, {}).xyz).all()
     assert set(skeleton.JOINTS) <= set(motion.joints.tolist())
+
+
+def test_a_body_whose_heels_are_never_seen_is_fitted():
+    points = moving_model.points(moving_model.moving(), noise_m=0.005)
+    heels = [at for at, name in enumerate(points.joints.tolist()) if "heel" in name]
+    xyz, reason = points.xyz.copy(), points.reason.copy()
+    xyz[:, :, heels] = np.nan
+    reason[:, :, heels] = missing_reason.UNSEEN
+    points = replace(points, xyz=xyz, reason=reason)
+    found = take.joints(points, fitted(points))
+    assert np.isnan(found.xyz[0, :, heels]).all()
+    others = [at for at in range(len(points.joints)) if at not in heels]
+    apart_m = np.linalg.norm(found.xyz - points.xyz, axis=-1)[:, :, others]
+    assert np.median(apart_m) < 0.02

@@ -59,3 +59,16 @@ def test_a_clock_that_begins_again_is_refused(at):
     times = np.where(np.arange(100) < at, STEPS + 500, STEPS)
     with pytest.raises(InputError, match=rf"found {100 - at} of 100 frames out of order.*was set"):
         plausible.in_order("a", times)
+
+
+def test_no_more_frames_are_held_than_are_looked_at():
+    read = []
+
+    def stamped():
+        for at, time_s in enumerate(STEPS.tolist()):
+            read.append(at)
+            yield at, time_s, None
+
+    for at, _, _ in plausible.following("a", stamped()):
+        assert len(read) - at <= plausible.IN_A_ROW + 1
+    assert len(read) == len(STEPS)

@@ -68,8 +68,10 @@ def test_gaps_are_left_out():
 def test_nothing_but_noise_gets_the_lowest_and_too_little_is_refused():
     noise = np.random.default_rng(0).normal(0, 0.01, (600, 3))
     assert cutoffs.choose_cutoff(noise, 30.0).cutoff_hz == 1.0
-    with pytest.raises(InputError, match=r"expected 30 known points.*found 20; state a number of"):
+    with pytest.raises(InputError, match=r"expected 30 known frames.*found 20; state a number of"):
         cutoffs.choose_cutoff(noise[:20], 30.0)
+    with pytest.raises(InputError, match=r"expected 30 known frames.*found 20; state a number of"):
+        cutoffs.choose_cutoff(noise[:80].reshape(20, 4, 3), 30.0)  # of four joints
 
 
 def test_a_group_is_chosen_for_or_has_its_number():

@@ -66,3 +66,18 @@ def test_a_person_stays_sharp_without_a_face():
     np.testing.assert_array_equal(hidden[150:190, 158:163], image[150:190, 158:163])
     assert detail(hidden[101:114, 154:167]) < 0.25 * detail(image)
     assert detail(hidden[:, 220:]) < 0.35 * detail(image)
+
+
+@pytest.mark.parametrize("height", [60, 240, 500, 1080])
+def test_a_mosaic_is_of_8_cells_across_at_most(height, monkeypatch):
+    cells = []
+    resize = privacy.cv2.resize
+
+    def counted(image, size, **options):
+        cells.extend(size)
+        return resize(image, size, **options)
+
+    monkeypatch.setattr(privacy.cv2, "resize", counted)
+    image = np.zeros((height, height, 3), np.uint8)
+    privacy.blur_face(image, np.array([[height / 2, height / 2]]))
+    assert max(cells[:2]) <= privacy.GRAIN

@@ -95,7 +95,22 @@ def test_cameras_that_follow_different_people_fail_the_take():
     ("value", "expected"), [(0.95, GOOD), (0.7, DOUBTFUL), (0.3, FAILED), (float("nan"), FAILED)]
 )
 def test_a_value_is_judged_by_its_limit(value, expected):
-    limit = verdict.Limit(0.9, 0.5, "{:.0%} of it")
+    limit = verdict.Limit(0.9, 0.5, "{:.0%} of it", "how much of it")
     assert verdict.level(limit, value) == expected
-    high = verdict.Limit(0.1, 0.5, "{:.3f}", falling=False)
+    high = verdict.Limit(0.1, 0.5, "{:.3f}", "it", falling=False)
     assert verdict.level(high, 1 - value) == expected
+
+
+@pytest.mark.parametrize(
+    ("limits", "measure", "words"),
+    [
+        (verdict.OF_PERSON, "limb_length", "how much the lengths of limbs vary"),
+        (verdict.OF_PERSON, "views_2", "how many of the joints rest on two cameras or more"),
+        (verdict.OF_CAMERA, "reprojection", "how far its keypoints are from the other cameras'"),
+    ],
+)
+def test_an_unknown_value_is_told_in_a_whole_sentence(limits, measure, words):
+    (row,) = verdict._judged({measure: float("nan")}, limits, ALL, "p1")
+    assert row["sentence"] == f"Nothing is known of {words}." and row["verdict"] == FAILED
+    (row,) = verdict._judged({measure: 0.25}, limits, ALL, "p1")
+    assert "nothing" not in row["sentence"].lower() and "25" in row["sentence"]

@@ -62,3 +62,10 @@ def test_tables_without_rows_and_of_another_kind(tmp_path):
     assert footwork.read_events(tmp_path / "e.csv").empty
     with pytest.raises(InputError, match="found no column"):
         footwork.read_steps(tmp_path / "e.csv")
+
+
+def test_persons_called_by_digits_keep_their_names(tmp_path):
+    footwork.write_steps(tmp_path / "s.csv", STEPS.assign(person="01"))
+    footwork.write_events(tmp_path / "e.csv", EVENTS.assign(person="1"))
+    assert footwork.read_steps(tmp_path / "s.csv")["person"].tolist() == ["01", "01"]
+    assert footwork.read_events(tmp_path / "e.csv")["person"].tolist() == ["1"]

@@ -48,3 +48,11 @@ def test_what_is_no_such_table_is_named_in_one_line(tmp_path, content):
     ) as caught:
         tables.read(path, "a table of rows", lambda table: "found one row only")
     assert "\n" not in str(caught.value)
+
+
+def test_labels_are_texts_and_numbers_are_not(tmp_path):
+    rows = pd.DataFrame({"person": ["01", None], "foot": ["1", "2"], "n": [1, 2]})
+    tables.write(tmp_path / "rows.csv", rows)
+    found = tables.read(tmp_path / "rows.csv", "rows", lambda table: "")
+    assert found["person"][0] == "01" and pd.isna(found["person"][1])
+    assert found["foot"].tolist() == ["1", "2"] and found["n"].tolist() == [1, 2]

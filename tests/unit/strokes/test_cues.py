@@ -11,7 +11,9 @@ def test_cues_are_near_the_hit_and_the_farthest_wrist_nearest_of_an_overhead_str
     points, truth = strokes_made.take(seed=1)
     found = signals.of_person(points, 0)
     arm = found.arms["right"]
-    for true_s in evaluation.hits(truth, "p1")[:2]:
+    hits_s = evaluation.hits(truth, "p1")[:2]
+    assert len(hits_s) == 2
+    for true_s in hits_s:
         said = cues.times(found, "right", true_s)
         assert set(said) == set(cues.CUES)
         far = said["wrist_far"]

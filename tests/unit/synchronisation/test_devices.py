@@ -1,5 +1,7 @@
 """Clocks of virtual devices: offsets and drifts against those that the devices were given."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -112,6 +114,17 @@ def test_a_device_without_a_clap_is_refused_by_name():
     )
     with pytest.raises(InputError, match="mocopi: expected a T-pose"):
         shown([mocopi, still], {"mocopi": "suit", "mocopi-2": "suit-2"})
+
+
+@pytest.mark.parametrize("still", ["cameras", "mocopi"])
+def test_without_claps_of_one_source_clocks_are_unknown_and_it_is_named(still):
+    take, rng = device_takes.truth(0), np.random.default_rng(0)
+    motions = [device_takes.device(rng, take, **CAMERAS), device_takes.mocopi(rng, take)]
+    happened = shown(motions, device_takes.each_its_own(motions))
+    happened[still] = replace(happened[still], claps=[])
+    clock = device_sync.synchronise(motions, happened)["mocopi"].clock
+    assert clock.status == "unknown" and not clock.usable
+    assert clock.note == f"no clap of {still}"
 
 
 def test_other_peoples_claps_do_not_pair_silently():

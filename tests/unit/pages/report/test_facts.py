@@ -1,6 +1,7 @@
 """What the report reads: numbers as they stand in the files, and one line where a file is none."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -25,6 +26,15 @@ def test_frames_that_are_left_out_are_counted(tmp_path):
     facts = report_facts.of_take(report_made.files_of_take(tmp_path, n_frames=20))
     assert facts["left_out"] == {"p1": (1, 20, {"uncertain": 1})}
     assert facts["seconds"] == pytest.approx(19 / 50)
+
+
+def test_persons_called_by_digits_keep_their_names(tmp_path):
+    files = report_made.files_of_take(tmp_path)
+    for key in ("summary", "frames"):
+        path = Path(files[key])
+        path.write_text(path.read_text().replace("p1,", "01,"))
+    facts = report_facts.of_take(files)
+    assert list(facts["persons"]) == list(facts["left_out"]) == ["01"]
 
 
 def test_a_take_without_files_is_empty():

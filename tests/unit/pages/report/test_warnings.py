@@ -54,6 +54,19 @@ def test_an_uncertain_clock_gives_a_warning(clock, expected):
     assert level(warned.clock("back", clock)) == expected
 
 
+@pytest.mark.parametrize(
+    ("clock", "words"),
+    [
+        (Clock(status="assumed"), "is assumed to be that of the first camera"),
+        (Clock(5.3, status="assumed"), "is as the session states it"),
+        (Clock(drift_ppm=20.0, status="assumed"), "is as the session states it"),
+    ],
+)
+def test_a_clock_that_was_not_checked_is_told_where_it_comes_from(clock, words):
+    message = warned.clock("back", clock).text
+    assert message == f"Camera back: its clock {words}; this was not checked."
+
+
 def test_a_clock_error_is_also_given_as_the_path_of_a_fast_wrist():
     found = warned.clock("back", Clock(status="found", uncertainty_s=0.01))
     assert "16 ms" in found.text and "20 cm" in found.text  # 12 m/s times 16.45 ms

@@ -35,3 +35,8 @@ def test_no_knock_is_an_empty_table_and_another_table_is_refused(tmp_path):
     (tmp_path / "other.csv").write_text("take,camera\nrally,c1\n", encoding="utf-8")
     with pytest.raises(InputError, match="a table of knocks, found no column time_s"):
         knock_table.read(tmp_path / "other.csv", "rally", "c1")
+
+
+def test_takes_and_cameras_may_be_called_by_digits(tmp_path):
+    knock_table.write(tmp_path / "knocks.csv", [ROW | {"take": "01", "camera": "1"}])
+    assert len(knock_table.read(tmp_path / "knocks.csv", "01", "1")) == 1

@@ -179,6 +179,10 @@ def test_good_sessions_have_no_fault(root, content):
             ["static_points: expected a file, found none at q.csv"],
         ),
         (
+            RECORDED | {"cameras": {"a": None, "b": None}, "walks": {}, "court_points": "q.csv"},
+            ["court_points: expected a file, found none at q.csv", "give every camera `static`"],
+        ),
+        (
             without(RECORDED, "court_points"),
             ["expected `court_points`", "a page to click them on, or set court: none"],
         ),
@@ -464,6 +468,25 @@ def test_a_session_of_devices_alone_needs_no_cameras(root):
     assert find(root, content | {"takes": taken}) == []
 
 
+@pytest.mark.parametrize(
+    ("files", "named", "n_faults"),
+    [
+        ({"webcam": "a.mp4", "other": "b.mp4"}, "webcam", 1),
+        ({"webcam": "a.mp4", "other": "b.mp4"}, "other", 0),
+        ({"suit": "s.bvh", "webcam": "a.mp4"}, "webcam", 1),  # suits are compared with others
+        ({"suit": "s.bvh", "webcam": "a.mp4"}, "suit", 0),
+        ({"suit": "s.bvh"}, "suit", 1),
+    ],
+)
+def test_of_devices_alone_the_clock_of_the_first_is_the_reference(root, files, named, n_faults):
+    (root / "s.bvh").touch()
+    take = {"devices": {name: {"file": file} for name, file in files.items()}}
+    content = {"description": "d", "court": "none", "cameras": {}, "subjects": {"p1": None}}
+    found = find(root, content | {"takes": {"t": take | {"clocks": {named: {"offset_s": 1.0}}}}})
+    message = f"takes.t.clocks.{named}: expected no offset or drift of the first device"
+    assert [message in line for line in found] == [True] * n_faults
+
+
 def test_files_of_artefacts_must_be_members(root):
     content = RECORDED | {"court_points": "results/external/pack/points.csv"}
     (line,) = find(root, content)
@@ -483,6 +506,7 @@ def test_a_good_condition_has_no_fault():
     assert conditions() == []
     assert conditions(vary={"layout": ["a"], "baseline_deg": [30, 60]}) == []
     assert conditions(set={"layout": "a"}, vary={"baseline_deg": [30, 60]}) == []
+    assert conditions(set={"static_frames": 0}, vary={"walk_frames": [0]}) == []
 
 
 @pytest.mark.parametrize(
@@ -504,6 +528,10 @@ def test_a_good_condition_has_no_fault():
         (
             {"vary": {"layout": ["a", "b-mirror"]}, "set": {"baseline_deg": 30}},
             ["speed.baseline_deg: expected it with layout a only, found b-mirror"],
+        ),
+        (
+            {"vary": {"static_frames": [0, 2], "walk_frames": [0, 9, 12]}},
+            ["speed.static_frames: expected 1 or more with a walk", "found 0"],
         ),
     ],
 )

@@ -64,6 +64,8 @@ PARAMETERS = {
     [
         (b"camera,x_px,y_px,x_m,y_m,z_m\n", True),
         (b"\xef\xbb\xbfx_m, y_m ,camera\n", True),
+        (b'"camera","x_px","y_px","x_m","y_m","z_m"\r\n', True),
+        (b'"' + b"x" * 200_000 + b'",x_m\n', False),
         (b"camera,point,frame_idx,x_px,y_px\n", False),
         (b"\xff\xfe\x00x_m", False),
         (b"", False),

@@ -162,6 +162,30 @@ def test_ways_to_fuse_views_are_those_whose_cameras_a_session_names():
     assert named.fused_cameras("halfbody") == ("b", "a", "c")
 
 
+def test_a_take_has_the_fusions_of_which_enough_cameras_see_it():
+    names = ["all-robust", "two-robust", "halfbody"]
+    halves = {"centre": "b", "left": "a", "right": "c"}
+    shown = {
+        "cameras": {name: sessions.FixedCamera() for name in "abc"},
+        "views": {"two": ("b", "c")},
+        "halfbody": halves,
+        "parameters": {"fusions": names[:1], "compared_fusions": names[1:]},
+    }
+    found = session(**shown)
+
+    def fused(*cameras):
+        take = sessions.Take("t", {name: f"{name}.mp4" for name in cameras}, ())
+        return found.fusions_of(take) + found.fusions_of(take, "compared_fusions")
+
+    assert fused("a", "b", "c") == names
+    assert fused("a", "b") == ["all-robust"]
+    assert fused("c", "b") == ["all-robust", "two-robust"]
+    assert fused("a") == fused() == []
+    two = sessions.Take("t", {"c": "c.mp4", "b": "b.mp4"}, ())
+    assert found.cameras_fused(two, "all-robust") == ("b", "c")
+    assert found.cameras_fused(two, "halfbody") == ()
+
+
 def test_takes_are_measured_with_those_calibrations_that_the_study_names():
     parameters = {"calibrations": WAYS, "take_calibrations": ["known8", "file", "known18"]}
     found = session(court_points="p.csv", parameters=parameters)

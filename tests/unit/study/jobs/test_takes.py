@@ -7,7 +7,7 @@ import pytest
 from courtside.study import paths
 from courtside.study.errors import InputError
 from courtside.study.execution import verdicts
-from courtside.study.jobs import takes
+from courtside.study.jobs import figures, takes
 
 RALLY = {"session": "players-tiny", "take": "rally"}
 SHOT = {"session": "players-tiny", "take": "shot"}
@@ -84,6 +84,23 @@ def test_fusions_of_a_session_are_the_exported_ones_and_those_compared(job):
     assert takes.every_fusion(one) == names
     folder = "results/players-tiny/takes/shot/pose3d/known18"
     assert takes.every_fused(one) == [f"{folder}/{name}/net.npz" for name in names]
+
+
+def test_fusions_of_a_take_are_those_of_cameras_that_see_it(job, study):
+    session = study.sessions["players-tiny"]
+    seen = {name: f"{name}.mp4" for name in ("oblique", "mirror")}  # two is back and mirror
+    apart = {**session.takes, "shot": replace(session.takes["shot"], videos=seen)}
+    of = replace(study, sessions={session.name: replace(session, takes=apart)})
+    one = job(of, **SHOT, calibration="known18", model="blazepose-full")
+    compared = [name for name in takes.every_fusion(one) if name not in session.fusions()]
+    assert "all-robust" in takes.every_fusion(one)
+    assert not {"two-dlt", "halfbody"} & set(compared)
+    assert set(figures.fused_cameras(one)) == set(takes.every_fusion(one))
+    assert set(map(tuple, figures.fused_cameras(one).values())) == {("oblique", "mirror")}
+    assert {way["labels"]["fusion"] for way in takes.judged(one)} == {"all-robust"}
+    assert {fusion for _, fusion in one.judged_stages()} == set(takes.every_fusion(one))
+    with pytest.raises(InputError, match=r"takes\.shot: expected enough .* halfbody .*, found obl"):
+        takes.fusion(job(of, **SHOT, fusion="halfbody"))
 
 
 def test_sexes_are_those_of_a_take_or_of_the_whole_session(job, study):

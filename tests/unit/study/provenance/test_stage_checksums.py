@@ -59,3 +59,14 @@ def test_another_table_is_refused_in_one_line(tmp_path):
         InputError, match="expected columns stage, name, bytes, sha256, found camera"
     ):
         stage_checksums.read(tmp_path / "other.csv")
+
+
+@pytest.mark.parametrize(
+    "content", [None, b"stage,name,bytes,sha256\nfilms,a.mp4,many,00\n", b"\xff\xfe\x00"]
+)
+def test_a_damaged_table_is_one_line(tmp_path, content):
+    path = tmp_path / "table.csv"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(InputError, match=r"expected a table of checksums, .*--write-checksums"):
+        stage_checksums.read(path)

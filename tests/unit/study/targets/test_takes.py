@@ -4,7 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from courtside.study.targets import pages, takes
+from courtside.study.configuration.sessions import Device
+from courtside.study.jobs.devices import sources
+from courtside.study.jobs.job import Job
+from courtside.study.jobs.pages import layers
+from courtside.study.targets import devices, pages, takes, together
 
 REAL = "results/walk-4cams-tiny/takes/balancing"
 FORMATS = ("pdf", "png", "csv")
@@ -75,6 +79,45 @@ def test_figures_without_consent_to_pictures_show_nobody(study):
     ]
     assert takes.every_figure(study) == figures + on_court
     assert takes.every_figure(agreeing(study, "analysis")) == figures[3:] + on_court
+
+
+def seen_by(study, *cameras):
+    """Return the study whose real take has a device, and videos of these cameras alone."""
+    session, device = study.sessions["walk-4cams-tiny"], Device("inertial", "suit.bvh", "p1")
+    take = session.takes["balancing"]
+    videos = {name: take.videos[name] for name in cameras}
+    filmed = replace(take, videos=videos, devices={"suit": device})
+    return replace(study, sessions={session.name: replace(session, takes={take.name: filmed})})
+
+
+@pytest.mark.parametrize("cameras", [(), ("cam01",)])
+def test_a_take_without_two_cameras_has_the_outputs_of_its_devices_alone(study, cameras):
+    study = seen_by(study, *cameras)
+    nothing = (takes.every_export, takes.every_figure, takes.every_shake, takes.every_kinematics)
+    nothing += (takes.every_footwork, takes.every_verdict, takes.every_comparison_of_views)
+    nothing += (pages.every_people_page, pages.every_quality_page, pages.every_overlay_video)
+    assert [every(study) for every in nothing] == [[]] * len(nothing)
+    assert together.tabulated_takes(study) == []
+    angles = f"{REAL}/motion/devices/suit/blazepose-full.angles.csv"
+    assert devices.every_source_angle(study) == [angles]
+    assert f"{REAL}/devices/suit.trc" in devices.every_device_export(study)
+    assert len(devices.every_device_figure(study)) == 15
+    assert len(pages.every_viewer(study)) == 1
+    (session,) = study.sessions.values()
+    job = Job(study, {"session": session.name, "take": "balancing", "model": "blazepose-full"})
+    assert list(sources(job)) == ["suit"]
+    assert [layer["name"] for layer in layers(job)] == ["suit"]
+
+
+def test_compared_sets_are_those_of_which_two_cameras_see_a_take(study):
+    there = seen_by(study, "cam01", "cam02")
+    (session,) = there.sessions.values()
+    wanted = session.parameters | {"compared_fusions": ["two-robust"]}
+    for two, n_tables in ((("cam02", "cam03"), 0), (("cam02", "cam01"), 1)):
+        own = replace(session, views={"two": two}, parameters=wanted)
+        study = replace(there, sessions={session.name: own})
+        assert len(takes.every_comparison_of_views(study)) == n_tables
+        assert len(takes.every_verdict(study)) == 1
 
 
 def unfilmed(study):

@@ -13,6 +13,7 @@ from courtside.body_model.held import Held
 from courtside.body_model.pose import Pose
 from courtside.body_model.segments import BALL, Model
 from courtside.body_model.shape import Shape
+from courtside.geometry.rotations import rodrigues_from_rotation
 
 LIMIT_SIGMA = np.radians(2.0)  # ASSUME: how far a joint gives way beyond its range
 FAR = 2.0  # ASSUME: standard deviations beyond which a point loses weight (Huber)
@@ -234,7 +235,7 @@ def _second_differences(model: Model, pose: Pose) -> NDArray:
         if joint.kind == BALL:
             first = model.first[at]
             turns = np.swapaxes(pose.local[at, :-1], 1, 2) @ pose.local[at, 1:]
-            found[:, first : first + 3] = np.diff(poses.log(turns), axis=0)
+            found[:, first : first + 3] = np.diff(rodrigues_from_rotation(turns), axis=0)
     return found
 
 

@@ -18,18 +18,6 @@ class Pose:
     angle: NDArray  # (T, D) rad: coordinates of hinges; others unused
 
 
-def exp(vectors: NDArray) -> NDArray:
-    """Return the rotations (..., 3, 3) of rotation vectors (..., 3)."""
-    shape = vectors.shape
-    return rotations.rotation_from_rodrigues(vectors.reshape(-1, 3)).reshape(*shape, 3)
-
-
-def log(turns: NDArray) -> NDArray:
-    """Return the rotation vectors (..., 3) of rotations (..., 3, 3)."""
-    shape = turns.shape[:-1]
-    return rotations.rodrigues_from_rotation(turns.reshape(-1, 3, 3)).reshape(shape)
-
-
 def about(axis: int, angle: NDArray) -> NDArray:
     """Return rotations (T, 3, 3) about a coordinate axis by angles (T,)."""
     found = np.tile(np.eye(3), (len(angle), 1, 1))
@@ -57,7 +45,8 @@ def moved(model: Model, pose: Pose, step: NDArray) -> Pose:
     for at, joint in enumerate(model.joints):
         if joint.kind == BALL:
             first = model.first[at]
-            local[at] = pose.local[at] @ exp(step[:, first : first + 3])
+            turn = rotations.rotation_from_rodrigues(step[:, first : first + 3])
+            local[at] = pose.local[at] @ turn
     return replace(
         pose, root=pose.root + step[:, :3], local=hinged(model, angle, local), angle=angle
     )
@@ -122,7 +111,7 @@ def coordinates(model: Model, pose: Pose) -> tuple[NDArray, NDArray]:
     found[:, :6] = 0.0
     for at, joint in enumerate(model.joints):
         if joint.kind == BALL and at > 0:
-            vector = log(model.rest[at].T @ pose.local[at])
+            vector = rotations.rodrigues_from_rotation(model.rest[at].T @ pose.local[at])
             first = model.first[at]
             found[:, first : first + 3] = vector
             blocks[at] = np.linalg.inv(rotations.left_jacobians(-vector))

@@ -142,8 +142,9 @@ def is_fixed(shape: Shape) -> NDArray:
 def with_feet(shape: Shape, place: Mapping[str, NDArray]) -> Shape:
     """Return the shape with heel and toe in the foot's middle plane, its sole along X.
 
-    From the medians of the sides of the triangle of ankle, heel and toe, both feet together; the
-    feet of networks without heels keep their points at the ankle, to which nothing ties them.
+    From the medians of the sides of the triangle of ankle, heel and toe, both feet together. If
+    there are no heels, or heels or toes are never seen, points stay at the ankle, to which nothing
+    ties them.
     """
     places = shape.places.copy()
     for toe in TOES:
@@ -152,7 +153,11 @@ def with_feet(shape: Shape, place: Mapping[str, NDArray]) -> Shape:
         sides = []
         for one, other in (("ankle", "heel"), ("ankle", toe), ("heel", toe)):
             apart = [place[f"{side}_{one}"] - place[f"{side}_{other}"] for side in SIDES]
-            sides.append(float(np.nanmedian(np.linalg.norm(np.concatenate(apart), axis=1))))
+            length = np.linalg.norm(np.concatenate(apart), axis=1)
+            known = length[np.isfinite(length)]
+            sides.append(float(np.median(known)) if len(known) else np.nan)
+        if not np.isfinite(sides).all():
+            continue
         behind = (sides[0] ** 2 - sides[1] ** 2 + sides[2] ** 2) / (2 * sides[2])
         height = np.sqrt(max(sides[0] ** 2 - behind**2, 0.0))
         for side in SIDES:

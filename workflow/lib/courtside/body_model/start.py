@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from courtside.body_model import pose as poses
 from courtside.body_model.pose import Pose
 from courtside.body_model.segments import SIDES, Model
-from courtside.geometry.rotations import unit
+from courtside.geometry.rotations import rotation_from_rodrigues, unit
 
 BENT = np.radians(20)  # ASSUME: a limb that is bent less does not show the plane of its joint
 
@@ -66,4 +66,4 @@ def _swung(frames: NDArray, up: NDArray) -> NDArray:
     axis = np.cross(y, up)
     sine = np.linalg.norm(axis, axis=1, keepdims=True)
     angle = np.arctan2(sine, np.sum(y * up, axis=1, keepdims=True))
-    return poses.exp(axis / np.maximum(sine, 1e-9) * angle) @ frames
+    return rotation_from_rodrigues(axis / np.maximum(sine, 1e-9) * angle) @ frames

@@ -147,7 +147,8 @@ def _json(path: Path, joints: list[str]) -> tuple[NDArray, NDArray, NDArray, NDA
                 user = require_type(skeleton, dict).get("user_id", skeleton.get("id", 0))
                 users.append(int(require_scalar(user)))
                 time_us.append(int(require_scalar(frame["timestamp"])))
-                of_user = [_joint(_by_name(skeleton), joint) for joint in joints]
+                named = _by_name(skeleton)
+                of_user = [_joint(named, joint) for joint in joints]
                 xyz.append([place for place, _ in of_user])
                 confidence.append([sure for _, sure in of_user])
         numbers = np.array([users, time_us], dtype=np.int64)

@@ -72,11 +72,11 @@ def following(
     """Yield the frames (number, time, content) in order of both; repeated times are left out.
 
     A frame whose time alone is ahead of those around it, or behind, is left out with a warning. An
-    `InputError` at the end if more than stray frames are out of order:
-    the clock was set or restarted. At most `IN_A_ROW` frames are held in memory.
+    `InputError` at the end if more than stray frames are out of order: the clock was set or
+    restarted. At most `IN_A_ROW + 1` frames are held in memory.
     """
     frames = iter(stamped)
-    held = deque(itertools.islice(frames, IN_A_ROW + 1))
+    held = deque(itertools.islice(frames, IN_A_ROW))
     last, last_s, n = -1, -np.inf, 0
     late: list[float] = []
     while held:
@@ -84,7 +84,7 @@ def following(
         number, time_s, _ = frame
         n += 1
         held.extend(itertools.islice(frames, 1))
-        rest_s = np.array([other[1] for other in itertools.islice(held, IN_A_ROW)])
+        rest_s = np.array([other[1] for other in held])
         ahead = len(rest_s) and ((rest_s < time_s) & (rest_s > last_s)).all()
         if time_s > last_s and number > last and not ahead:
             last, last_s = number, time_s

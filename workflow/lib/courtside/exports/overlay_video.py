@@ -65,7 +65,7 @@ def track(seen: Footage, points: Keypoints3D, skeleton: Skeleton) -> Track:
         reprojected,
         points.accepted[..., column][:, at],
         np.array([bridged(view.time_s, one) for one in faces]).reshape(-1, *faces.shape[1:]),
-        tuple((skeleton.index(start), skeleton.index(stop)) for start, stop in skeleton.bones),
+        tuple(skeleton.bone_indices()),
     )
 
 

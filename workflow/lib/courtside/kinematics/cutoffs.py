@@ -68,10 +68,10 @@ def choose_cutoff(
     """
     candidates_hz = candidates(rate_hz) if candidates_hz is None else np.asarray(candidates_hz)
     lines = np.reshape(xyz, (len(xyz), -1, 3))
-    n_known = int(np.isfinite(lines).all(axis=2).sum())
+    n_known = np.count_nonzero(np.any(np.isfinite(lines).all(axis=2), axis=1))
     if n_known < MIN_FRAMES:
         raise InputError(
-            f"{place}: expected {MIN_FRAMES} known points or more to choose a cut-off from, found "
+            f"{place}: expected {MIN_FRAMES} known frames or more to choose a cut-off from, found "
             f"{n_known}; state a number of Hz in config.yaml, or in `override` of the session"
         )
     residual = np.array([_residual(lines, rate_hz, cutoff, order) for cutoff in candidates_hz])

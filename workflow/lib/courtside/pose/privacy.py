@@ -34,7 +34,8 @@ def blur_face(image: NDArray, xy_face: NDArray) -> NDArray:
     patch = result[top : max(0, y + radius + 1), left : max(0, x + radius + 1)]
     if not patch.size:
         return result
-    cells = [max(1, round(GRAIN * length / (2 * radius))) for length in patch.shape[1::-1]]
+    shares = [length / (2 * radius) for length in patch.shape[1::-1]]
+    cells = [min(GRAIN, max(1, round(GRAIN * share))) for share in shares]
     coarse = cv2.resize(patch, cells, interpolation=cv2.INTER_AREA)
     mosaic = cv2.resize(coarse, patch.shape[1::-1], interpolation=cv2.INTER_NEAREST)
     rows, columns = np.mgrid[: patch.shape[0], : patch.shape[1]]

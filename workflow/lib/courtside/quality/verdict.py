@@ -24,7 +24,13 @@ class Limit(NamedTuple):
     doubtful: float
     failed: float
     words: str  # with `{}` for the value
+    about: str  # what the value tells, behind "nothing is known of"
     falling: bool = True  # whether low values are the bad ones
+
+
+def _share(doubtful: float, failed: float, words: str) -> Limit:
+    """Return the limits of a share, "90% of ..." or "how many of ..."; low ones are bad."""
+    return Limit(doubtful, failed, "{:.0%} " + words, f"how many {words}")
 
 
 # ASSUME: chosen on the takes of the virtual sessions and walk-4cams, whose errors are known. With
@@ -33,21 +39,35 @@ class Limit(NamedTuple):
 # rest on two views, 0.6 to 0.92 on three, all 0.007 to 0.01 off; limbs vary by 0.025 to 0.046.
 # Failed is where less than half is right.
 OF_CAMERA = {
-    "found": Limit(0.9, 0.5, "{:.0%} of the persons who should be in its picture were found"),
-    "followed": Limit(0.9, 0.5, "{:.0%} of the persons who should be in its picture are followed"),
-    "accepted": Limit(0.65, 0.35, "{:.0%} of its keypoints of limbs agree with the other cameras"),
+    "found": _share(0.9, 0.5, "of the persons who should be in its picture were found"),
+    "followed": _share(0.9, 0.5, "of the persons who should be in its picture are followed"),
+    "accepted": _share(0.65, 0.35, "of its keypoints of limbs agree with the other cameras"),
     "reprojection": Limit(
-        0.035, 0.1, "its keypoints are {:.3f} of a person's height from the other cameras'", False
+        0.035,
+        0.1,
+        "its keypoints are {:.3f} of a person's height from the other cameras'",
+        "how far its keypoints are from the other cameras'",
+        falling=False,
     ),
 }
 OF_PERSON = {
-    "views_2": Limit(0.9, 0.5, "{:.0%} of the joints rest on two cameras or more"),
-    "views_3": Limit(0.5, 0.0, "{:.0%} of the joints rest on three cameras or more"),
-    "accepted": Limit(0.75, 0.4, "{:.0%} of the keypoints of limbs agree with each other"),
+    "views_2": _share(0.9, 0.5, "of the joints rest on two cameras or more"),
+    "views_3": _share(0.5, 0.0, "of the joints rest on three cameras or more"),
+    "accepted": _share(0.75, 0.4, "of the keypoints of limbs agree with each other"),
     "reprojection": Limit(
-        0.02, 0.06, "keypoints are {:.3f} of a person's height from the joints", False
+        0.02,
+        0.06,
+        "keypoints are {:.3f} of a person's height from the joints",
+        "how far keypoints are from the joints",
+        falling=False,
     ),
-    "limb_length": Limit(0.09, 0.25, "the lengths of limbs vary by {:.0%}", False),
+    "limb_length": Limit(
+        0.09,
+        0.25,
+        "the lengths of limbs vary by {:.0%}",
+        "how much the lengths of limbs vary",
+        falling=False,
+    ),
 }
 
 
@@ -164,8 +184,8 @@ def _judged(
 
 
 def _sentence(limit: Limit, value: float) -> str:
-    words = "nothing is known of: " + limit.words.replace("{:.0%} of ", "").replace("{:.0%}", "")
-    text = limit.words.format(value) if value == value else words.replace("{:.3f} of ", "")
+    known = value == value
+    text = limit.words.format(value) if known else f"nothing is known of {limit.about}"
     return text[:1].upper() + text[1:] + "."
 
 

@@ -10,6 +10,8 @@ from courtside.study.errors import InputError, StrPath, reading
 from courtside.study.execution.files import atomic
 
 REMAKE = "delete it and run the study again"
+# Columns of names, which are texts even where all of them are digits.
+LABELS = ("person", "opponent", "camera", "take", "session", "foot", "source")
 
 
 def column_fault(table: pd.DataFrame, columns: Iterable[str], numbers: Iterable[str]) -> str:
@@ -52,9 +54,11 @@ def read(
     """Read a CSV table that another rule wrote, with options of `pandas.read_csv`.
 
     `what` names the table with its article: "a frame table". `fault_of` takes the table and returns
-    in a few words what is wrong with it, empty if nothing is. An `InputError` if the file is
-    missing or no such table.
+    in a few words what is wrong with it, empty if nothing is. Columns of `LABELS` are texts, NaN
+    where empty, unless a `dtype` is among the options. An `InputError` if the file is missing or no
+    such table.
     """
+    options.setdefault("dtype", dict.fromkeys(LABELS, str))
     with reading(path, what, REMAKE):
         table = pd.read_csv(path, **options)
         fault = fault_of(table)

@@ -191,7 +191,6 @@ def read(path: StrPath) -> pd.DataFrame:
         path,
         "a table of strokes",
         lambda rows: tables.column_fault(rows, COLUMNS, numbers),
-        dtype={"person": str},
     )
 
 

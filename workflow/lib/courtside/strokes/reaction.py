@@ -48,7 +48,6 @@ def read(path: StrPath) -> pd.DataFrame:
         path,
         "a table of reactions",
         lambda rows: tables.column_fault(rows, COLUMNS, numbers),
-        dtype={"person": str, "opponent": str},
     )
 
 

@@ -18,6 +18,8 @@ ALONE = "people-alone"  # the kind of a calibration from people and nothing else
 IMPORTED = "imported"  # in place of a calibration: 3D joints are another program's
 DEVICES = "devices"  # in place of a calibration: joints are a device's, its source the fusion
 HALFBODY = "halfbody"  # the paper's rule for three cameras
+# Stages of skeletons in words.
+STAGE_WORDS = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
 OFFSETS = 3  # choices of so many bridging images: they start thirds of their spacing late
 
 

@@ -78,8 +78,9 @@ def synchronise(
         elif _device(devices, motion) == _device(devices, reference):
             clock = Clock(note="one device with the reference: one clock")
             found[motion.source] = Found(clock, [])
-        elif not happened[motion.source].claps:
-            clock = Clock(status="unknown", note="no clap of its own", uncertainty_s=np.inf)
+        elif still := [m.source for m in (reference, motion) if not happened[m.source].claps]:
+            note = f"no clap of {' and '.join(still)}"
+            clock = Clock(status="unknown", note=note, uncertainty_s=np.inf)
             found[motion.source] = Found(clock, [])
         else:
             found[motion.source] = _against(reference, motion, happened)

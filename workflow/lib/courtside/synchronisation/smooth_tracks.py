@@ -97,7 +97,6 @@ def sample(track: Track, time_s: NDArray) -> tuple[NDArray, NDArray, NDArray]:
     share = place - left
     inside = (left >= 1) & (left <= track.values.shape[1] - 3)
     share = np.where(inside, share, np.nan)[:, None, None]
-    left = np.where(inside, left, 1 if track.values.shape[1] > 3 else 0)
     last = track.values.shape[1] - 1
     p0, p1, p2, p3 = (track.values[:, np.clip(left + k, 0, last)] for k in (-1, 0, 1, 2))
     linear = (p2 - p0) / 2

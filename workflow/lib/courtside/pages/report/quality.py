@@ -8,9 +8,7 @@ from markupsafe import Markup
 from courtside.pages import page
 from courtside.pages.report import methods
 from courtside.pages.report import warnings as warned
-from courtside.study.methods import Calibration
-
-STAGES = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
+from courtside.study.methods import STAGE_WORDS, Calibration
 
 
 def session(
@@ -33,7 +31,7 @@ def session(
         calibrations=[_calibration(*one) for one in facts["quality"].items()],
         used=_used(configured["calibration"], facts["quality"]),
         takes=[_take(*one) for one in takes],
-        stages=STAGES,
+        stages=STAGE_WORDS,
         number=number,
         percent=percent,
         movement_px=lambda row: math.hypot(row["shift_x_px"], row["shift_y_px"]),

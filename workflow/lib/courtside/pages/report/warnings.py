@@ -109,7 +109,9 @@ def clock(camera: str, found: Clock) -> Warned | None:
     if found.status == "reference":
         return None
     if found.status == "assumed":
-        text = "its clock is assumed to be that of the first camera; this was not checked"
+        stated = bool(found.offset_s or found.drift_ppm)
+        said = "as the session states it" if stated else "assumed to be that of the first camera"
+        text = f"its clock is {said}; this was not checked"
         return Warned(GOOD, f"Camera {camera}: {text}.")
     if not found.usable:
         words = {"ambiguous": "several offsets fit the recording", "unknown": "no offset was found"}

@@ -161,9 +161,7 @@ def placed(layer: Layer, onto: Layer) -> Layer:
             f"{onto.name} has as well, found {len(persons)} persons, {near.sum()} frames, "
             f"{len(joints)} joints; check the device's clock and skeleton, or leave the layer out"
         )
-    turn = similarity.umeyama(own[known], theirs[known]).rotation
-    shift = theirs[known].mean(axis=0) - turn @ own[known].mean(axis=0)
-    return replace(layer, xyz=layer.xyz @ turn.T + shift)
+    return replace(layer, xyz=similarity.rigid(own[known], theirs[known]).points(layer.xyz))
 
 
 def _places(layer: Layer, persons: list[str], frames: NDArray, joints: list[str]) -> NDArray:

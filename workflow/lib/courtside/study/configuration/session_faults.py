@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 
 from courtside.study.configuration import consent, sighting_faults, take_faults
@@ -13,6 +14,8 @@ from courtside.study.paths import CAMERAS, EXTERNAL, VIRTUAL
 # Cameras that the workflow finds in another session.
 CALIBRATED = CAMERAS.replace(".", r"\.").format(session="[^/]+", calibration="[^/]+")
 SIMULATED = VIRTUAL.format(session="")
+# What else to do where nobody has clicked the points of a court yet.
+BY_CLICKS = ", or give every camera `static`, and the study makes a page to click them on"
 
 
 def find(
@@ -316,6 +319,13 @@ def _setting_faults(where: str, virtual: Content) -> list[str]:
     return []
 
 
+def _varied_faults(where: str, virtual: Content, vary: Content) -> list[str]:
+    """Return the faults of the settings in every combination of varied values, each once."""
+    varied = (dict(zip(vary, values, strict=True)) for values in product(*vary.values()))
+    faults = [fault for values in varied for fault in _setting_faults(where, virtual | values)]
+    return list(dict.fromkeys(faults))
+
+
 def conditions(config_file: str, config: Content, found: dict[str, tuple]) -> list[str]:
     """Return the faults of the conditions; `found` has (file, content) of each session, by name."""
     wanted, known = config["variations"], config["conditions"]
@@ -327,10 +337,8 @@ def conditions(config_file: str, config: Content, found: dict[str, tuple]) -> li
         if base in found and "virtual" not in found[base][1]:
             faults.append(f"{where}.session: expected a virtual session, found {base!r}; name one")
         elif base in found:
-            keys = {**found[base][1]["virtual"], **condition.get("set", {}), **condition["vary"]}
-            # Any of the varied layouts may be wrong; a name in `vary` stands for its values.
-            layouts = condition["vary"].get("layout", [keys["layout"]])
-            faults += [f for at in layouts for f in _setting_faults(where, {**keys, "layout": at})]
+            keys = {**found[base][1]["virtual"], **condition.get("set", {})}
+            faults += _varied_faults(where, keys, condition["vary"])
         faults += [
             f"{where}: expected {key} in either `set` or `vary`, found it in both; remove one"
             for key in sorted(set(condition.get("set", {})) & set(condition["vary"]))
@@ -353,6 +361,7 @@ def _path_faults(
         if not is_there(root / path):
             yield (
                 f"{where}: expected a file, found none at {path}; correct the path or put it there"
+                + BY_CLICKS * where.endswith(": court_points")
             )
         return
     if known is None:

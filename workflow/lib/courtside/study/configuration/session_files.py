@@ -1,5 +1,6 @@
 """Building sessions from their files, and variations of virtual ones from a condition."""
 
+import csv
 from collections.abc import Iterable
 from dataclasses import replace
 from itertools import product
@@ -38,9 +39,9 @@ def is_there(path: Path) -> bool:
 def has_places(path: Path) -> bool:
     """Tell whether a table of clicked points states their places, m; False if it is no table."""
     try:
-        with path.open(encoding="utf-8-sig") as stream:
-            return "x_m" in [cell.strip() for cell in stream.readline().split(",")]
-    except (OSError, UnicodeDecodeError, ValueError):
+        with path.open(encoding="utf-8-sig", newline="") as stream:
+            return "x_m" in [cell.strip() for cell in next(csv.reader(stream), [])]
+    except (OSError, ValueError, csv.Error):
         return False
 
 
@@ -86,7 +87,6 @@ def session(
         court_points=recordings.get("court_points") or clicked,
         point_sets=_point_sets(config / paths.COURT_YAML.format(court=content["court"])),
         placed=bool(clicked) and has_places(Path(root) / str(clicked)),
-        also_known="known" in content.get("override", {}).get("calibrations", []),
         unclicked=unclicked,
         virtual=content.get("virtual"),
         condition={},
@@ -107,9 +107,10 @@ def _point_sets(court_yaml: Path) -> frozenset[int] | None:
 
 
 def _calibration(content: Content) -> dict[str, Any]:
-    """Return a session's fields of its calibration file, board, wand and known lengths."""
+    """Return a session's fields of how its cameras are calibrated, but for court points."""
     given = content.get("calibration", {})
     return {
+        "also_known": "known" in content.get("override", {}).get("calibrations", []),
         "board": content.get("board"),
         "wand": content.get("wand"),
         "known_lengths": tuple(content.get("known_lengths", ())),

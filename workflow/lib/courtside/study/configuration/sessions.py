@@ -180,6 +180,20 @@ class Session:
             return tuple((self.halfbody or {}).values())
         return {"all": tuple(self.cameras), **self.views}.get(how.cameras, ())
 
+    def fusions_of(self, take: Take, key: str = "fusions") -> list[str]:
+        """Return those fusions of which enough cameras see a take (`cameras_fused`)."""
+        return [name for name in self.fusions(key) if self.cameras_fused(take, name)]
+
+    def cameras_fused(self, take: Take, fusion: str) -> tuple[str, ...]:
+        """Return the cameras of a fusion that see a take; empty if it needs more.
+
+        It needs two cameras, `halfbody` all three.
+        """
+        named = self.fused_cameras(fusion)
+        used = tuple(name for name in named if name in take.cameras)
+        needed = len(named) if Fusion.parse(fusion).rule == HALFBODY else 2
+        return used if len(used) >= needed else ()
+
     def variants(self) -> list[Variant]:
         """Return all structures from motion of the sweep, each choice of images once."""
         sweep = self.parameters["sweep"]

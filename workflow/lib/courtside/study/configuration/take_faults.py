@@ -136,11 +136,12 @@ def find(
     made = (take.get("virtual") or {}).get("devices", {})
     recorded = [*(cameras if virtual else cameras_of(take)), *take.get("devices", {}), *made]
     yield from unknown(f"{where}.clocks", take.get("clocks", {}), recorded)
-    first = next(iter(cameras_of(take)), None)
+    first = _reference(take)
     if any(take.get("clocks", {}).get(first, {}).get(key, 0) for key in ("offset_s", "drift_ppm")):
         yield (
-            f"{where}.clocks.{first}: expected no offset or drift of the first camera, whose clock "
-            "is the reference, found one; state the other clocks against it"
+            f"{where}.clocks.{first}: expected no offset or drift of the first "
+            f"{'camera' if cameras_of(take) else 'device'}, whose clock is the reference, found "
+            "one; state the other clocks against it"
         )
     yield from _filmed_faults(where, take.get("virtual"), cameras, there)
     if take.get("steady") and not virtual:
@@ -157,6 +158,21 @@ def find(
     start_s, stop_s = take.get("trim_s", (0, 1))
     if start_s >= stop_s:
         yield f"{where}.trim_s: expected a start before the stop, found [{start_s}, {stop_s}]"
+
+
+def _reference(take: Content) -> str | None:
+    """Return whose clock is the reference of a recorded take: the first camera's.
+
+    Of devices alone, the first that is no suit, else the first: the order of `jobs.devices.sources`
+    """
+    devices = take.get("devices", {})
+    ranked = sorted(devices, key=lambda name: _kind(devices[name]) == "inertial")
+    return next(iter([*cameras_of(take), *ranked]), None)
+
+
+def _kind(device: Content) -> str:
+    """Return the kind of a device by the ending of its file; empty without a file."""
+    return KINDS.get(Path(device["file"]).suffix.lower(), "rgb") if "file" in device else ""
 
 
 def _kind_faults(where: str, take: Content, virtual: bool) -> Iterator[str]:
@@ -187,7 +203,7 @@ def _device_faults(
     for name, device in devices.items():
         named = [device["subject"]] if "subject" in device else []
         yield from unknown(f"{where}.devices.{name}.subject", named, subjects)
-        kind = KINDS.get(Path(device["file"]).suffix.lower(), "rgb") if "file" in device else ""
+        kind = _kind(device)
         for key in (key for key in MEANT_FOR if key in device):
             if kind not in MEANT_FOR[key]:
                 endings = [end for end, of in KINDS.items() if of in MEANT_FOR[key]]

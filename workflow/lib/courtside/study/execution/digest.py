@@ -23,27 +23,19 @@ IGNORED = {"ctx", "kind", "type_comment", "type_ignores", "type_params"}
 INSTALLED_AS = {"cv2": "opencv-python-headless", "PIL": "pillow", "yaml": "pyyaml"}
 
 
-def rule_digest(script: StrPath, library: StrPath, lock_text: str) -> str:
+def _rule_digest(paths: Sequence[Path], lock_text: str) -> str:
     """Return the digest of all that a rule runs: `<code>-<packages>`, 64 hexadecimal digits each.
 
     Packages are those that the code imports itself, as the lock (`name==version` at the start of
     lines, perhaps with markers) pins them: a new version of one reruns what imports it, a new
     version of a tool that no rule imports reruns nothing.
     """
-    return _rule_digest(_paths(script, library), lock_text)
-
-
-def _rule_digest(paths: Sequence[Path], lock_text: str) -> str:
     packages = "\n".join(sorted(_packages(paths, lock_text)))
     return f"{_code_digest(paths)}-{hashlib.sha256(packages.encode()).hexdigest()}"
 
 
-def packages_of(script: StrPath, library: StrPath, lock_text: str) -> set[str]:
-    """Return the pins (`name==version` with marker) of the packages that a script imports."""
-    return _packages(_paths(script, library), lock_text)
-
-
 def _packages(paths: Sequence[Path], lock_text: str) -> set[str]:
+    """Return the pins (`name==version` with marker) of the packages that files import."""
     imported = {name for path in paths for name in _parsed(path)[2]}
     wanted = {package_name(INSTALLED_AS.get(name, name)) for name in imported}
     known = pins(lock_text)
@@ -105,7 +97,7 @@ class Remembered:
         self._own = hashlib.sha256((files.sha256(__file__) + lock_text).encode()).hexdigest()
 
     def digest(self, script: StrPath, library: StrPath) -> str:
-        """Return `rule_digest` of a script, from the file where its code was met before."""
+        """Return the digest of all that a script runs, kept where its code was met before."""
         script, library = Path(script), Path(library)
         found = _reached(script, lambda path: self._links(path, library))
         paths = [script, *(found[name] for name in sorted(found))]

@@ -31,7 +31,7 @@ class Source:
 def sources(job: Job, corrected: bool = True) -> dict[str, Source]:
     """Return the sources of a take, the one whose clock is the reference first."""
     of_network, found = job.model.skeleton, {}
-    if job.take.cameras and job.session.take_calibrations():
+    if job.session.fusions_of(job.take) and job.session.take_calibrations():
         found[CAMERAS] = Source(job.fill(paths.CAMERA_SOURCE), of_network, CAMERAS)
     devices = sorted(job.take.devices.items(), key=lambda pair: pair[1].kind == "inertial")
     for name, device in devices:
@@ -97,7 +97,8 @@ def fused(job: Job) -> str:
 
 def _fused(job: Job, stage: str) -> str:
     session = job.session
-    way = {"calibration": session.take_calibrations()[0], "fusion": session.fusions()[0]}
+    fusion = session.fusions_of(job.take)[0]
+    way = {"calibration": session.take_calibrations()[0], "fusion": fusion}
     return job.fill(paths.SKELETONS, stage=stage, **way)
 
 

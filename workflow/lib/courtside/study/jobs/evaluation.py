@@ -59,12 +59,14 @@ def skeleton_labels(job: Job) -> list[dict[str, str]]:
 
 def exported_skeletons(job: Job) -> list[str]:
     """Return the skeletons of every stage, of the fusion that is exported first."""
-    return job.of_each(paths.SKELETONS, stage=job.stages(), fusion=job.session.fusions()[:1])
+    return job.of_each(
+        paths.SKELETONS, stage=job.stages(), fusion=job.session.fusions_of(job.take)[:1]
+    )
 
 
 def exported_measures(job: Job, pattern: str) -> str:
     """Return a file of measures, of the fusion that is exported first."""
-    return job.fill(pattern, fusion=job.session.fusions()[0])
+    return job.fill(pattern, fusion=job.session.fusions_of(job.take)[0])
 
 
 def exported_labels(job: Job) -> list[dict[str, str]]:
@@ -199,7 +201,7 @@ def _way(study: Study, session: Session, way: str) -> dict[str, Any]:
     model = session.parameters["models"][0]
     job = Job(study, {"session": session.name, "calibration": way, "model": model})
     used = way in session.take_calibrations()
-    filmed = [name for name, take in session.takes.items() if take.cameras and used]
+    fused = {name: session.fusions_of(take)[:1] for name, take in session.takes.items() if used}
     return {
         "session": session.name,
         "calibration": way,
@@ -208,7 +210,11 @@ def _way(study: Study, session: Session, way: str) -> dict[str, Any]:
         "quality": job.fill(paths.CALIBRATION_QUALITY),
         "truth": job.true_file(paths.TRUTH),
         "court": str(job.court_file() or ""),
-        "skeletons": job.of_each(paths.POSE3D, take=filmed, fusion=session.fusions()[:1]),
+        "skeletons": [
+            job.fill(paths.POSE3D, take=name, fusion=fusion)
+            for name, fusions in fused.items()
+            for fusion in fusions
+        ],
     }
 
 
@@ -220,9 +226,9 @@ def ways_files(study: Study) -> list[str]:
 
 
 def round_trip_skeletons(job: Job) -> list[str]:
-    """Return the skeletons of those sets of cameras of table 1 that a session names."""
+    """Return the skeletons of those sets of cameras of table 1 that see a take."""
     wanted = job.study.parameters["evaluate_round_trip"]["fusions"]
-    named = [name for name in wanted if job.session.fused_cameras(name)]
+    named = [name for name in wanted if job.session.cameras_fused(job.take, name)]
     return job.of_each(paths.POSE3D, fusion=named)
 
 

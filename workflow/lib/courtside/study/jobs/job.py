@@ -96,10 +96,10 @@ class Job:
 
         Every stage and fusion; the model's joints of the fusions that are exported.
         """
-        session, stages = self.session, self.stages()
-        fusions = session.fusions() + session.fusions("compared_fusions")
+        session, take, stages = self.session, self.take, self.stages()
+        fusions = session.fusions_of(take) + session.fusions_of(take, "compared_fusions")
         more = self.study.written_stages(self["model"])[len(stages) :]
-        return [*product(stages, fusions), *product(more, session.fusions())]
+        return [*product(stages, fusions), *product(more, session.fusions_of(take))]
 
     def demand(self, word: str) -> None:
         """Stop, with one line, where persons of its files have not agreed to something."""

@@ -7,10 +7,9 @@ from courtside.study import paths
 from courtside.study.configuration import consent
 from courtside.study.jobs import devices, takes
 from courtside.study.jobs.job import Job
+from courtside.study.methods import STAGE_WORDS
 from courtside.study.targets import pages as page_targets
 from courtside.study.targets import takes as targets
-
-STAGE_WORDS = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
 
 
 def layers(job: Job) -> list[dict[str, Any]]:
@@ -36,7 +35,8 @@ def layers(job: Job) -> list[dict[str, Any]]:
 def _fused_layers(job: Job) -> list[dict[str, Any]]:
     """Return the layers of the fixed cameras; only the last stage is shown at first."""
     session, stages = job.session, job.stages()
-    way = {"calibration": session.take_calibrations()[0], "fusion": session.fusions()[0]}
+    fusion = session.fusions_of(job.take)[0]
+    way = {"calibration": session.take_calibrations()[0], "fusion": fusion}
     return [
         {
             "file": job.fill(paths.SKELETONS, stage=stage, **way),
@@ -132,8 +132,8 @@ def first_skeleton(job: Job) -> Path:
 
 
 def viewed_cameras(job: Job) -> str | list:
-    """Return the cameras that a viewer draws; none of a take of devices alone."""
-    ways = job.session.take_calibrations() if job.take.cameras else []
+    """Return the cameras that a viewer draws; none of a take whose views are not fused."""
+    ways = job.session.take_calibrations() if job.session.fusions_of(job.take) else []
     return job.fill(paths.CAMERAS, calibration=ways[0]) if ways else []
 
 

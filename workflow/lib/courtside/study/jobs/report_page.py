@@ -181,11 +181,11 @@ def _overrides(study: Study, session: Session) -> dict[str, dict]:
 
 def _take(study: Study, session: Session, take: Take) -> dict[str, Any]:
     """Return what the report says of a take, measured with the first calibration and network."""
-    fusion, ways = next(iter(session.fusions()), None), session.take_calibrations()
+    fusion, ways = next(iter(session.fusions_of(take)), None), session.take_calibrations()
     known = {"session": session.name, "take": take.name, "model": session.parameters["models"][0]}
     named: dict[str, Any] = {}
     links: list[tuple[str, str]] = []
-    if take.cameras and ways and fusion:
+    if ways and fusion:
         known |= {"calibration": ways[0], "fusion": fusion}
         named = _measured(session, take, known)
         links = [(named["summary"], "summary (CSV)"), (named["frames"], "frames (CSV)")]

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from courtside.study import paths
+from courtside.study.errors import InputError
 from courtside.study.execution import verdicts
 from courtside.study.jobs.job import Job
 from courtside.study.methods import PEOPLE, Fusion
@@ -73,14 +74,22 @@ def people_csv(job: Job) -> str | list:
 
 def fusion(job: Job) -> dict[str, Any]:
     """Return which cameras of a take are fused, and by which rule."""
-    named = job.session.fused_cameras(job["fusion"])
-    used = [name for name in named if name in job.take.cameras]
-    return {"used": used, "rule": Fusion.parse(job["fusion"]).rule}
+    session, take, name = job.session, job.take, job["fusion"]
+    used = session.cameras_fused(take, name)
+    if not used:
+        seen = ", ".join(take.cameras) or "none"
+        wanted = ", ".join(session.fused_cameras(name)) or "none"
+        raise InputError(
+            f"{session.file}: takes.{take.name}: expected enough cameras for the fusion {name} "
+            f"(of {wanted}), found {seen}; ask for a fusion of cameras that see the take"
+        )
+    return {"used": list(used), "rule": Fusion.parse(name).rule}
 
 
 def every_fusion(job: Job) -> list[str]:
-    """Return all ways to fuse views that a session has, the exported ones first."""
-    return job.session.fusions() + job.session.fusions("compared_fusions")
+    """Return all ways to fuse views that a take has, the exported ones first."""
+    session, take = job.session, job.take
+    return session.fusions_of(take) + session.fusions_of(take, "compared_fusions")
 
 
 def every_fused(job: Job, pattern: str = paths.POSE3D) -> list[str]:
@@ -146,7 +155,7 @@ def measured_stage(job: Job) -> str:
 def judged(job: Job) -> list[dict[str, Any]]:
     """Return the files of each way in which a take is measured and exported, with its labels."""
     session, found = job.session, []
-    ways = session.take_calibrations(), session.fusions(), session.parameters["models"]
+    ways = session.take_calibrations(), session.fusions_of(job.take), session.parameters["models"]
     for way in product(*ways):
         labels = dict(zip(verdicts.WAY, way, strict=True))
         one = Job(job.study, {**job.wildcards, **labels})

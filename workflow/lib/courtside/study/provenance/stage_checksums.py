@@ -4,7 +4,7 @@ import csv
 import fnmatch
 from pathlib import Path
 
-from courtside.study.errors import InputError, StrPath
+from courtside.study.errors import InputError, StrPath, reading
 from courtside.study.execution import files
 from courtside.study.provenance import comparison
 
@@ -34,6 +34,7 @@ STAGES = (
 )
 Rows = dict[str, tuple[int, str]]  # size in bytes and SHA-256, by path below results
 COLUMNS = ("stage", "name", "bytes", "sha256")
+REMAKE = "make the table with --write-checksums"
 
 
 def stage_of(name: str) -> str:
@@ -62,14 +63,15 @@ def write(path: StrPath, rows: Rows) -> None:
 
 def read(path: StrPath) -> Rows:
     """Read what `write` wrote; an `InputError` says what is wrong with another file."""
-    with Path(path).open(encoding="utf-8", newline="") as stream:
-        rows = list(csv.reader(stream))
-    if not rows or tuple(rows[0]) != COLUMNS or any(len(row) != len(COLUMNS) for row in rows):
-        raise InputError(
-            f"{path}: expected columns {', '.join(COLUMNS)}, found "
-            f"{', '.join(rows[0] if rows else [])}; make the table with --write-checksums"
-        )
-    return {name: (int(size), digest) for _, name, size, digest in rows[1:]}
+    with reading(path, "a table of checksums", REMAKE):
+        with Path(path).open(encoding="utf-8", newline="") as stream:
+            rows = list(csv.reader(stream))
+        if not rows or tuple(rows[0]) != COLUMNS or any(len(row) != len(COLUMNS) for row in rows):
+            raise InputError(
+                f"{path}: expected columns {', '.join(COLUMNS)}, found "
+                f"{', '.join(rows[0] if rows else [])}; {REMAKE}"
+            )
+        return {name: (int(size), digest) for _, name, size, digest in rows[1:]}
 
 
 def table(here: Rows, there: Rows) -> tuple[list[str], int]:

@@ -35,7 +35,8 @@ class DeviceTake:
     def fitted(self) -> dict[str, str]:
         """The sources to which the skeletal model is fitted, with the person of each."""
         kinds = {device.kind for device in self.take.devices.values()}
-        seen = "rgbd" in kinds or (self.take.cameras and self.session.take_calibrations())
+        fused = self.session.take_calibrations() and self.session.fusions_of(self.take)
+        seen = "rgbd" in kinds or fused
         found: dict[str, str] = {}
         for name, device in self.take.devices.items():
             corrected = (f"{name}-corrected",) if seen and device.kind == "inertial" else ()

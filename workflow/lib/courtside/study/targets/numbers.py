@@ -46,6 +46,6 @@ def _of_named_takes(study: Study) -> list[str]:
     for session, take in study.named_takes(study.parameters["evaluate_round_trip"]["takes"]):
         found += takes.files(paths.ROUND_TRIP, session, take)
     for session, take in study.named_takes(study.parameters["draw_three_cameras"]["takes"]):
-        compared = session.fusions("compared_fusions")
+        compared = session.fusions_of(take, "compared_fusions")
         found += takes.files(paths.MEASURE_ERRORS, session, take, fusion=compared)
     return found

@@ -13,7 +13,7 @@ def every_viewer(study: Study) -> list[str]:
 
 def viewers(session: Session, take: Take) -> list[str]:
     """Return the viewer of a take, with the first network; none where there is no skeleton."""
-    if not (take.devices or (take.cameras and session.take_calibrations())):
+    if not (take.devices or (session.take_calibrations() and session.fusions_of(take))):
         return []
     model = session.parameters["models"][0]
     return takes.files(paths.VIEWER, session, take, model=model)
@@ -35,7 +35,8 @@ def people_pages(session: Session, take: Take) -> list[str]:
 
     A virtual take of one subject shows nobody else, and has none.
     """
-    known = take.videos and session.take_calibrations() and session.parameters["models"]
+    fused = session.take_calibrations() and session.fusions_of(take)
+    known = take.videos and fused and session.parameters["models"]
     wanted = not session.virtual or len(take.subjects) > 1
     if not (known and wanted) or consent.refusing(session, take, "pictures"):
         return []
@@ -65,7 +66,7 @@ def overlay_videos(study: Study, session: Session, take: Take) -> list[str]:
     wanted = study.parameters["export_overlay_video"]["takes"]
     if f"{session.name}/{take.name}" not in wanted or consent.refusing(session, take, "pictures"):
         return []
-    first = {"fusion": session.fusions()[0], "model": session.parameters["models"][0]}
+    first = {"fusion": session.fusions_of(take)[:1], "model": session.parameters["models"][:1]}
     each = {"camera": take.videos, "calibration": session.take_calibrations()}
     return takes.files(paths.OVERLAY_VIDEO, session, take, **first, **each)
 

@@ -19,7 +19,7 @@ def files(pattern: str, session: Session, take: Take, **chosen: str | Iterable[s
     """Fill a pattern for a take with every method that it names, and with what is chosen."""
     methods = {
         "calibration": session.take_calibrations(),
-        "fusion": session.fusions(),
+        "fusion": session.fusions_of(take),
         "model": session.parameters["models"],
     }
     named = {name: found for name, found in methods.items() if f"{{{name}}}" in pattern}
@@ -50,8 +50,9 @@ def every_export(study: Study) -> list[str]:
         refusing = consent.refusing(session, take, "export")
         persons = [name for name in take.subjects if name not in refusing]
         stages = session.parameters["export_stages"]
-        methods = session.take_calibrations(), session.fusions(), session.parameters["models"]
-        for person, way, fusion, model in product(persons, *methods):
+        ways, models = session.take_calibrations(), session.parameters["models"]
+        methods = persons, ways, session.fusions_of(take), models
+        for person, way, fusion, model in product(*methods):
             known = {"person": person, "calibration": way, "fusion": fusion, "model": model}
             there = [stage for stage in stages if stage in study.written_stages(model)]
             joints, trees = ("trc", "c3d", "csv"), ("bvh", "glb")
@@ -71,8 +72,8 @@ def every_verdict(study: Study) -> list[str]:
 
 
 def verdicts(session: Session, take: Take) -> list[str]:
-    """Return the table of verdicts on a take; none without fixed cameras or calibration."""
-    measured = take.cameras and session.take_calibrations() and session.fusions()
+    """Return the table of verdicts on a take; none without calibration or cameras to fuse."""
+    measured = session.take_calibrations() and session.fusions_of(take)
     return files(paths.QUALITY, session, take) if measured else []
 
 
@@ -101,8 +102,7 @@ def every_shake(study: Study) -> list[str]:
     stems = []
     for session, take in study.takes():
         if take.steady:
-            fusions = session.fusions()
-            stems += files(paths.TAKE_FIGURE, session, take, fusion=fusions, figure="shake")
+            stems += files(paths.TAKE_FIGURE, session, take, figure="shake")
     return paths.formats(stems)
 
 
@@ -150,7 +150,7 @@ def every_comparison_of_views(study: Study) -> list[str]:
     return [
         path
         for session, take in study.takes()
-        if not session.virtual and session.fusions("compared_fusions")
+        if not session.virtual and session.fusions_of(take, "compared_fusions")
         for path in files(paths.VIEW_DISTANCES, session, take)
     ]
 
@@ -169,14 +169,15 @@ def evaluations(study: Study, kind: str) -> list[str]:
     common one), gains (between fusions).
     """
     found = []
-    for session, take in ((session, take) for session, take in study.takes() if session.virtual):
+    fused = [(s, take) for s, take in study.takes() if s.virtual and s.fusions_of(take)]
+    for session, take in fused:
         if kind in OF_A_TAKE:
             found += files(OF_A_TAKE[kind], session, take)
         elif kind == "clocks" and not take.synchronised:
             found += files(paths.CLOCK_ERRORS, session, take)
         elif kind == "kinematics":
-            found += files(paths.MEASURE_ERRORS, session, take, fusion=session.fusions())
-        elif kind == "gains" and session.fusions("compared_fusions"):
+            found += files(paths.MEASURE_ERRORS, session, take)
+        elif kind == "gains" and session.fusions_of(take, "compared_fusions"):
             for way, model in product(session.take_calibrations(), session.parameters["models"]):
                 known = {"calibration": way, "model": model}
                 stages = ("pose3d", study.stages(model)[-1])

@@ -77,16 +77,19 @@ def fig05_layouts(study: Study) -> dict[str, list]:
 def measured_takes(
     study: Study, sessions: Iterable[str], models: Iterable[str]
 ) -> list[MeasuredTake]:
-    """Return every take of some sessions, with every calibration and each of some networks."""
+    """Return every take of some sessions, with every calibration and each of some networks.
+
+    Takes whose views are not fused are left out.
+    """
     found, models = [], list(models)
     for session in (study.sessions[name] for name in sessions if name in study.sessions):
         for take, way, model in product(session.takes, session.take_calibrations(), models):
             labels = {"session": session.name, "take": take, "calibration": way, "model": model}
-            fusion = session.fusions()[0]
-            known = {**labels, "fusion": fusion}
-            measures = paths.MEASURES.format(**known)
-            pose3d = paths.SKELETONS.format(stage=study.stages(model)[-1], **known)
-            found.append(MeasuredTake(measures, pose3d, labels, fusion))
+            for fusion in session.fusions_of(session.takes[take])[:1]:
+                known = {**labels, "fusion": fusion}
+                measures = paths.MEASURES.format(**known)
+                pose3d = paths.SKELETONS.format(stage=study.stages(model)[-1], **known)
+                found.append(MeasuredTake(measures, pose3d, labels, fusion))
     return found
 
 
@@ -105,8 +108,8 @@ def tabulated_takes(study: Study) -> list[dict[str, Any]]:
     found = []
     for session, take in study.takes():
         ways = list(product([IMPORTED], ["trc"], take.pose3d))
-        methods = session.take_calibrations(), session.fusions(), session.parameters["models"]
-        for way in [*ways, *product(*methods)]:
+        fusions, models = session.fusions_of(take), session.parameters["models"]
+        for way in [*ways, *product(session.take_calibrations(), fusions, models)]:
             labels = {"session": session.name, "take": take.name}
             labels |= dict(zip(WAY, way, strict=True))
             judged = takes.verdicts(session, take) if way not in ways else []
@@ -147,11 +150,13 @@ def evaluated_takes(study: Study) -> list[EvaluatedTake]:
     for session, take in study.named_takes(step["takes"]):
         labels = {"session": session.name, "take": take.name}
         labels["against"] = step["takes"][f"{session.name}/{take.name}"] or "truth"
-        way = {"calibration": session.take_calibrations()[0], "fusion": session.fusions()[0]}
+        ways = product(session.take_calibrations(), session.fusions_of(take))
+        first = next(ways, None) if session.virtual else None
         for model in step["networks"]:
-            known = {**labels, "model": model}
-            measured = session.virtual and model in step["skeletons"]
-            pose3d = paths.POSE3D.format(**known, **way) if measured else None
+            known, pose3d = {**labels, "model": model}, None
+            if first and model in step["skeletons"]:
+                way = {"calibration": first[0], "fusion": first[1]}
+                pose3d = paths.POSE3D.format(**known, **way)
             errors = paths.DETECTION_ERRORS.format(**known)
             found.append(EvaluatedTake(errors, pose3d, known))
     return found
