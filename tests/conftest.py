@@ -1,4 +1,4 @@
-"""How the tests share processes: a file stays in one, and so do all that hurt one study."""
+"""How the tests share processes: a file stays in one, as do files that share bodies or a study."""
 
 import os
 import sys
@@ -14,10 +14,12 @@ os.environ["PYTHONDONTWRITEBYTECODE"], sys.dont_write_bytecode = "", False
 # process, so that no other file waits behind the study. What else reads the study comes last: it
 # waits until the study is made (smoke/conftest.py).
 ONE_STUDY = {"test_data_dictionary.py", "test_smoke.py", "faults", "slurm"}
+# Folders whose files use the same bodies or filmed motions: each process makes these only once.
+SHARING = ("unit/virtualgym/body", "unit/virtualgym/movement")
 
 
 class ByStudy(LoadFileScheduling):
-    """Gives a process the tests of one file, or of all that look first at one study or hurt it."""
+    """Gives a process the tests of one file, of a folder of `SHARING`, or of the one study."""
 
     def _split_scope(self, nodeid):
         return _scope(nodeid)
@@ -30,7 +32,9 @@ def pytest_collection_modifyitems(items):
 
 def _scope(nodeid):
     file = PurePosixPath(nodeid.partition("::")[0])
-    return "study" if ONE_STUDY.intersection(file.parts) else str(file)
+    if ONE_STUDY.intersection(file.parts):
+        return "study"
+    return next((folder for folder in SHARING if f"/{folder}/" in f"/{file}"), str(file))
 
 
 def pytest_xdist_make_scheduler(config, log):

@@ -28,10 +28,15 @@ def gym(tmp_path_factory):
     return agreed
 
 
-def test_files_for_other_programs_wait_for_consent(gym):
-    jobs = planned(root=gym(None))
-    assert "export_take" not in jobs
-    assert {name: jobs[name] for name in PICTURED} == PICTURED
+@pytest.fixture(scope="module")
+def unasked(gym):
+    """Return what is planned for a person whose consent the session does not say."""
+    return planned(root=gym(None))
+
+
+def test_files_for_other_programs_wait_for_consent(gym, unasked):
+    assert "export_take" not in unasked
+    assert {name: unasked[name] for name in PICTURED} == PICTURED
     assert planned(root=gym(["analysis", "export"]))["export_take"] == 3  # one for each stage
 
 
@@ -41,11 +46,11 @@ def test_pictures_are_not_drawn_of_whom_they_may_not_show(gym):
     assert jobs["draw_skeletons"] >= 1
 
 
-def test_nothing_is_made_of_somebody_who_withdrew(gym):
+def test_nothing_is_made_of_somebody_who_withdrew(gym, unasked):
     jobs = planned(root=gym([]))
     assert "import_cameras" in jobs  # those are nobody's
     assert "draw_skeletons" not in jobs
-    assert jobs["detect_pose"] < planned(root=gym(None))["detect_pose"]
+    assert jobs["detect_pose"] < unasked["detect_pose"]
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import time
 
 import pytest
 
-from smoke.snakemake_runs import FOLDER, TINY, changed, copy_repository, edited, planned, run
+from smoke.snakemake_runs import FOLDER, TINY, copy_repository, edited, planned, run
 
 # The real take: all cameras, and two without filter. Two virtual takes: five ways to fuse, and one
 # of them with two cameras for table 1.
@@ -79,12 +79,6 @@ def test_editing_a_figure_module_reruns_that_figure(kept):
     module = kept / "workflow/lib/courtside/figures/take/visibility.py"
     with edited(module, "Confidence of the network", "Confidence of this network"):
         assert planned(root=kept) == {"draw_visibility": 1}
-
-
-def test_a_comment_reruns_nothing(kept):
-    module = kept / "workflow/lib/courtside/geometry/triangulation.py"
-    with changed(module, module.read_bytes() + b"\n# a remark\n"):
-        assert planned(root=kept) == {}
 
 
 def test_a_parameter_reruns_its_step_and_what_follows(kept):

@@ -36,9 +36,12 @@ def test_rounded_rotation_becomes_orthonormal():
     np.testing.assert_allclose(rotation, rounded, atol=1e-5)
 
 
-@pytest.mark.parametrize("matrix", [np.diag([1.0, 1.0, -1.0]), np.diag([1.0, 1.0, 1.001])])
-def test_other_matrices_are_refused(matrix):
-    with pytest.raises(ValueError, match="expected"):
+@pytest.mark.parametrize(
+    ("last", "message"), [(-1.0, "found one with determinant -1"), (1.001, "expected an orthonorm")]
+)
+def test_other_matrices_are_refused(last, message):
+    matrix = np.diag([1.0, 1.0, last])
+    with pytest.raises(ValueError, match=message):
         rotations.nearest_rotation(matrix)
 
 

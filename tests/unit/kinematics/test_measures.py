@@ -1,6 +1,7 @@
 """Speeds, accelerations and distances of formula-made movements, and their sigmas."""
 
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -282,6 +283,18 @@ def test_two_people_are_measured_as_each_alone():
     )
 
 
+@cache
+def smoothed(apart_deg, memory_s, seed):
+    """Return a record of footwork and its smooth skeletons; without a seed, of exact places."""
+    time_s, neck = footwork.neck(30.0, 20, seed=21)
+    xyz, _ = footwork.body(neck, time_s)
+    sigma_m = footwork.cameras(apart_deg)[1]
+    record = footwork.record(xyz, time_s, sigma_m, memory_s, np.random.default_rng(seed or 0))
+    if seed is None:
+        record = replace(record, xyz=xyz[None].copy())
+    return record, skeleton_filter.smooth(record, CUTOFFS_HZ, measures.Filter(CUTOFFS_HZ).order)
+
+
 @pytest.mark.parametrize(
     ("model", "apart_deg", "memory_s", "most"),
     [
@@ -292,24 +305,19 @@ def test_two_people_are_measured_as_each_alone():
 )
 def test_noise_of_corrected_skeletons_is_at_most_what_is_stated(model, apart_deg, memory_s, most):
     offsets = joint_correction.read(CONFIG / "joint_offsets" / f"{model}.csv")
-    rate_hz, how = 30.0, measures.Filter(CUTOFFS_HZ)
-    time_s, neck = footwork.neck(rate_hz, 20, seed=21)
-    xyz, _ = footwork.body(neck, time_s)
-    cameras, sigma_m = footwork.cameras(apart_deg)
+    how, cameras = measures.Filter(CUTOFFS_HZ), footwork.cameras(apart_deg)[0]
 
-    def corrected(record):
-        smooth = skeleton_filter.smooth(record, how.cutoff_hz, how.order)
+    def corrected(seed):
+        record, smooth = smoothed(apart_deg, memory_s, seed)
         last = joint_correction.correct_then_filter(
             record, smooth, offsets, {"p1": "m"}, how.cutoff_hz, how.order, cameras
         )
         return measures.measure(last, record, TABLE, "blazepose33", how, {"p1": "m"})[0].points
 
-    record = footwork.record(xyz, time_s, sigma_m, memory_s, np.random.default_rng(0))
-    clean = corrected(replace(record, xyz=xyz[None].copy()))
+    clean = corrected(None)
     ratios = {}
     for seed in range(4):
-        record = footwork.record(xyz, time_s, sigma_m, memory_s, np.random.default_rng(seed))
-        for name, point in corrected(record).items():
+        for name, point in corrected(seed).items():
             for at, key in ((1, "velocity"), (2, "acceleration")):
                 off = np.var(getattr(point, key) - getattr(clean[name], key), axis=0).sum()
                 stated = np.trace(point.covariance[at], axis1=1, axis2=2).mean()

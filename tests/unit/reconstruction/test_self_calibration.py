@@ -17,7 +17,7 @@ from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
 from fixtures.cameras import corner_cameras
-from fixtures.people import keypoints_made, tracks_made
+from fixtures.people import keypoints_made, remembered, tracks_made
 
 CAMERAS = corner_cameras.four_cameras()[:3]
 NAMES = [camera.name for camera in CAMERAS]
@@ -26,6 +26,12 @@ TIME_S = np.arange(40) / 10
 JOINTS = ["nose", *skeleton.JOINTS]
 LATE_S = 0.2
 CLOCKS = {NAMES[0]: Clock(status="reference"), NAMES[1]: Clock(offset_s=LATE_S)}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _remembered():
+    with remembered.relative():
+        yield
 
 
 def filmed():

@@ -247,7 +247,7 @@ def test_models_are_made_until_two_agree(synthetic, tmp_path, monkeypatch):
     names, options = sorted(sfm_made.centres(truth)), {"mapper": "global", "seed": 7}
     summary = mapping.map_images(path, names, tmp_path / "a", **options, attempts=4)
     assert [seed for seed, _ in asked] == [7, 8, 9]
-    assert (summary["n_attempts"], summary["n_agreeing"]) == (3, 1 + (summary["seed"] != 7))
+    assert (summary["n_attempts"], summary["n_agreeing"]) == (3, 2) and summary["seed"] in (8, 9)
 
 
 def test_of_models_that_differ_the_one_with_most_observations_is_kept(

@@ -1,5 +1,7 @@
 """Posts in drawn pictures: axes and ends against projection; a post behind the other is none."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -16,15 +18,22 @@ def court():
     return court_pictures.badminton()
 
 
-def view(camera, court, picture=None):
-    picture = court_pictures.draw(camera, court, noise=3) if picture is None else picture
+@cache
+def drawn(at):
+    """Return one of two cameras and its picture of the court."""
+    camera = court_pictures.pair(SIZE, 1150.0)[at]
+    return camera, court_pictures.draw(camera, court_pictures.badminton(), noise=3)
+
+
+def view(camera, court, picture):
     return View(picture.mean(axis=2).astype(np.float32), camera, court, 0.75, 1)
 
 
 @pytest.mark.parametrize("at", [0, 1])
 @pytest.mark.parametrize("post", [0, 1])
 def test_ends_and_axes_are_found(court, at, post):
-    made = view(court_pictures.pair(SIZE, 1150.0)[at], court)
+    camera, picture = drawn(at)
+    made = view(camera, court, picture)
     tip = cameras.project(made.camera, court.xyz[court.points.index(("p17", "p18")[post])])
     foot = cameras.project(made.camera, court.xyz[court.points.index(("p10", "p11")[post])])
     xy, covariance, share, reason = post_tips.tip(made, post)
@@ -39,7 +48,7 @@ def test_ends_and_axes_are_found(court, at, post):
 
 def test_the_post_behind_is_none(court):
     side = court_pictures.looking("side", (-9, 6.7, 1.6), (3, 6.7, 0.8), size=SIZE, f=1150.0)
-    made = view(side, court)
+    made = view(side, court, court_pictures.draw(side, court, noise=3))
     for post in (0, 1):
         assert post_tips.tip(made, post)[3] == "one post is behind the other"
     assert post_tips.axis(made, 0) is not None

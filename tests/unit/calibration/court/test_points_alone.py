@@ -16,7 +16,6 @@ from fixtures.cameras.scene import look_at, opencv_projection
 HALL = court.read(Path(__file__).parents[4] / "config" / "courts" / "sports-hall.yaml")
 SIZE = (1920, 1080)
 WEIGHTS = {"click_sigma_px": 2.5, "click_bias_px": 1.25, "click_loss": 4.0}
-STATED_PX = 1.25  # of a click, in a picture of this width
 
 
 def true_cameras(k1=-0.29, k2=0.06):
@@ -64,14 +63,14 @@ def test_exact_clicks_give_the_true_pictures():
 
 def test_errors_are_about_as_large_as_stated():
     made, square = true_cameras(), []
-    for seed in range(4):
+    for seed in range(12):
         found = calibrate(clicked(made, seed=seed)).solution
         spread = np.sqrt(np.diag(found.covariance))
         first = IMAGE * len(made) + LENS.index("f_px")
         for at, (camera, true) in enumerate(zip(found.cameras, made, strict=True)):
             sigma = spread[first + len(LENS) * at]
             square.append(((camera.K[1, 1] - true.K[1, 1]) / sigma) ** 2)
-    assert 0.2 < np.mean(square) < 3
+    assert 0.5 < np.mean(square) < 1.7
 
 
 def test_the_expected_error_is_of_places_that_two_cameras_see():

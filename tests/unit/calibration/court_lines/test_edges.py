@@ -3,18 +3,12 @@
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
 from courtside.calibration.court_lines import edges
 from courtside.geometry import camera as cameras
 from fixtures.cameras import court_pictures
 
 CAMERA = court_pictures.pair()[1]
-
-
-@pytest.fixture(scope="module")
-def court():
-    return court_pictures.badminton()
 
 
 def test_edges_are_where_lines_are_drawn_though_the_camera_is_a_few_px_off(court):

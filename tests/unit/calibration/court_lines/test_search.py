@@ -8,14 +8,6 @@ from courtside.geometry import camera as cameras
 from fixtures.cameras import court_pictures
 
 
-@pytest.fixture
-def few(monkeypatch):
-    """Search less widely, to be quick."""
-    monkeypatch.setattr(floor_frames, "FOCAL_WIDTHS", np.array([0.75, 0.95, 1.2]))
-    monkeypatch.setattr(search, "REFINED", 8)
-    monkeypatch.setattr(search, "SHORTLIST", 500)
-
-
 @pytest.mark.parametrize("view", [0, 1])
 def test_the_camera_is_found_without_a_click(few, court, view):
     camera = court_pictures.pair()[view]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from courtside.calibration.court import court as court_files
-from courtside.calibration.court_lines import evidence, floor_frames, ridges, search, verdict, views
+from courtside.calibration.court_lines import evidence, ridges, search, verdict, views
 from courtside.geometry import camera as cameras
 from courtside.records.cameras.click_proposals import EITHER
 from fixtures.cameras import court_pictures
@@ -15,14 +15,8 @@ CAMERA = court_pictures.pair()[1]
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _few():
-    """Search less widely, to be quick."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(floor_frames, "FOCAL_WIDTHS", np.array([0.75, 0.95, 1.2]))
-        patch.setattr(search, "REFINED", 8)
-        patch.setattr(search, "SHORTLIST", 500)
-        patch.setattr(search, "BARREL", (0.0,))
-        yield
+def _one_lens(few):
+    few.setattr(search, "BARREL", (0.0,))
 
 
 def judged(image, court, lines="light"):

@@ -22,11 +22,6 @@ IMAGE = [2e-3] * 3 + [0.03] * 3 + [np.inf] * 5
 LENS = [4.0, 1e-3, 2.0, 2.0, 5e-3, 5e-3, 2e-4, 2e-4]
 
 
-@pytest.fixture(scope="module")
-def court():
-    return court_pictures.badminton()
-
-
 def ties(rng):
     """Return ties whose cameras are off by what they state."""
     sigma = np.array(2 * IMAGE + 2 * LENS)

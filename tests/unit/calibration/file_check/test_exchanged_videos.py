@@ -179,9 +179,9 @@ def test_the_step_names_the_take_of_exchanged_videos(tmp_path, capfd):
     assert (rows.near_after / rows.n > 0.6).all()
 
 
-@needs_real
-@pytest.mark.parametrize(("one", "other"), [("cam08", "cam13"), ("cam02", "cam08")])
-def test_exchanged_videos_of_a_real_hall_are_named(one, other):
+@pytest.fixture(scope="module")
+def hall():
+    """Return the cameras of a real hall, and matches of their right videos."""
     folder = REAL / "hall-markers"
     cameras = camera_models.read_toml(folder / "calibration_refined.toml")
     cameras = [camera for camera in cameras if (folder / f"{camera.name}.mp4").is_file()]
@@ -189,6 +189,13 @@ def test_exchanged_videos_of_a_real_hall_are_named(one, other):
     pictures = [cv2.cvtColor(first[c.name][-1], cv2.COLOR_BGR2GRAY) for c in cameras]
     matches = exchanged_videos.match(pictures)
     assert exchanged_videos.judge(cameras, matches).warnings == []
+    return cameras, matches
+
+
+@needs_real
+@pytest.mark.parametrize(("one", "other"), [("cam08", "cam13"), ("cam02", "cam08")])
+def test_exchanged_videos_of_a_real_hall_are_named(hall, one, other):
+    cameras, matches = hall
     names = [camera.name for camera in cameras]
     wrong = exchanged(cameras, names.index(one), names.index(other))
     (line,) = exchanged_videos.judge(wrong, matches).warnings

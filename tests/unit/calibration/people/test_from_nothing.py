@@ -14,7 +14,7 @@ from courtside.geometry import similarity
 from courtside.geometry.triangulation import triangulate_all
 from courtside.study.errors import InputError
 from fixtures.cameras import corner_cameras
-from fixtures.people import tracks_made
+from fixtures.people import remembered, tracks_made
 
 TRUE = corner_cameras.four_cameras()[:3]
 NAMES, SIZES = [one.name for one in TRUE], {one.name: one.size for one in TRUE}
@@ -22,6 +22,12 @@ LIMITS = Limits(score=0.05, limit=0.05, fade=0.067)
 WALK = tracks_made.persons(40)
 LENSES = {camera.name: camera for camera in TRUE}
 HEIGHTS = [[unit.length(xyz) / unit.OF_HEIGHT for xyz in WALK]]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _remembered():
+    with remembered.relative():
+        yield
 
 
 def guessed(take, heights=HEIGHTS, lenses=None):

@@ -71,12 +71,12 @@ def test_a_knock_is_told_in_the_clock_of_its_camera(found):
     assert line.startswith("camera c2 was knocked at ") and "of take t by 0.4" in line
 
 
-def test_a_camera_that_sees_nobody_of_the_others_hinders_no_search(monkeypatch):
+def test_a_camera_that_sees_nobody_of_the_others_hinders_no_search(knocked, monkeypatch):
     monkeypatch.setattr(knocks, "_judged", lambda *_: (0.0, {"joints": "not better"}))
-    blind = SEEN.xy.copy()
+    blind = knocked.xy.copy()
     blind[3] = np.nan
-    found = knocks.find(TRUE, KNOWN, replace(SEEN, xy=blind), LIMITS)
-    assert all(one.camera != 3 for one in found)
+    found = knocks.find(TRUE, KNOWN, replace(knocked, xy=blind), LIMITS)
+    assert found and all(one.camera != 3 for one in found)
 
 
 def test_a_camera_turned_between_takes_has_a_pose_in_each(knocked, monkeypatch):

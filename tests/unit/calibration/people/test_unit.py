@@ -6,6 +6,7 @@ import pytest
 from courtside.calibration.people import prior, unit
 from courtside.calibration.people.unit import OF_HEIGHT, Body
 from courtside.geometry import camera as camera_models
+from courtside.geometry import triangulation
 from courtside.geometry.similarity import Sim3
 from courtside.study.errors import InputError
 from fixtures.cameras import corner_cameras
@@ -16,6 +17,8 @@ UNITS_PER_M = 0.4  # the unit of these bodies is 2.5 m
 TRUE = corner_cameras.four_cameras()
 SMALL = [Sim3(UNITS_PER_M, np.eye(3), np.zeros(3)).camera(camera) for camera in TRUE]
 LINE = np.array([[-1.0, 1.0, 0.0], [1.0, 1.0, 0.0]])
+LINE_XY = np.stack([camera_models.project(camera, LINE) for camera in TRUE])
+N_DRAWS = 2000
 CLICK_PX = {"click_sigma_px": 2.0, "click_bias_px": 0.0}
 
 
@@ -109,8 +112,7 @@ def test_a_take_of_somebody_without_height_tells_nothing(heights):
 
 def clicked(noise_px=0.0, seed=0, length_m=2.0, cameras=(0, 1, 2, 3)):
     """Return the line as some of the cameras see it."""
-    xy = np.stack([camera_models.project(camera, LINE) for camera in TRUE])
-    xy += noise_px * np.random.default_rng(seed).normal(size=xy.shape)
+    xy = LINE_XY + noise_px * np.random.default_rng(seed).normal(size=LINE_XY.shape)
     xy[[at for at in range(4) if at not in cameras]] = np.nan
     stated = [{"points": ["left", "right"], "length_m": length_m}]
     (found,) = unit.of_clicks(stated, ["left", "right"], xy, **CLICK_PX)
@@ -120,25 +122,34 @@ def clicked(noise_px=0.0, seed=0, length_m=2.0, cameras=(0, 1, 2, 3)):
 @pytest.mark.parametrize("cameras", [(0, 1), (0, 1, 2, 3)])
 def test_a_known_length_gives_metres_as_uncertain_as_its_clicks(cameras):
     assert unit.by_length(SMALL, clicked(cameras=cameras)).metres == pytest.approx(2.5)
-    noisy = [unit.by_length(SMALL, clicked(1.0, seed, cameras=cameras)) for seed in range(200)]
-    scatter = np.std([one.metres / 2.5 for one in noisy])
-    expected = np.linalg.norm([scatter, unit.KNOWN_SIGMA_M / 2.0, unit.BEND_SIGMA])
-    assert noisy[0].sigma == pytest.approx(expected, rel=0.05)
-    assert noisy[0].by == "left to right"
+    noisy = [clicked(1.0, seed, cameras=cameras) for seed in range(N_DRAWS)]
+    metres = 2.0 / lengths([one.xy for one in noisy])
+    one = unit.by_length(SMALL, noisy[0])
+    assert one.metres == pytest.approx(metres[0])
+    expected = np.linalg.norm([np.std(metres / 2.5), unit.KNOWN_SIGMA_M / 2.0, unit.BEND_SIGMA])
+    assert one.sigma == pytest.approx(expected, rel=0.05)
+    assert one.by == "left to right"
+
+
+def lengths(clicks):
+    """Return the lengths by the small cameras between both ends (C, 2, 2) px of each line."""
+    ends = triangulation.triangulate_all(SMALL, np.concatenate(clicks, axis=1)).reshape(-1, 2, 3)
+    return np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
 
 
 RACKET_M = 0.674
 FIVE = np.array([[[0.3 * k - 0.6, 0.2 * k, z], [0.3 * k - 0.6, 0.2 * k, z + RACKET_M]]
                  for k, z in enumerate((0.0, 0.4, 0.8, 1.2, 0.6))])  # fmt: skip
+RACKET_XY = np.stack([camera_models.project(camera, FIVE.reshape(-1, 3)) for camera in TRUE])
 
 
-def racket(seed, scatter_px, bias_px, places=FIVE):
+def racket(seed, scatter_px, bias_px):
     """Return known lengths of a racket, clicked at several places with these errors."""
     rng = np.random.default_rng(seed)
-    names = [f"{end}{k}" for k in range(len(places)) for end in ("top", "butt")]
-    xy = np.stack([camera_models.project(camera, places.reshape(-1, 3)) for camera in TRUE])
-    xy += scatter_px * rng.normal(size=xy.shape) + bias_px * rng.normal(size=(len(TRUE), 1, 2))
-    stated = [{"points": [f"top{k}", f"butt{k}"], "length_m": RACKET_M} for k in range(len(places))]
+    names = [f"{end}{k}" for k in range(len(FIVE)) for end in ("top", "butt")]
+    xy = RACKET_XY + scatter_px * rng.normal(size=RACKET_XY.shape)
+    xy += bias_px * rng.normal(size=(len(TRUE), 1, 2))
+    stated = [{"points": [f"top{k}", f"butt{k}"], "length_m": RACKET_M} for k in range(len(FIVE))]
     click = {"click_sigma_px": 2 * scatter_px, "click_bias_px": 2 * bias_px}  # of 3840 px width
     return unit.of_clicks(stated, names, xy, **click)
 
@@ -150,15 +161,14 @@ def test_clicks_of_a_racket_at_several_places_err_together_as_stated(
     """Over many draws the errors of five lengths have the stated covariance."""
     monkeypatch.setattr(unit, "BEND_SIGMA", 0.0)
     monkeypatch.setattr(unit, "KNOWN_SIGMA_M", 0.0)
-    off = []
-    for seed in range(200):
-        each, covariance = unit.by_lengths(SMALL, racket(seed, scatter_px, bias_px))
-        off.append(np.log([one.metres / 2.5 for one in each]))
-    found = np.cov(np.array(off).T)
+    draws = [racket(seed, scatter_px, bias_px) for seed in range(N_DRAWS)]
+    metres = RACKET_M / lengths([one.xy for draw in draws for one in draw]).reshape(N_DRAWS, -1)
+    each, covariance = unit.by_lengths(SMALL, draws[0])
+    assert [one.metres for one in each] == pytest.approx(metres[0])
+    off = np.log(metres / 2.5)
     largest = np.diag(covariance).max()
-    np.testing.assert_allclose(found, covariance, atol=0.25 * largest)
-    means = np.array(off).mean(axis=1)
-    assert np.std(means) == pytest.approx(np.sqrt(covariance.mean()), rel=0.12)
+    np.testing.assert_allclose(np.cov(off.T), covariance, atol=0.1 * largest)
+    assert np.std(off.mean(axis=1)) == pytest.approx(np.sqrt(covariance.mean()), rel=0.05)
 
 
 def test_a_racket_at_several_places_is_as_certain_as_its_own_length_and_the_bend_allow():

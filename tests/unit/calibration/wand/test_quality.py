@@ -66,4 +66,5 @@ def test_a_path_in_the_middle_of_the_picture_has_a_warning_if_the_lens_is_unknow
     xyz[4] = [[0, 0, 0], [0.5, 0, 0]]
     lenses = {name: lens for name, lens in LENSES.items() if name != "c2"}
     warnings = summary(seen(xyz, sigma_px=0.2), lenses, floor=Floor((3.0, 4.0)))["warnings"]
+    assert warnings
     assert all(line.startswith("camera c2: the wand's path extends over") for line in warnings)

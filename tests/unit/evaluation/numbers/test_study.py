@@ -10,6 +10,7 @@ from courtside.study.errors import InputError
 from courtside.study.targets import numbers as tables
 
 ROOT = Path(__file__).parents[4]
+MADE = tables.made(ROOT)
 NET = "blazepose-heavy-flip"
 TAKES, CLAPS = "players-b/evaluation/takes", "single-view/evaluation/takes/claps"
 
@@ -28,7 +29,7 @@ def repository(tmp_path):
 
 
 def test_documents_are_written_once_and_then_stay(source, repository):
-    found = study.numbers(source.folder, repository, tables.made(repository))
+    found = study.numbers(source.folder, repository, MADE)
     assert study.write(found, repository) == [study.REGISTER, *study.DOCUMENTS]
     assert "| 12.7; 11.9 |" in (repository / "README.md").read_text()
     assert study.write(found, repository) == []
@@ -40,24 +41,24 @@ def test_documents_are_written_once_and_then_stay(source, repository):
 
 
 def test_results_that_changed_make_numbers_stale(source, repository, tmp_path):
-    study.write(study.numbers(source.folder, repository, tables.made(repository)), repository)
-    assert study.report(source.folder, repository, tables.made(repository)) == []
+    study.write(study.numbers(source.folder, repository, MADE), repository)
+    assert study.report(source.folder, repository, MADE) == []
     kept = (repository / study.REGISTER).read_text()
     assert ",4.2,4.2,mm," in kept
     (repository / study.REGISTER).write_text(kept.replace(",4.2,4.2,mm,", ",4.3,4.3,mm,"))
-    (line,) = study.report(source.folder, repository, tables.made(repository))
+    (line,) = study.report(source.folder, repository, MADE)
     assert line.endswith("printed 4.3, would be 4.2") and line.startswith("racket/sfm18/`plain-a`")
 
 
 def test_results_without_a_table_are_refused_by_its_name(repository, tmp_path):
     with pytest.raises(InputError, match="run snakemake"):
-        study.numbers(tmp_path / "nowhere", repository, tables.made(repository))
+        study.numbers(tmp_path / "nowhere", repository, MADE)
     with pytest.raises(InputError, match=r"figures/calibration\.csv"):
-        study.numbers(tmp_path, repository, tables.made(repository))
+        study.numbers(tmp_path, repository, MADE)
 
 
 def test_the_summary_repeats_numbers_of_other_tables(source, repository):
-    found = study.numbers(source.folder, repository, tables.made(repository))
+    found = study.numbers(source.folder, repository, MADE)
     shown = {n.row: n for n in found if n.table == study.SUMMARY}
     assert list(shown) == list(study.SUMMED_UP)
     printed = {n.name: n.printed for n in found}
@@ -79,24 +80,22 @@ LEFTOVERS = (  # a table that the default configuration does not make, and one t
 )
 
 
-@pytest.fixture(scope="module")
-def printed(source):
-    """Return the numbers without leftovers as text: NaN is not itself."""
-    return list(map(repr, study.numbers(source.folder, ROOT, tables.made(ROOT))))
-
-
-@pytest.mark.parametrize(("old", "whole"), LEFTOVERS, ids=[old for old, _ in LEFTOVERS])
-def test_leftover_tables_of_older_configurations_are_not_read(
-    source, printed, tmp_path, old, whole
-):
+def test_leftover_tables_of_older_configurations_are_not_read(source, tmp_path):
     results = shutil.copytree(source.folder, tmp_path / "results")
-    (results / old).parent.mkdir(parents=True, exist_ok=True)
-    shutil.copy(results / whole.replace("sfm-n40", "sfm-n40-lines"), results / old)
-    assert list(map(repr, study.numbers(results, ROOT, tables.made(ROOT)))) == printed
+    for old, whole in LEFTOVERS:
+        assert not (results / old).exists(), old
+        (results / old).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(source.folder / whole.replace("sfm-n40", "sfm-n40-lines"), results / old)
+    # As text: NaN is not itself. A number names its source.
+    printed, found = (
+        list(map(repr, study.numbers(folder, ROOT, MADE))) for folder in (source.folder, results)
+    )
+    assert [one for one in found if one not in set(printed)] == []
+    assert found == printed
 
 
 def test_every_source_of_the_register_is_made_by_the_default_configuration():
-    made = [PurePosixPath("/", path) for path in tables.made(ROOT)]  # matched from their start
+    made = [PurePosixPath("/", path) for path in MADE]  # matched from their start
     kept = {n.source for n in register.read(ROOT / study.REGISTER) if n.origin == register.STUDY}
     assert [one for one in kept if not any(path.match(f"/{one}") for path in made)] == []
     assert len(kept) > 50

@@ -128,5 +128,5 @@ def test_names_that_look_like_numbers_are_read_as_text(tmp_path):
 
 
 def test_a_table_without_errors_is_refused():
-    with pytest.raises(KeyError):
+    with pytest.raises(KeyError, match="session"):
         players.table(pd.DataFrame(), pd.DataFrame(), pd.DataFrame(), pd.DataFrame())

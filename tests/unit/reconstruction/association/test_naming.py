@@ -46,7 +46,7 @@ def test_who_stays_beside_the_court_does_not_count():
     paths = np.stack([np.tile(at, (61, 1)) for at in ([3.0, 5.0], [9.0, 5.0])])
     take = named_takes.take(2, paths=paths)
     assert (name(take, court=COURT).index["c0"] == 0).all()
-    with pytest.raises(InputError):
+    with pytest.raises(InputError, match=r"expected a statement who is p1, .* person-2 \("):
         name(take)
 
 

@@ -51,15 +51,15 @@ def test_joined_meshes_keep_corners_and_colours():
 
 
 @pytest.mark.parametrize(
-    ("vertices", "triangles", "colours"),
+    ("vertices", "triangles", "colours", "message"),
     [
-        (np.zeros((3, 2)), [[0, 1, 2]], np.zeros((1, 3), np.uint8)),
-        (np.zeros((3, 3)), [[0, 1, 3]], np.zeros((1, 3), np.uint8)),
-        (np.zeros((3, 3)), [[0, 1]], np.zeros((1, 2), np.uint8)),
-        (np.zeros((3, 3)), [[0, 1, 2]], np.zeros((2, 3), np.uint8)),
-        (np.zeros((3, 3)), [[0, 1, 2]], np.zeros((1, 3))),
+        (np.zeros((3, 2)), [[0, 1, 2]], np.zeros((1, 3), np.uint8), "expected vertices"),
+        (np.zeros((3, 3)), [[0, 1, 3]], np.zeros((1, 3), np.uint8), "expected corners among 3"),
+        (np.zeros((3, 3)), [[0, 1]], np.zeros((1, 2), np.uint8), "expected triangles"),
+        (np.zeros((3, 3)), [[0, 1, 2]], np.zeros((2, 3), np.uint8), r"found uint8 \(2, 3\)"),
+        (np.zeros((3, 3)), [[0, 1, 2]], np.zeros((1, 3)), r"expected colours .* found float64"),
     ],
 )
-def test_invalid_meshes_are_refused(vertices, triangles, colours):
-    with pytest.raises(ValueError, match="expected"):
+def test_invalid_meshes_are_refused(vertices, triangles, colours, message):
+    with pytest.raises(ValueError, match=message):
         mesh.Mesh(vertices, np.array(triangles), colours)

@@ -64,16 +64,20 @@ def test_reading_back_gives_the_same(bag):
 
 
 @pytest.mark.parametrize(
-    "made",
+    ("made", "message"),
     [
-        [],
-        [(0.0, frames()[0][1][:-1], frames()[0][2])],
-        [(0.0, frames()[0][1].astype(float), frames()[0][2])],
-        [(0.0, frames()[0][1], frames()[0][2].astype(np.int32))],
+        ([], "expected at least one frame"),
+        (
+            [(0.0, frames()[0][1][:-1], frames()[0][2])],
+            f"expected pictures .* found .{len(frames()[0][1]) - 1}, ",
+        ),
+        ([(0.0, frames()[0][1].astype(float), frames()[0][2])], "expected .* found .* float64"),
+        ([(0.0, frames()[0][1], frames()[0][2].astype(np.int32))], "expected .* found .* int32"),
     ],
+    ids=["none", "size", "colour", "depth"],
 )
-def test_what_is_no_frame_is_refused(tmp_path, made):
-    with pytest.raises(ValueError, match="expected"):
+def test_what_is_no_frame_is_refused(tmp_path, made, message):
+    with pytest.raises(ValueError, match=message):
         write_bag(tmp_path / "a.bag", made)
     assert list(tmp_path.iterdir()) == []
 

@@ -16,7 +16,7 @@ def numbers(motion, times=(0.3, 1.7, 2.9, 4.1)):
 @pytest.mark.parametrize("name", catalogue.MOTIONS)
 def test_a_seed_decides_everything_and_another_differs(name):
     np.testing.assert_array_equal(numbers(perform(name, 5)), numbers(performed(name, 5)))
-    assert np.abs(numbers(performed(name, 5)) - numbers(performed(name, 6))).max() > 0.05
+    assert np.abs(numbers(performed(name, 5)) - numbers(performed(name))).max() > 0.05
 
 
 @pytest.mark.parametrize("name", ["shot", "walk", "tpose_clap"])
