@@ -86,6 +86,11 @@ def test_a_person_who_stands_still_tells_nothing():
         guessed(take, [[1.7]])
 
 
+def test_cameras_that_agree_on_no_joint_are_told():
+    with pytest.raises(InputError, match="expected joints on whose places two cameras agree"):
+        from_nothing._places(np.full((5, 12, 3), np.nan))
+
+
 def test_without_a_height_there_is_no_unit():
     with pytest.raises(InputError, match="expected `height_m` of every subject"):
         guessed(tracks_made.take(TRUE, WALK), [[1.7, None]], LENSES)
