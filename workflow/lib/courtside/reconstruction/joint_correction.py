@@ -87,8 +87,9 @@ def correct(
     `cameras` are those of the record, needed for offsets that depend on the view. `sex_of` gives
     "m", "f" or None for persons; for others the mean of both is used. Joints without a row stay. A
     joint's offset needs shoulders, hips and the joint's own limb; if one of them is missing the
-    joint keeps its place, its offset and its covariance. The square of `sigma_m` of a corrected
-    joint is added to its `covariance_2d`, and taken out of `covariance_network`, which contains it.
+    joint keeps its place and its offset. The square of `sigma_m` is added to the `covariance_2d` of
+    all these joints, moved or not, and taken out of `covariance_network`, which contains it: `keep`
+    must not take a joint that could not be corrected for the more certain one.
     """
     return _corrected(points, table, offsets(points, table, sex_of, cameras))
 
@@ -98,12 +99,10 @@ def _corrected(points: Keypoints3D, table: pd.DataFrame, moved: NDArray) -> Keyp
     covariance, network = points.covariance_2d.copy(), points.covariance_network.copy()
     for joint, side in product(table["joint"].unique(), SIDES):
         at = list(points.joints).index(f"{side}_{joint}")
-        variance = table.loc[table["joint"] == joint, "sigma_m"].iloc[0] ** 2
-        there = np.isfinite(moved[:, :, at]).all(axis=-1)
-        covariance[:, :, at][there] += variance * np.eye(3)
-        own = network[:, :, at][there]
-        rest = np.maximum(np.trace(own, axis1=-2, axis2=-1) / 3 - variance, 0.0)
-        network[:, :, at][there] = rest[:, None, None] * np.eye(3)
+        sigma_m = table.loc[table["joint"] == joint, "sigma_m"].iloc[0]
+        covariance[:, :, at] += sigma_m**2 * np.eye(3)
+        variance = np.trace(network[:, :, at], axis1=-2, axis2=-1)[..., None, None] / 3
+        network[:, :, at] = np.maximum(variance - sigma_m**2, 0.0) * np.eye(3)
     return replace(
         points,
         xyz=points.xyz - np.nan_to_num(moved),
