@@ -80,9 +80,9 @@ def limb_errors(points, truth):
     return 1000 * error[:, :, [names.index(joint) for joint in skeleton.JOINTS]]
 
 
-def errors_mm(points, truth):
-    """Return median and 95 % of these, mm."""
-    return np.nanpercentile(np.linalg.norm(limb_errors(points, truth), axis=-1), [50, 95])
+def printed(error):
+    """Return median and 95 % of the lengths of these errors, as the tables print them."""
+    return "{:.1f} / {:.1f}".format(*np.nanpercentile(np.linalg.norm(error, axis=-1), [50, 95]))
 
 
 def rows_of(results):
@@ -99,12 +99,12 @@ def rows_of(results):
             points = stages(raw, table, sex_of, step, cameras)["corrected"]
             error = limb_errors(points, truth)
             n, shift = int(np.isfinite(error[..., 0]).sum()), np.nanmean(error, axis=(0, 1, 2))
-            for what, printed in (
-                (part, "{:.1f} / {:.1f}".format(*errors_mm(points, truth))),
+            for what, words in (
+                (part, printed(error)),
                 (f"{part}_shift", ", ".join(f"{one:.1f}" for one in shift)),
             ):
-                print(label, what, printed, flush=True)
-                row = "true-cameras", label, what, printed, "mm", name.split("/")[0]
+                print(label, what, words, flush=True)
+                row = "true-cameras", label, what, words, "mm", name.split("/")[0]
                 yield *row, n, 0, "benchmark", COMMAND
 
 

@@ -137,7 +137,7 @@ def player_rows(results):
             cameras = [one.camera for one in used]
             stages = true_cameras.stages(raw, table, sex_of, CONFIG, cameras)
             for stage, points in stages.items():
-                printed = "{:.1f} / {:.1f}".format(*true_cameras.errors_mm(points, truth))
+                printed = true_cameras.printed(true_cameras.limb_errors(points, truth))
                 print(words, n, stage, printed, flush=True)
                 yield f"`{name}`, {n} cameras, {stage}", words, printed, "mm", session, 1
 

@@ -182,8 +182,8 @@ def test_a_take_has_the_fusions_of_which_enough_cameras_see_it():
     assert fused("c", "b") == ["all-robust", "two-robust"]
     assert fused("a") == fused() == []
     two = sessions.Take("t", {"c": "c.mp4", "b": "b.mp4"}, ())
-    assert found.cameras_fused(two, "all-robust") == ("b", "c")
-    assert found.cameras_fused(two, "halfbody") == ()
+    assert found.fused_cameras_of(two, "all-robust") == ("b", "c")
+    assert found.fused_cameras_of(two, "halfbody") == ()
 
 
 def test_takes_are_measured_with_those_calibrations_that_the_study_names():

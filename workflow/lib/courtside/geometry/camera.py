@@ -222,8 +222,8 @@ def read_toml(path: StrPath) -> list[Camera]:
     """Read cameras, in metres, from a TOML file as this study, Pose2Sim and aniposelib write it.
 
     The file holds one table per camera with `name size matrix distortions rotation translation`, in
-    the order of the result; `[metadata]` may hold `unit`, m where absent. Raises
-    `InputError` if the file is not TOML or a camera is incomplete, impossible or named twice.
+    the order of the result; `[metadata]` may hold `unit`, m where absent. Raises `InputError` if
+    the file is not TOML or a camera is incomplete, impossible or named twice.
     """
     with reading(path, "TOML", camera_fields.EXPORT_AGAIN):
         tables = camera_fields.toml(Path(path).read_text(encoding="utf-8-sig"))

@@ -1,7 +1,7 @@
 """Initial lenses, cameras and boards for the adjustment, each from a few views, robustly."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -71,18 +71,18 @@ def lens(name: str, size: Sequence[int], board: Board, seen: Corners, camera: in
             f"corners of the board, found {len(rows)}; {HOW}, or give `lenses`"
         )
     rows = [rows[k] for k in np.unique(np.linspace(0, len(rows) - 1, MOST_VIEWS).astype(int))]
-    guess = plain(name, (size[0], size[1]), 1.0).K.copy()  # OpenCV writes its result there
+    first = plain(name, (size[0], size[1]), 1.0)
     flags = cv2.CALIB_USE_INTRINSIC_GUESS | cv2.CALIB_FIX_ASPECT_RATIO
     flags |= cv2.CALIB_ZERO_TANGENT_DIST | cv2.CALIB_FIX_K3
     _, matrix, dist, *_ = cv2.calibrateCamera(
         [board.corners[seen.corner[at]].astype(np.float32) for at in rows],
         [seen.xy[at].astype(np.float32) for at in rows],
-        (size[0], size[1]),
-        guess,
+        first.size,
+        first.K.copy(),  # OpenCV writes its result there
         np.zeros(5),
         flags=flags,
     )
-    return Camera(name, (size[0], size[1]), matrix, dist.ravel()[:5], np.eye(3, 4))
+    return replace(first, K=matrix, dist=dist.ravel()[:5])
 
 
 def poses(board: Board, seen: Corners, ideal: NDArray, world: str | None) -> Poses:

@@ -28,6 +28,11 @@ FOR_ALL_TAKES = ("synchronised",)  # of a session, where its takes do not say it
 OVERRIDDEN = ("principal_point_px", "reason")  # of a calibration file, as its session states them
 
 
+def kind_of(recording: str) -> str:
+    """Return the kind of a device by the ending of its recording; a video by default."""
+    return KINDS.get(Path(recording).suffix.lower(), "rgb")
+
+
 def is_there(path: Path) -> bool:
     """Tell whether a file or folder exists; one whose name no disk takes does not."""
     try:
@@ -205,7 +210,7 @@ def _take(
 def _devices(content: Content, subjects: tuple[str, ...]) -> dict[str, Device]:
     return {
         name: Device(
-            kind=KINDS.get(Path(device["file"]).suffix.lower(), "rgb"),
+            kind=kind_of(device["file"]),
             file=device["file"],
             subject=device.get("subject", subjects[0]),
             unit=device.get("unit"),

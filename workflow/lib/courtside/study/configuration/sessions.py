@@ -181,10 +181,10 @@ class Session:
         return {"all": tuple(self.cameras), **self.views}.get(how.cameras, ())
 
     def fusions_of(self, take: Take, key: str = "fusions") -> list[str]:
-        """Return those fusions of which enough cameras see a take (`cameras_fused`)."""
-        return [name for name in self.fusions(key) if self.cameras_fused(take, name)]
+        """Return those fusions of which enough cameras see a take (`fused_cameras_of`)."""
+        return [name for name in self.fusions(key) if self.fused_cameras_of(take, name)]
 
-    def cameras_fused(self, take: Take, fusion: str) -> tuple[str, ...]:
+    def fused_cameras_of(self, take: Take, fusion: str) -> tuple[str, ...]:
         """Return the cameras of a fusion that see a take; empty if it needs more.
 
         It needs two cameras, `halfbody` all three.

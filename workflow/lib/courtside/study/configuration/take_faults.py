@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterable, Iterator
 from pathlib import Path
 
-from courtside.study.configuration.session_files import KINDS
+from courtside.study.configuration.session_files import KINDS, kind_of
 from courtside.study.configuration.yaml_files import Content
 
 MEANT_FOR = {"unit": ("inertial", "nuitrack"), "angles": ("inertial",)}  # keys of devices
@@ -172,7 +172,7 @@ def _reference(take: Content) -> str | None:
 
 def _kind(device: Content) -> str:
     """Return the kind of a device by the ending of its file; empty without a file."""
-    return KINDS.get(Path(device["file"]).suffix.lower(), "rgb") if "file" in device else ""
+    return kind_of(device["file"]) if "file" in device else ""
 
 
 def _kind_faults(where: str, take: Content, virtual: bool) -> Iterator[str]:

@@ -228,7 +228,7 @@ def ways_files(study: Study) -> list[str]:
 def round_trip_skeletons(job: Job) -> list[str]:
     """Return the skeletons of those sets of cameras of table 1 that see a take."""
     wanted = job.study.parameters["evaluate_round_trip"]["fusions"]
-    named = [name for name in wanted if job.session.cameras_fused(job.take, name)]
+    named = [name for name in wanted if job.session.fused_cameras_of(job.take, name)]
     return job.of_each(paths.POSE3D, fusion=named)
 
 

@@ -75,7 +75,7 @@ def people_csv(job: Job) -> str | list:
 def fusion(job: Job) -> dict[str, Any]:
     """Return which cameras of a take are fused, and by which rule."""
     session, take, name = job.session, job.take, job["fusion"]
-    used = session.cameras_fused(take, name)
+    used = session.fused_cameras_of(take, name)
     if not used:
         seen = ", ".join(take.cameras) or "none"
         wanted = ", ".join(session.fused_cameras(name)) or "none"
