@@ -22,6 +22,9 @@ PROVIDERS = {  # onnxruntime's name, and the package that brings it
     "openvino": ("OpenVINOExecutionProvider", "onnxruntime-openvino"),
     "directml": ("DmlExecutionProvider", "onnxruntime-directml"),
 }
+# With TF32, cuda's default, joints lay up to 0.3 px of 256 from those of the processor, without it
+# up to 0.0002 px (measured on an NVIDIA H200).
+OPTIONS = {"cuda": {"use_tf32": "0"}}
 ENTRY = "correct its entry in config/models.yaml or config/detectors.yaml"
 EXPORT = "export it again as one ONNX file of standard operators"
 
@@ -53,7 +56,7 @@ def open_session(path: StrPath, providers: Sequence[str] = CPU) -> onnxruntime.I
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = options.inter_op_num_threads = 1
     options.log_severity_level = 3
-    wanted = [PROVIDERS[name][0] for name in providers]
+    wanted = [(PROVIDERS[name][0], OPTIONS.get(name, {})) for name in providers]
     with reading(path, "a network that onnxruntime can run", EXPORT, kinds=(Exception,)):
         session = onnxruntime.InferenceSession(str(path), options, providers=wanted)
     found = session.get_providers()
