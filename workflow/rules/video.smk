@@ -53,6 +53,7 @@ rule check_movement:
     params:
         code=code("check_movement.py"),
         step=step("extract_static"),
+        trim_s=lambda w: take_of(w).trim_s,
     script:
         "../scripts/check_movement.py"
 

@@ -11,8 +11,8 @@ from courtside.study.execution.script import run
 from courtside.video import images, static_picture, walk_frames
 
 
-def main(static_png, video_path, movement_csv, *, camera, frames, **limits):
-    now = static_picture.temporal_median(walk_frames.spread(video_path, frames))
+def main(static_png, video_path, movement_csv, *, camera, frames, trim_s, **limits):
+    now = static_picture.temporal_median(walk_frames.spread(video_path, frames, trim_s=trim_s))
     found = static_picture.check_still(camera, images.read(static_png), now, **limits)
     row = {"camera": camera, **found.row()}
     log.logger.info("%s", row)

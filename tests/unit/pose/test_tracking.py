@@ -38,6 +38,17 @@ class Placer:
         )
 
 
+class Anybody:
+    """Sees a person in every region but the largest."""
+
+    n_joints = 3
+
+    def estimate(self, image, region):
+        xy = np.full((3, 2), [region.x, region.y])
+        nothing = np.full((3, 3), np.nan)
+        return Pose(xy, np.full(3, 0.9), nothing, float(region.side < 100), region)
+
+
 def picture(x):
     image = EMPTY.copy()
     if x is not None:
@@ -71,6 +82,23 @@ def test_a_lost_person_is_searched_again():
     assert (track.reason[4:6] == missing_reason.UNSEEN).all()
     assert np.isnan(track.xy[4:6]).all()
     np.testing.assert_allclose(track.xy[[2, 3, 6], 0, 0], [219.5, 229.5, 119.5])
+
+
+def test_the_largest_person_is_followed():
+    """The detector is surer of a bystander than of the player."""
+    image = EMPTY.copy()
+    image[100:140, 200:240] = 255
+    player, bystander = Region(219.5, 119.5, 80.0), Region(20.0, 120.0, 30.0)
+    poster = Region(100.0, 120.0, 200.0)  # in which the landmark network sees nobody
+
+    class Several:
+        def detect(self, image):
+            return [bystander, player, poster]
+
+    track = tracking.track_person(
+        [(0.0, image)], Several(), Anybody(), min_presence=0.5, redetect=True
+    )
+    np.testing.assert_allclose(track.xy[0, 0], [player.x, player.y])
 
 
 def test_redetection_asks_in_every_frame():

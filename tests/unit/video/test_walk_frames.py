@@ -99,6 +99,24 @@ def test_static_pictures_are_spread_over_the_recording(clip, n, expected):
     assert (found[0], found[-1]) == (0, 19)
 
 
+def test_only_frames_of_the_trimmed_part_are_looked_at(clip):
+    found = [video_files.number_in(one) for one in walk_frames.spread(clip, 3, trim_s=(0.5, 1.0))]
+    assert found == [5, 7, 9]
+    with pytest.raises(InputError, match="expected frames from 3 s to before 4 s, found none"):
+        walk_frames.spread(clip, 3, trim_s=(3, 4))
+
+
+def test_a_file_that_is_cut_behind_the_trimmed_part_is_read(tmp_path):
+    path = tmp_path / "long.mkv"
+    video_files.write(str(path), n=120, rate=30)
+    content = path.read_bytes()
+    path.write_bytes(content[: int(len(content) * 0.8)])
+    with pytest.raises(InputError, match="breaks off"):
+        walk_frames.spread(path, 3)
+    found = walk_frames.spread(path, 3, trim_s=(0, 1))
+    assert [video_files.number_in(image) for image in found] == [0, 14, 29]
+
+
 def test_static_photos_are_spread_too(tmp_path):
     for number in range(5):
         photo(tmp_path, f"{number}.png", number)

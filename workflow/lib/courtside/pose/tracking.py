@@ -55,14 +55,25 @@ def track_person(
         if region is not None and not redetect:
             pose = landmarks.estimate(image, region)
         if pose is None or pose.presence < min_presence:
-            whole = (0, 0, image.shape[1], image.shape[0])
-            pose = landmarks.estimate(image, regions_near(image, whole, detector)[0])
+            pose = _largest(image, detector, landmarks, min_presence)
         found = pose if pose.presence >= min_presence else None
         region = None if found is None else found.region
         times.append(time_s)
         rows.append(as_row(found, landmarks.n_joints, image.shape))
     xy, score, reason, xyz = (np.stack(column) for column in zip(*rows, strict=True))
     return Track(np.array(times), xy, score, reason, xyz, np.full((len(times), 2, 3), np.nan))
+
+
+def _largest(
+    image: NDArray, detector: PersonDetector, landmarks: LandmarkNetwork, min_presence: float
+) -> Pose:
+    """Return the pose of the largest detected person in whom the landmark network is confident."""
+    regions = regions_near(image, (0, 0, image.shape[1], image.shape[0]), detector)
+    for region in sorted(regions, key=lambda one: -one.side):
+        pose = landmarks.estimate(image, region)
+        if pose.presence >= min_presence:
+            break
+    return pose
 
 
 def strayed(xy: NDArray, boxes: Sequence[Box]) -> bool:

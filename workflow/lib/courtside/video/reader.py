@@ -17,7 +17,7 @@ from courtside.study.errors import InputError, StrPath, reading
 from courtside.study.execution.files import atomic
 from courtside.video import images
 from courtside.video.decoder import decode_checked, display_matrix, pictures
-from courtside.video.packets import list_packets
+from courtside.video.packets import Listing, list_packets
 
 
 @dataclass(frozen=True)
@@ -80,16 +80,21 @@ def frames(
     damaged or cut short within the range, or holds no frame in it.
     """
     listing = list_packets(path, stop_s=stop_s)
+    for index, image in pictures(listing, in_range(listing, start_s, stop_s)):
+        yield float(listing.times_s[index]), image
+
+
+def in_range(listing: Listing, start_s: float | None, stop_s: float | None) -> range:
+    """Return the indices of frames with `start_s <= time_s < stop_s`; an `InputError` for none."""
     times_s = listing.times_s
     first = 0 if start_s is None else int(np.count_nonzero(times_s < start_s))
     stop = len(times_s) if stop_s is None else int(np.count_nonzero(times_s < stop_s))
     if first >= stop:
         raise InputError(
-            f"{path}: expected frames from {start_s} s to before {stop_s} s, found none: "
+            f"{listing.path}: expected frames from {start_s} s to before {stop_s} s, found none: "
             f"choose a range within the video, which runs from 0 to {listing.duration_s:.3f} s"
         )
-    for index, image in pictures(listing, range(first, stop)):
-        yield float(times_s[index]), image
+    return range(first, stop)
 
 
 def extract_frames(path: StrPath, every_s: float) -> Iterator[tuple[int, float, NDArray]]:

@@ -48,20 +48,25 @@ def frames(
         raise ValueError(f"one of every_s and every_frame, not {every_s} and {every_frame}")
 
 
-def spread(source: Source, n_frames: int) -> list[NDArray]:
-    """Decode at most `n_frames` pictures spread evenly over a static recording, with both ends.
+def spread(
+    source: Source, n_frames: int, *, trim_s: Sequence[float] | None = None
+) -> list[NDArray]:
+    """Decode at most `n_frames` pictures spread evenly over a recording, with both ends.
 
+    Of a video with `trim_s` (start, stop), only frames from the start to before the stop count.
     They are (H, W, 3) uint8, BGR, upright, of one size. Source and errors are those of `frames`.
     """
     paths = photo_paths(source)
     if paths:
-        return list(_photos([paths[at] for at in _evenly(len(paths), n_frames)]))
-    listing = list_packets(_paths(source)[0])
-    return [image for _, image in pictures(listing, _evenly(len(listing.pts), n_frames))]
+        return list(_photos([paths[at] for at in _evenly(range(len(paths)), n_frames)]))
+    start_s, stop_s = trim_s or (None, None)
+    listing = list_packets(_paths(source)[0], stop_s=stop_s)
+    chosen = _evenly(reader.in_range(listing, start_s, stop_s), n_frames)
+    return [image for _, image in pictures(listing, chosen)]
 
 
-def _evenly(n_available: int, n_wanted: int) -> list[int]:
-    return np.unique(np.linspace(0, n_available - 1, n_wanted).round().astype(int)).tolist()
+def _evenly(there: range, n_wanted: int) -> list[int]:
+    return np.unique(np.linspace(there[0], there[-1], n_wanted).round().astype(int)).tolist()
 
 
 def extract(
