@@ -11,13 +11,15 @@ from courtside.geometry import camera as camera_models
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution import log
 from courtside.study.execution.script import run
-from courtside.video import reader
+from courtside.video import packets, reader
 
 
 def main(paths, pose2d_npz, *, camera, model, trim_s, folders=None, rate_hz=None):
     if paths.video:
-        # The whole video, whatever is used of it: the files count its frames.
-        frames = {"size": reader.probe(paths.video).size, "time_s": reader.frame_times(paths.video)}
+        stop_s = trim_s[1] if trim_s else None
+        # All frames of the video, whatever is used of them: the files count them.
+        times_s = packets.list_packets(paths.video, stop_s=stop_s).times_s
+        frames = {"size": reader.probe(paths.video, stop_s=stop_s).size, "time_s": times_s}
     else:
         numbers = frame_numbers.common(folders)
         known = {one.name: one for one in camera_models.read_toml(paths.cameras)}

@@ -17,6 +17,8 @@ from courtside.records.keypoints import keypoints as keypoint_files
 from courtside.records.keypoints import missing_reason, skeleton
 from courtside.study.errors import InputError
 from courtside.video import writer
+from courtside.video.packets import list_packets
+from fixtures.recordings import video_files
 from fixtures.recordings.real_data import REAL, needs_real
 
 SKELETONS = Path(__file__).parents[3] / "config" / "skeletons"
@@ -144,6 +146,23 @@ def test_the_script_counts_the_frames_of_the_whole_video(tmp_path):
     assert np.array_equal(unfilmed.xy[seen], found.xy[seen])
     with pytest.raises(InputError, match="correct trim_s"):
         script["main"](paths, out, camera="left", model="theirs", trim_s=(2.0, 3.0))
+
+
+def test_the_script_takes_a_video_that_was_cut_after_the_trimmed_part(tmp_path):
+    fast = {"movflags": "faststart"}  # the index stands before the pictures
+    whole = video_files.write(tmp_path / "whole.mp4", n=40, rate=10, container=fast)
+    video = tmp_path / "v.mp4"
+    video.write_bytes(whole.read_bytes()[: int(0.8 * whole.stat().st_size)])
+    n_frames = len(list_packets(video, stop_s=1.0).pts)
+    assert 10 < n_frames < 40
+    write_numbers(tmp_path / "j", range(n_frames))
+    script = runpy.run_path(str(SKELETONS.parents[1] / "workflow/scripts/import_pose2d.py"))
+    paths = SimpleNamespace(folder=tmp_path / "j", video=video, skeleton=SKELETONS / "coco17.yaml")
+    how, out = {"camera": "left", "model": "theirs"}, tmp_path / "p.npz"
+    script["main"](paths, out, trim_s=(0.3, 0.6), **how)
+    assert keypoint_files.read_2d(out).time_s == pytest.approx([0.3, 0.4, 0.5])
+    with pytest.raises(InputError, match="trim the take"):
+        script["main"](paths, out, trim_s=None, **how)
 
 
 def test_one_file_more_than_frames_is_left_out(tmp_path, caplog):
