@@ -21,6 +21,7 @@ MOMENT = datetime(2024, 1, 2, 10, 11, 12)
         ("MVI_0007", "mvi_0007", None),
         ("GX010123", "gx010123", None),
         ("GOPR0123", "gopr0123", None),
+        ("C0001", "c0001", None),
         ("VID_20241399_996112", "", None),  # no moment
     ],
 )
@@ -42,7 +43,7 @@ def test_qualisys_says_camera_and_serial_number():
 
 
 @pytest.mark.parametrize(
-    "stem", ["cam01", "left", "smash1_left", "IMG", "gx12", "2024", "take_2024_01", "GX0101234x"]
+    "stem", ["cam01", "c01", "smash1_left", "IMG", "gx12", "2024", "take_2024_01", "GX0101234x"]
 )
 def test_usual_names_are_nobodys(stem):
     assert device_names.read(stem) is None

@@ -114,6 +114,16 @@ def test_numbers_that_each_camera_counts_for_itself():
     }
 
 
+@pytest.mark.parametrize("numbers", [(1, 2, 7, 8), (1, 2, 1, 2)])
+def test_sony_counts_in_the_folder_of_each_camera(numbers):
+    folders = ("left", "left", "right", "right")
+    names = [f"{f}/C{number:04d}.MP4" for f, number in zip(folders, numbers, strict=True)]
+    found = guess(*names)
+    assert found.cameras == ["left", "right"]
+    takes = [paths(take) for take in found.takes.values()]
+    assert takes == [{"left": names[k], "right": names[k + 2]} for k in range(2)]
+
+
 def test_a_walk_that_players_walk_is_a_take():
     found = guess("walk01_cam1.mp4", "walk01_cam2.mp4")
     assert list(found.takes) == ["walk01"]

@@ -72,6 +72,7 @@ FORMS: tuple[tuple[re.Pattern, Callable[[re.Match], dict]], ...] = (
     ),
     (re.compile(rf"{EDGE}(?:(?:VID|PXL|MVIMG|IMG)_)?{DATE}_{TIME}(?:\d{{3}})?{END}"), _moment),
     (re.compile(rf"{EDGE}(?:IMG|MVI|DSC|DSCN|MOV)_?\d{{4,5}}{END}", re.IGNORECASE), _nothing),
+    (re.compile(rf"{EDGE}C\d{{4}}{END}", re.IGNORECASE), _nothing),  # Sony
 )
 
 
