@@ -155,6 +155,16 @@ def test_photos_of_the_empty_court_are_static():
     assert set(found.static) == {"tall", "low"}
 
 
+def test_pictures_of_the_empty_court_may_be_counted():
+    found = guess(
+        "left_empty_01.mp4", "right_empty_01.mp4", "right_empty_02.mp4", "a_left.mp4", "a_right.mp4"
+    )
+    assert paths(found.static) == {"left": "left_empty_01.mp4", "right": "right_empty_01.mp4"}
+    assert paths(found.takes["a"]) == {"left": "a_left.mp4", "right": "a_right.mp4"}
+    assert [r.path for r, _ in found.unused] == ["gym/right_empty_02.mp4"]
+    assert not found.walks
+
+
 def test_what_fits_nowhere_is_told():
     found = guess("cam1_a.mp4", "cam2_a.mp4", "cam1_b.mp4", "chess", "more.csv", "court.csv")
     told = {recording.path: why for recording, why in found.unused}

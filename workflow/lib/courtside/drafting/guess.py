@@ -182,7 +182,7 @@ def _camera_words(
 ) -> Words:
     """Return the words that name each camera, by the camera's name."""
     empty = [r for r in recordings if r.kind in ("video", "photo") and _has(r, STATIC)]
-    names = [tuple(w for w in own[r.path] if w not in STATIC) for r in empty]
+    names = [tuple(w for w in own[r.path] if _uncounted(w) not in STATIC) for r in empty]
     if not any(names):
         known = [tuple(w for w in own[r.path] if CAMERA.fullmatch(w))[-1:] for r in videos]
         names = known if len(set(filter(None, known))) > 1 else _differing(videos, own)
@@ -212,7 +212,11 @@ def _camera_of(words: tuple[str, ...], cameras: Words) -> tuple[str | None, tupl
 
 
 def _has(recording: Recording, vocabulary: Container[str]) -> bool:
-    return any(re.sub("[0-9]+$", "", word) in vocabulary for word in recording.words)
+    return any(_uncounted(word) in vocabulary for word in recording.words)
+
+
+def _uncounted(word: str) -> str:
+    return re.sub("[0-9]+$", "", word)
 
 
 def _sort_pictures(
