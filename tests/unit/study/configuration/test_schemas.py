@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from courtside.study.configuration import schemas
+from courtside.study.configuration import configuration, schemas
 from courtside.study.errors import InputError
 
 CONFIG = schemas.SCHEMAS.parents[1] / "config"
@@ -88,6 +88,18 @@ def test_names_and_kinds_of_values_are_described_in_words():
     session = {"court": "Badminton", "cameras": {}, "takes": {"Take 1": None, "t": {"trim_s": 1}}}
     found = schemas.faults(session, "session", Path("s.yaml"))
     assert "s.yaml: court: expected 'none' or a file of config/courts, found 'Badminton'" in found
-    name = "at most 64 lower-case letters, digits, _ and -; no device of Windows such as con"
+    name = "at most 64 lower-case letters, digits, _ and -; no device of Windows such as con, and "
+    name += "none of na, nan, none and null"
     assert f"s.yaml: takes: expected {name}, found 'Take 1'" in found
     assert any("takes.t.trim_s: expected a list ([start, stop] in" in line for line in found)
+
+
+@pytest.mark.parametrize("name", ["na", "nan", "none", "null"])
+def test_no_name_is_read_as_a_missing_value(name):
+    session = {"court": "none", "cameras": {name: {}}, "takes": {name: {}}, "subjects": {name: {}}}
+    found = schemas.faults(session, "session", Path("s.yaml"))
+    for key in ("cameras", "takes", "subjects"):
+        (line,) = [line for line in found if line.startswith(f"s.yaml: {key}: expected at most 64")]
+        assert line.endswith(f"and none of na, nan, none and null, found {name!r}")
+    assert not configuration.NAME.fullmatch(name)
+    assert configuration.NAME.fullmatch(f"{name}1")

@@ -58,8 +58,9 @@ def write(path: Path, content: str) -> None:
     """
     if not configuration.NAME.fullmatch(path.stem) or path.stem in configuration.RESERVED:
         raise InputError(
-            f"{path.stem}: expected a session's name of a-z, 0-9, _ and -, none of "
-            f"{configuration.RESERVED}, found another; give one by --name"
+            f"{path.stem}: expected a session's name of at most 64 of a-z, 0-9, _ and -, no "
+            "device of Windows such as con, and none of na, nan, none, null, "
+            f"{', '.join(configuration.RESERVED)}, found another; give one by --name"
         )
     try:
         with path.open("x", encoding="utf-8") as stream:

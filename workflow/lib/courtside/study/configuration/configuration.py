@@ -22,8 +22,11 @@ from courtside.study.execution.artefacts import Artefact
 # Folders of results/ that are no session.
 RESERVED = ("external", "networks", "run", "figures", "virtual", "plans")
 
-# Names of folders and files: none leaves its folder, is an option, or a device of Windows.
-NAME = re.compile(r"(?!(?:con|prn|aux|nul|com[0-9]|lpt[0-9])\Z)[a-z0-9][a-z0-9_-]{0,63}")
+# Names of folders and files: none leaves its folder, is an option, or a device of Windows; and none
+# is read as a missing value where a table holds it.
+NAME = re.compile(
+    r"(?!(?:con|prn|aux|nul|com[0-9]|lpt[0-9]|na|nan|none|null)\Z)[a-z0-9][a-z0-9_-]{0,63}"
+)
 
 
 def load(config: Content, config_file: str, folder: StrPath, root: StrPath = ".") -> Study:
