@@ -198,6 +198,25 @@ def test_files_that_are_not_used_are_told_at_once():
     assert not any("Not used" in line for line in said)
 
 
+def test_names_that_a_session_may_not_have_are_replaced():
+    long = "practice of the second team before the regional finals " * 2
+    names = [f"{long} {k} {camera}" for k in (1, 2) for camera in ("left", "right")]
+    names += [f"{take}_{camera}" for take in ("con", "nul") for camera in ("left", "right")]
+    files = [recording(f"data/north/{name}.mp4") for name in names]
+    files += [recording(f"data/north/{end}.mp4") for end in (f"walk {long}1", f"walk {long}2")]
+    _, _, content = draft(*files)
+    first, second, *others = content["takes"]
+    assert first == "practice_of_the_second_team_before_the_regional_finals"
+    assert second == f"{first}_2"
+    assert others == ["take3", "take4"]
+    assert [len(name) for name in content["walks"]] == [55, 57]
+
+
+def test_files_of_devices_whose_names_are_replaced_are_takes_of_their_own():
+    found, _, _ = draft(*(recording(f"data/x/{name}.bvh", "bvh") for name in ("con", "nul")))
+    assert sorted(take for take, *_ in found.devices) == ["take1", "take2"]
+
+
 def test_a_folder_without_recordings_says_what_is_there():
     with pytest.raises(
         InputError, match=r"data/north: expected videos, .* found none; put"
@@ -219,7 +238,7 @@ def test_nothing_is_written_over(tmp_path):
     assert path.read_text() == "mine"
 
 
-@pytest.mark.parametrize("name", ["North", "external", "a b", ".yaml"])
+@pytest.mark.parametrize("name", ["North", "external", "a b", ".yaml", "nan"])
 def test_a_session_needs_a_name_that_it_may_have(tmp_path, name):
     with pytest.raises(InputError, match="--name"):
         session_draft.write(tmp_path / f"{name}.yaml", draft(*TAKE)[1])

@@ -44,6 +44,9 @@ def test_names_are_split_into_words(parts, expected):
         ("体育館 2", "session1"),
         ("🏸", "session1"),
         ("", "session1"),
+        ("Con", "session1"),  # a device of Windows
+        ("NULL", "session1"),  # a missing value in tables
+        ("a" * 54 + " b", "a" * 54),
     ],
 )
 def test_names_are_such_as_a_configuration_accepts(text, expected):

@@ -392,7 +392,7 @@ def _sort_others(found: Guess, recordings: Iterable[Recording], own: Words) -> N
             near = [t for t in found.takes if set(words_of([t])) & words]
             only = list(found.takes) if len(found.takes) == 1 and not alone else [""]
             if alone:  # a session of devices: files of one name are one take
-                only = [names.name("_".join(words_of(recording.parts[-1:])), "take1")]
+                only = ["_".join(words_of(recording.parts[-1:])) or "take1"]
                 found.takes.setdefault(only[0], {})
                 near = []
             device = {"bvh": "mocopi", "bag": "realsense"}[recording.kind]

@@ -9,6 +9,9 @@ import re
 import unicodedata
 from collections.abc import Collection, Iterable, Iterator
 
+from courtside.study.configuration import configuration
+
+LONGEST = 55  # of the 64 letters of a name; the others are for `walk_` and the number of `distinct`
 WORD = re.compile(r"[A-Za-z]+[0-9]*|[0-9]+|[^\W\d_]+")
 LETTERS = {"ß": "ss", "æ": "ae", "œ": "oe", "ø": "o", "đ": "d", "ł": "l", "þ": "th"}
 MEANINGS = {  # longer ones are looked for first
@@ -64,14 +67,15 @@ def words_of(parts: Iterable[str]) -> tuple[str, ...]:
 def name(text: str, otherwise: str) -> str:
     """Make a name that a configuration accepts: `a-z0-9_`, begun with a letter or digit.
 
-    `otherwise` is the name of a text without a letter or digit, and of one with Chinese characters
-    that are not known.
+    `otherwise` is the name of a text without a letter or digit, of one with Chinese characters that
+    are not known, and of one that no name may be, such as `con`. Long texts are cut.
     """
     plain = _plain(text)
     if any(_script(letter) == "CJK" for letter in plain):
         return otherwise
     spelled = "".join(_spelled(letter) for letter in plain)
-    return "_".join(re.findall("[a-z0-9]+", spelled.lower())) or otherwise
+    found = "_".join(re.findall("[a-z0-9]+", spelled.lower()))[:LONGEST].rstrip("_")
+    return found if configuration.NAME.fullmatch(found) else otherwise
 
 
 def distinct(wanted: str, taken: Collection[str]) -> str:
