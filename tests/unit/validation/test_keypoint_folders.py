@@ -43,9 +43,12 @@ def test_one_file_too_many_is_a_remark_and_two_are_a_fault(said):
 
 
 def test_files_beyond_the_trimmed_part_are_not_missed(said):
-    faults, (remark,) = said({"a": 100}, trim_s=(0.0, 5.0), a=range(51))
+    faults, (remark,) = said({"a": 100}, trim_s=(0.0, 5.0), a=range(50))
     assert faults == []
-    assert "51 files for 100 frames" in remark
+    assert "50 files for 100 frames" in remark
+    (fault,), remarks = said({"b": 100}, trim_s=(0.0, 5.0), b=range(49))
+    assert remarks == []
+    assert "or let `trim_s` end with them" in fault
 
 
 def test_a_video_whose_frames_were_not_counted_says_nothing(said):

@@ -1,5 +1,6 @@
 """Folders of 2D keypoints of another program: their files against the frames of the videos."""
 
+import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
@@ -50,7 +51,10 @@ def _against_videos(
 
 
 def _n_needed(take: Take, look: Glance) -> int | None:
-    return int(take.trim_s[1] * look.rate_hz) + 1 if take.trim_s and look.rate_hz else None
+    """Return the number of frames before the end of the trimmed part, None where it has none."""
+    if not take.trim_s or not look.rate_hz:
+        return None
+    return math.ceil(take.trim_s[1] * look.rate_hz - 1e-6)  # the rate is rounded
 
 
 def _against_each_other(folders: Mapping[str, str]) -> Iterator[str]:
