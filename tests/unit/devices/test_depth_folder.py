@@ -63,6 +63,11 @@ def test_a_folder_is_read(folder):
     assert (np.diff(found.colour_index().number) == 1).all()
 
 
+def test_files_that_macos_adds_are_no_pictures(folder):
+    (folder / "depth" / "._0000.png").write_bytes(b"\x00\x05")
+    assert len(list(depth_folder.read(folder).depth_frames())) == N
+
+
 def test_frame_times_come_from_the_tables(folder):
     (folder / "colour.csv").write_text("number,time_s\n7,1.0\n8,1.1\n9,1.2\n11,1.4\n12,1.5\n")
     (folder / "depth.csv").write_text("number,time_s\n7,1.01\n8,1.11\n10,1.31\n11,1.41\n")

@@ -61,6 +61,12 @@ def folders(root, **numbers):
     return {name: root / name for name in numbers}
 
 
+def test_files_that_macos_adds_are_none(tmp_path):
+    (folder,) = folders(tmp_path, a=range(3)).values()
+    (folder / "._f_000000.json").touch()
+    assert list(frame_numbers.numbered(folder)) == [0, 1, 2]
+
+
 def test_without_videos_all_cameras_count_together(tmp_path):
     assert frame_numbers.common(folders(tmp_path, a=range(5, 9), b=range(4, 8))) == range(4, 9)
 

@@ -75,6 +75,7 @@ def test_folders_of_keypoints_are_found(tmp_path):
             people = [{"pose_keypoints_2d": [5.0, 9.0, 0.8] * count}] * bool(count)
             file = tmp_path / "pose" / name / f"cam1_{at:06d}.json"
             file.write_text(json.dumps({"version": 1.3, "people": people}))
+    (tmp_path / "pose" / "cam1_json" / "._cam1_000000.json").write_bytes(b"\x00\x05")  # of macOS
     (tmp_path / "other").mkdir()
     for at in range(3):
         (tmp_path / "other" / f"{at}.json").write_text("{}")

@@ -115,7 +115,7 @@ def _film(folder: Path) -> Path:
 
 
 def _pictures(folder: Path) -> list[Path]:
-    found = sorted(folder.glob("*.png"))
+    found = sorted(folder.glob("[!.]*.png"))
     if not found:
         raise InputError(f"{folder}: expected 16-bit PNG pictures of depth, found none; add them")
     return found

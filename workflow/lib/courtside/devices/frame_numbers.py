@@ -83,7 +83,7 @@ def numbered(folder: StrPath) -> dict[int, Path]:
     if not (folder := Path(folder)).is_dir():
         raise InputError(f"{folder}: expected a folder of JSON files, found none; correct the path")
     files: dict[int, Path] = {}
-    for path in sorted(folder.glob("*.json")):
+    for path in sorted(folder.glob("[!.]*.json")):
         digits = re.findall(r"[0-9]+", path.stem)
         if not digits:
             raise InputError(

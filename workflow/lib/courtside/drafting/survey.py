@@ -101,7 +101,7 @@ def _photos(path: Path) -> dict[str, Any]:
 
 def _keypoints(path: Path) -> dict[str, Any] | None:
     """Describe a folder of 2D keypoints of another program; None if its files are others."""
-    if not openpose.is_one(next(iter(sorted(path.glob("*.json"))))):
+    if not openpose.is_one(next(iter(sorted(path.glob("[!.]*.json"))))):
         return None
     skeletons, n_files = openpose.skeletons(path), len(frame_numbers.numbered(path))
     return {"kind": "keypoints", "n_frames": n_files, "skeleton": skeletons}
