@@ -26,6 +26,13 @@ def test_rows_of_one_place_are_one_point(tmp_path):
     assert found.of("left").tolist() == [0] and found.of("right").tolist() == [0, 1]
 
 
+def test_survey_coordinates_keep_their_millimetres(tmp_path):
+    text = HEADER + "left,1,2,452130.10,5411200.251,0\nleft,3,4,452130.40,5411200.251,-0.0001\n"
+    found = read(tmp_path, text + "right,5,6,452130.1,5411200.2513,-0.0\n")
+    assert found.points == ("(452130.1, 5411200.251, 0)", "(452130.4, 5411200.251, 0)")
+    assert found.of("right").tolist() == [0]
+
+
 def test_points_may_have_names(tmp_path):
     text = "point,x_m,y_m,z_m,camera,x_px,y_px\npost,1,2,1.5,left,7,8\n"
     found = read(tmp_path, text)

@@ -66,4 +66,5 @@ def read(path: StrPath, cameras: Sequence[str]) -> PlacedPoints:
 
 
 def _name(place: Sequence[float]) -> str:
-    return "(" + ", ".join(f"{round(value, 3):g}" for value in place) + ")"
+    # 12 digits keep the millimetres of survey coordinates; adding 0 makes -0 to 0.
+    return "(" + ", ".join(f"{round(value, 3) + 0.0:.12g}" for value in place) + ")"
