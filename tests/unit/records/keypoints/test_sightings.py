@@ -59,6 +59,7 @@ def test_faults_name_file_and_line(tmp_path, line, words):
     [
         ("walk,p1,left,1,1,1,3,2", "expected from_s before to_s, found 3.0 and 2.0"),
         ("walk,p1,left,9,1,1,1,2", "expected time_s from from_s to to_s, found 9.0"),
+        ("walk,p1,left,-1,1,1,0,2", "expected time_s from from_s to to_s, found -1.0"),
     ],
 )
 def test_bounds_hold_the_time(tmp_path, line, words):

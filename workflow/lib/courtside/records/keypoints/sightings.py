@@ -54,7 +54,8 @@ def read(
             raise InputError(
                 f"{where}: expected from_s before to_s, found {start_s} and {stop_s}; correct them"
             )
-        if not (start_s or -math.inf) <= time_s <= (math.inf if stop_s is None else stop_s):
+        low_s = -math.inf if start_s is None else start_s
+        if not low_s <= time_s <= (math.inf if stop_s is None else stop_s):
             raise InputError(
                 f"{where}: expected time_s from from_s to to_s, found {time_s}; correct it"
             )
