@@ -46,10 +46,26 @@ def test_one_point_is_enough_and_none_changes_nothing():
 
 def test_faces_are_hidden_where_they_are():
     image = np.random.default_rng(0).integers(0, 255, (200, 300, 3)).astype(np.uint8)
-    face = np.array([[100.0, 100.0], [110.0, 104.0]])
-    hidden = privacy.hide_faces(image, [face, np.full((2, 2), np.nan)])
+    person = np.array([[100.0, 100.0], [110.0, 104.0], [100.0, 190.0]])
+    hidden = privacy.hide_faces(image, np.stack([person, np.full((3, 2), np.nan)]), (0, 1))
     assert (hidden[98:106, 98:106] != image[98:106, 98:106]).any()
     np.testing.assert_array_equal(hidden[:60], image[:60])
+
+
+@pytest.mark.parametrize("height_px", [100, 400])
+def test_one_joint_hides_a_whole_face(height_px):
+    """A nose alone, as of networks that see no ears: a head is as large as the body says."""
+    image = np.random.default_rng(0).integers(0, 255, (480, 640, 3), dtype=np.uint8)
+    nose, neck, ankle = [320.0, 40.0], [320.0, 40 + 0.1 * height_px], [320.0, 40 + height_px]
+    person = np.array([nose, neck, ankle])
+    sharp = privacy.only_persons(image, person[None], [(0, 1), (1, 2)])
+    hidden = privacy.hide(image, person[None], [(0, 1), (1, 2)], person[None], [0])
+    rows, columns = np.mgrid[:480, :640]
+    apart = np.hypot(columns - 320, rows - 40)
+    head = apart <= 0.09 * height_px
+    assert (hidden[head] != image[head]).any(axis=1).mean() > 0.95
+    away = apart > 0.09 * height_px + 2
+    np.testing.assert_array_equal(hidden[away], sharp[away])
 
 
 def test_without_a_person_all_is_coarse():
@@ -62,7 +78,8 @@ def test_without_a_person_all_is_coarse():
 def test_a_person_stays_sharp_without_a_face():
     image = noise()
     person = np.array([[160.0, 100.0], [160.0, 200.0]])
-    hidden = privacy.hide(image, person[None], [(0, 1)], [FACE])
+    everybody = np.concatenate([FACE, person])[None]
+    hidden = privacy.hide(image, person[None], [(0, 1)], everybody, range(len(FACE)))
     np.testing.assert_array_equal(hidden[150:190, 158:163], image[150:190, 158:163])
     assert detail(hidden[101:114, 154:167]) < 0.25 * detail(image)
     assert detail(hidden[:, 220:]) < 0.35 * detail(image)

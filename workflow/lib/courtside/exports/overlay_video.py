@@ -32,7 +32,8 @@ class Track:
     detected: NDArray  # (P, T, J, 2): px; NaN where missing
     reprojected: NDArray  # (P, T, J, 2): px; NaN where missing
     used: NDArray  # (P, T, J) bool: whether the 3D point rests on this camera's keypoint
-    faces: NDArray  # (F, T, K, 2): joints of all faces that may be in the picture, px, gaps bridged
+    everybody: NDArray  # (F, T, J, 2): all whose faces may be in the picture, px, gaps bridged
+    face: tuple[int, ...]  # indices of its joints
     bones: tuple[tuple[int, int], ...]
 
 
@@ -55,8 +56,7 @@ def track(seen: Footage, points: Keypoints3D, skeleton: Skeleton) -> Track:
             reprojected[:, frame] = project(seen.standing(frame), xyz[:, frame])
     at = np.interp(reference_s, points.time_s, np.arange(len(points.time_s))).round().astype(int)
     column = points.cameras.tolist().index(camera.name)
-    face = [skeleton.index(joint) for joint in skeleton.groups["face"]]
-    faces = np.concatenate([view.xy[:, :, face], reprojected[:, :, face]])
+    everybody = np.concatenate([view.xy, reprojected])
     return Track(
         camera.name,
         view.time_s,
@@ -64,7 +64,8 @@ def track(seen: Footage, points: Keypoints3D, skeleton: Skeleton) -> Track:
         assigned.xy,
         reprojected,
         points.accepted[..., column][:, at],
-        np.array([bridged(view.time_s, one) for one in faces]).reshape(-1, *faces.shape[1:]),
+        np.array([bridged(view.time_s, one) for one in everybody]).reshape(everybody.shape),
+        tuple(skeleton.index(joint) for joint in skeleton.groups["face"]),
         tuple(skeleton.bone_indices()),
     )
 
@@ -129,10 +130,11 @@ def pictures(
                 f"found the nearest at {track.own_s[at]:.4f} s; detect the pose in this video again"
             )
         if hide_faces and keep_background:
-            image = privacy.hide_faces(image, track.faces[:, at])
+            image = privacy.hide_faces(image, track.everybody[:, at], track.face)
         elif hide_faces:
             persons = np.concatenate([track.detected[:, at], track.reprojected[:, at]])
-            image = privacy.hide(image, persons, track.bones, track.faces[:, at])
+            everybody = track.everybody[:, at]
+            image = privacy.hide(image, persons, track.bones, everybody, track.face)
         yield _drawn(image, track, at, colours)
 
 

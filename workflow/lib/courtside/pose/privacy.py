@@ -1,6 +1,6 @@
 """Pictures in which nobody can be recognised: faces hidden, surroundings made coarse."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import cv2
 import numpy as np
@@ -11,16 +11,20 @@ from courtside.pose import stick_drawing
 # ASSUME: these cover hair, chin and limbs, and leave nothing to recognise.
 REACH = 1.6  # radius of the mosaic, of the distance from the face's centre to its furthest joint
 LEAST_SHARE = 0.012  # of the picture's height: the smallest radius
+# Of a person's extent: the smallest radius, 15 cm, where few joints of a face are known. It covers
+# the disc around a joint that stays sharp (half of BODY).
+HEAD = 0.09
 GRAIN = 8  # mosaic cells across the face
 COARSE = 1 / 60  # of the picture's height: cells that surroundings are reduced to
 BODY = 0.18  # of a person's extent: width of the body around its bones
 
 
-def blur_face(image: NDArray, xy_face: NDArray) -> NDArray:
+def blur_face(image: NDArray, xy_face: NDArray, extent_px: float = 0.0) -> NDArray:
     """Return a new picture with the face hidden under a mosaic.
 
-    `xy_face` (K, 2) px are joints of one face; NaN are ignored. A mosaic of at most 8 cells across
-    destroys the detail; a Gaussian blur could be sharpened again.
+    `xy_face` (K, 2) px are joints of one face; NaN are ignored. `extent_px` is that of the whole
+    person, 0 if unknown. A mosaic of at most 8 cells across destroys the detail; a Gaussian blur
+    could be sharpened again.
     """
     known = xy_face[np.isfinite(xy_face).all(axis=1)]
     result = image.copy()
@@ -28,7 +32,7 @@ def blur_face(image: NDArray, xy_face: NDArray) -> NDArray:
         return result
     centre = (known.min(axis=0) + known.max(axis=0)) / 2
     reach = REACH * np.linalg.norm(known - centre, axis=1).max(initial=0.0)
-    radius = int(np.ceil(max(reach, LEAST_SHARE * image.shape[0])))
+    radius = int(np.ceil(max(reach, HEAD * extent_px, LEAST_SHARE * image.shape[0])))
     x, y = np.round(centre).astype(int)
     top, left = max(0, y - radius), max(0, x - radius)
     patch = result[top : max(0, y + radius + 1), left : max(0, x + radius + 1)]
@@ -44,11 +48,21 @@ def blur_face(image: NDArray, xy_face: NDArray) -> NDArray:
     return result
 
 
-def hide_faces(image: NDArray, xy_of_faces: Iterable[NDArray]) -> NDArray:
-    """Return a picture with faces hidden, given the joints (K, 2) of each; NaN are ignored."""
-    for xy in xy_of_faces:
-        image = blur_face(image, np.asarray(xy))
+def hide_faces(image: NDArray, everybody: NDArray, face: Sequence[int]) -> NDArray:
+    """Return a picture with the faces of all people hidden.
+
+    `everybody` (n, J, 2) are joints, px, NaN where unknown; `face` are the indices of those of the
+    face.
+    """
+    for xy in everybody:
+        image = blur_face(image, xy[list(face)], _extent_px(xy))
     return image
+
+
+def _extent_px(xy: NDArray) -> float:
+    """Return the longer side of the box around a person's joints (J, 2) px; 0 if none is known."""
+    known = xy[stick_drawing.drawable(xy)]
+    return float(np.ptp(known, axis=0).max()) if len(known) else 0.0
 
 
 def only_persons(image: NDArray, persons: NDArray, bones: Sequence[tuple[int, int]]) -> NDArray:
@@ -65,10 +79,8 @@ def only_persons(image: NDArray, persons: NDArray, bones: Sequence[tuple[int, in
     result = cv2.resize(small, (width, height), interpolation=cv2.INTER_LINEAR)
     sharp = np.zeros((height, width), np.uint8)
     for xy in persons:
-        known = stick_drawing.drawable(xy)
-        if known.any():
-            wide = max(2, round(BODY * np.ptp(xy[known], axis=0).max()))
-            stick_drawing.draw(sharp, [xy], bones, 255, wide, wide // 2)
+        wide = max(2, round(BODY * _extent_px(xy)))
+        stick_drawing.draw(sharp, [xy], bones, 255, wide, wide // 2)
     cv2.copyTo(image, sharp, result)
     return result
 
@@ -77,7 +89,11 @@ def hide(
     image: NDArray,
     persons: NDArray,
     bones: Sequence[tuple[int, int]],
-    xy_of_faces: Iterable[NDArray],
+    everybody: NDArray,
+    face: Sequence[int],
 ) -> NDArray:
-    """Return a picture in which neither these persons nor anybody else can be recognised."""
-    return hide_faces(only_persons(image, persons, bones), xy_of_faces)
+    """Return a picture in which neither these persons nor anybody else can be recognised.
+
+    `persons` and `bones` are as for `only_persons`, `everybody` and `face` as for `hide_faces`.
+    """
+    return hide_faces(only_persons(image, persons, bones), everybody, face)

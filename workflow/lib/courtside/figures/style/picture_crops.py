@@ -46,9 +46,11 @@ def read(
     _, image = reader.read_frame(video, time_s)
     if not hidden:
         return image
-    face = [skeleton.index(name) for name in skeleton.groups["face"]]
-    faces = np.concatenate([xy[:, face] for xy in persons], axis=1)
-    return privacy.hide(image, np.concatenate(persons), skeleton.bone_indices(), faces)
+    # The joints of all methods side by side: one face of each person.
+    everybody, bones = np.concatenate(persons, axis=1), skeleton.bone_indices()
+    starts = range(0, everybody.shape[1], len(skeleton.joints))
+    face = [at + skeleton.index(name) for at in starts for name in skeleton.groups["face"]]
+    return privacy.hide(image, np.concatenate(persons), bones, everybody, face)
 
 
 def at_frame(

@@ -82,7 +82,7 @@ def pictures(
     ):
         for person, column in wanted[frame]:
             xy = view.xy[index[person, frame], frame]
-            hidden = privacy.hide(image, xy[None], bones, view.xy[:, frame, face])
+            hidden = privacy.hide(image, xy[None], bones, view.xy[:, frame], face)
             known = xy[np.isfinite(xy).all(axis=1)]
             middle = np.median(known, axis=0)
             yield Shot(
