@@ -95,30 +95,35 @@ def one_sided(values):
     return np.mean(values) + stats.norm.ppf(0.95) * np.std(values) / np.sqrt(len(values))
 
 
+def limit_of(values, hall=0, structure=0, draw=None):
+    """Return the limit of trials; without `draw` each is another person's."""
+    made = pd.DataFrame({"value": values, "hall": hall, "structure": structure, "session": "s"})
+    return calibration.upper_limit(made.assign(draw=range(len(made)) if draw is None else draw))
+
+
 def test_the_limit_for_one_structure_matches_the_textbook():
     values = np.random.default_rng(1).normal(0.05, 0.2, 100)
-    limit = calibration.upper_limit(values, np.zeros(100), np.zeros(100))
-    assert abs(limit - one_sided(values)) < 0.005
+    assert abs(limit_of(values) - one_sided(values)) < 0.005
 
 
-def test_trials_of_one_scene_do_not_count_as_independent():
-    scenes = np.random.default_rng(2).normal(0, 1, 25)
-    values, scene = np.repeat(scenes, 40), np.repeat(np.arange(25), 40)
-    limit = calibration.upper_limit(values, scene, np.zeros(1000))
-    assert abs(limit - one_sided(scenes)) < 0.04
+def test_trials_of_one_hall_do_not_count_as_independent():
+    halls = np.random.default_rng(2).normal(0, 1, 25)
+    values = np.repeat(halls, 40)
+    limit = limit_of(values, hall=np.repeat(np.arange(25), 40))
+    assert abs(limit - one_sided(halls)) < 0.04
     assert limit - np.mean(values) > 4 * (one_sided(values) - np.mean(values))
 
 
-def test_the_structure_counts_within_its_scene():
+def test_the_structure_counts_within_its_hall():
     structures = np.random.default_rng(3).normal(0, 1, 25)
-    values, structure = np.repeat(structures, 40), np.repeat(np.arange(25), 40)
-    limit = calibration.upper_limit(values, np.zeros(1000), structure)
+    structure, draw = np.repeat(np.arange(25), 40), np.tile(np.arange(40), 25)
+    limit = limit_of(np.repeat(structures, 40), structure=structure, draw=draw)
     assert abs(limit - one_sided(structures)) < 0.04
 
 
 def test_a_limit_needs_two_values():
-    assert calibration.upper_limit(np.full(5, 0.3), np.zeros(5), np.zeros(5)) == pytest.approx(0.3)
-    assert np.isnan(calibration.upper_limit(np.array([0.3, np.nan]), np.zeros(2), np.zeros(2)))
+    assert limit_of(np.full(5, 0.3)) == pytest.approx(0.3)
+    assert np.isnan(limit_of([0.3, np.nan]))
 
 
 OUT = ("sfm", 18, False)

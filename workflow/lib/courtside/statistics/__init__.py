@@ -4,5 +4,6 @@ agreement: `pair`, `compare`, `verdict`, `limits`, `smallest_detectable_change`
 longitudinal: `read`, `of_subject`, `over_sessions`, `errors_of_measurement`, `changes`,
     `of_study`, `labelled`, `check_single`
 autocorrelation: `share`, `interval`, `frames_per_trial`, `covariance_of_sum`, `distinct`
+intervals: `bootstrap`: of averages over halls, whose trials share pictures and persons
 moving_blocks: `frames`: takes drawn again, for intervals
 """

@@ -4,7 +4,6 @@ register: `Number`, `Source`, `listed`, `read`, `write`, `stale`: the register, 
 markers: `View`, `render`, `fill`: tables of documents, filled from the register
 views: `VIEWS`: the columns of each table; those of stated numbers stand in `stated`
 study: `numbers`, `summary`, `write`, `filled`, `report`: all of them
-intervals: `bootstrap`: intervals over halls
 calibration: `calibrations`, `ways`, `growth`, `strengths`, `capture`
 players: `sessions`, `takes`, `angles`, `measures`, `held`
 footage: `corrections`, `joints`, `views`: raw and corrected joints, real beside virtual

@@ -4,11 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
-from courtside.evaluation.numbers import intervals
 from courtside.evaluation.numbers.register import Builder, Cut, Number, Settings, Source
 from courtside.evaluation.tables import calibration
+from courtside.statistics import intervals
 
 TABLE = "figures/calibration.csv"
 N_REFERENCE = 40  # images of the walk
@@ -130,16 +129,15 @@ def differences(rows: pd.DataFrame, part: str = "walk18") -> pd.DataFrame:
 def _difference(build: Builder, row: str, rows: pd.DataFrame, cut: Cut) -> None:
     for part in ("walk18", "walk3"):
         pairs = differences(rows, part)
-        halls = [v.dropna().to_numpy() for _, v in pairs.groupby("hall")["value"]]
-        halls = [values for values in halls if len(values)]
-        if not halls:
+        means = pairs.groupby("hall")["value"].mean()
+        if means.isna().all():
             continue
-        low, high = intervals.bootstrap(pairs, intervals.mean)
+        low, high = intervals.bootstrap(pairs, np.nanmean)
         count: Settings = {"n": int(pairs["value"].notna().sum()), "unit": "cm"}
         count["n_failed"] = len(pairs) - count["n"]
         name = f"{part}_less_known18"
         where = f"{part} less known18, same clicks"
-        build.add(row, name, intervals.mean(halls), cut, f"{where}: mean", **count)
+        build.add(row, name, means.mean(), cut, f"{where}: mean", **count)
         build.add(row, f"{name}_from", low, cut, f"{where}: 95 % interval", **count)
         build.add(row, f"{name}_to", high, cut, f"{where}: 95 % interval", **count)
 
@@ -147,21 +145,17 @@ def _difference(build: Builder, row: str, rows: pd.DataFrame, cut: Cut) -> None:
 def _together(build: Builder, row: str, rows: pd.DataFrame, cut: Cut) -> None:
     """Add medians over halls, their intervals, and the worst hall's median."""
     for part, of in rows.groupby("part", sort=False):
-        halls: list[NDArray] = [v.dropna().to_numpy() for _, v in of.groupby("hall")["value"]]
-        there = [values for values in halls if len(values)]
-        if part not in OVER_HALLS or not there:
+        medians = of.groupby("hall")["value"].median()
+        if part not in OVER_HALLS or medians.isna().all():
             continue
-        n = sum(map(len, there))
+        n = int(of["value"].notna().sum())
         count: Settings = {"n": n, "n_failed": len(of) - n, "unit": "cm"}
         where = f"{part}, volume_rms_cm"
-        middle = intervals.median(there)
-        build.add(row, str(part), middle, cut, f"{where}: median over halls", **count)
-        for end, value in zip(
-            ("from", "to"), intervals.bootstrap(of, intervals.median), strict=True
-        ):
-            build.add(row, f"{part}_{end}", value, cut, f"{where}: 95 % interval", **count)
-        worst = max(float(np.median(values)) for values in there)
-        build.add(row, f"{part}_worst", worst, cut, f"{where}: worst hall", **count)
+        low, high = intervals.bootstrap(of, np.nanmedian)
+        build.add(row, str(part), medians.median(), cut, f"{where}: median over halls", **count)
+        build.add(row, f"{part}_from", low, cut, f"{where}: 95 % interval", **count)
+        build.add(row, f"{part}_to", high, cut, f"{where}: 95 % interval", **count)
+        build.add(row, f"{part}_worst", medians.max(), cut, f"{where}: worst hall", **count)
     _difference(build, row, rows, cut)
 
 

@@ -7,6 +7,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from courtside.evaluation import calibration
+from courtside.statistics import intervals
 from courtside.study.errors import StrPath
 
 TEXT = ("session", "preset", "layout", "condition", "mapper", "method", "outcome")
@@ -15,7 +16,6 @@ STRUCTURE = ["session", "condition", "mapper", "n_bridging", "offset"]
 # The uses of a structure from motion without a result, if no other structure of the table has one.
 USED = [(method, 18, in_sample) for method in ("sfm", "sim3") for in_sample in (True, False)]
 USUAL = pd.DataFrame([*USED, ("paper", 3, True)], columns=CHOICE)
-REPLICATES = 2000  # of the bootstrap: the limit is a 95 % quantile of them
 
 
 def read(paths: Sequence[StrPath], *, click_strength: float | None = 1.0) -> pd.DataFrame:
@@ -110,40 +110,9 @@ def against(rows: pd.DataFrame, reference: pd.DataFrame, on: list[str]) -> NDArr
     return (both["volume_rms_cm"] - both["volume_rms_cm_known"]).to_numpy(dtype=float)
 
 
-def upper_limit(difference: NDArray, scene: NDArray, structure: NDArray, *, seed: int = 0) -> float:
-    """Return the 95 % upper confidence limit of a mean difference, by bootstrap of nested clusters.
-
-    Of the differences (n,) NaN are left out; the limit is NaN for fewer than two. `scene` and
-    `structure` (n,) are labels: trials of one scene share its effects, trials of one structure its
-    images.
-
-    Scenes, then the structures within each, then the draws within each are resampled with
-    replacement; all scenes have equal weight, and all structures within a scene (Davison & Hinkley
-    1997, sec. 3.8). With one scene the limit holds for that scene only.
-    """
-    known = np.isfinite(difference)
-    if known.sum() < 2:
-        return np.nan
-    rng = np.random.default_rng(seed)
-    table = pd.DataFrame({"scene": np.asarray(scene), "structure": np.asarray(structure)})
-    table = table.assign(value=np.asarray(difference, dtype=float))[known]
-    means = []
-    for _, group in table.groupby("scene", dropna=False):
-        parts = [part["value"].to_numpy() for _, part in group.groupby("structure", dropna=False)]
-        of_structures = [_resampled_mean(rng, values[:, None]) for values in parts]
-        means.append(_resampled_mean(rng, of_structures))
-    return float(np.quantile(_resampled_mean(rng, means), 0.95))
-
-
-def _resampled_mean(rng: np.random.Generator, values: Sequence[NDArray] | NDArray) -> NDArray:
-    """Return means (REPLICATES,) of n drawn with replacement from values (n, REPLICATES) or (n, 1).
-
-    A cluster that is drawn twice has two resamples of its own.
-    """
-    values = np.asarray(values)
-    member = rng.integers(len(values), size=(REPLICATES, len(values)))
-    resample = rng.integers(values.shape[1], size=member.shape)
-    return values[member, resample].mean(axis=1)
+def upper_limit(trials: pd.DataFrame) -> float:
+    """Return the 95 % upper confidence limit of a mean, one-sided, of trials of `bootstrap`."""
+    return intervals.bootstrap(trials, np.nanmean, level=0.9)[1]
 
 
 SEEDS = ["seed", "walk_seed"]  # sessions of one condition that differ in these only are pooled
@@ -218,14 +187,15 @@ def _row(group: pd.DataFrame) -> dict:
 
 
 def _differences(group: pd.DataFrame, name: str) -> dict:
-    scene = group["session"]
-    if "seed" in group:  # walks through one scene share it; each other session is a scene
-        scene = group["seed"].astype(object).where(group["seed"].notna(), scene)
+    hall = group["session"]
+    if "seed" in group:  # walks through one hall share it; each other session is a hall
+        hall = group["seed"].astype(object).where(group["seed"].notna(), hall)
     structure = group["session"] + " " + group["offset"].fillna(0).astype(str)
+    trials = group.assign(hall=hall, structure=structure, value=group[name])
     found = spread(group[name])
     return {
         f"{name}_n": int(found["n"]),
         f"{name}_mean_cm": group[name].mean(),
-        f"{name}_upper_cm": upper_limit(group[name].to_numpy(), scene, structure),
+        f"{name}_upper_cm": upper_limit(trials),
         f"{name}_p95_cm": found["p95"],
     }
