@@ -19,8 +19,8 @@ def test_every_hall_has_its_median_and_its_difference_to_points_alone(found, val
     assert low.value <= -0.35 <= high.value < 0
 
 
-def test_choices_of_images_that_are_the_same_count_once(found, value):
-    assert value(found, "`plain-b`", "walk18").n == 2
+def test_choices_of_images_count_each_also_if_their_errors_are_the_same(found, value):
+    assert value(found, "`plain-b`", "walk18").n == 4
     assert value(found, "`plain-b`", "walk18_less_known18").value == pytest.approx(0.1)
 
 
@@ -42,7 +42,7 @@ def test_ways_growth_and_capture_take_all_sessions(source, value):
     assert value(ways, "18 known points, no walk; `plain-b`", "median").printed == "1.00"
     growth = calibration.growth(source)
     assert [n.printed for n in growth if n.part == "median"] == ["0.65", "1.10"]
-    assert value(growth, "`plain-b`, 1 x 40", "p95").n == 2
+    assert value(growth, "`plain-b`, 2 x 40", "p95").n == 4
     (row,) = {n.row for n in calibration.capture(source)}
     assert row == "baseline_deg 15: control points (scored points left out)"
 

@@ -47,8 +47,7 @@ def trials(
 
     Scored at points that were calibrated from; the volume is the same for all. `part`: the way;
     `hall`, `structure`; `value`: the error over the volume (cm), NaN where the trial failed;
-    `points`: its 95 % quantile over the points of the volume. Choices of images that turn out to be
-    the same are counted once.
+    `points`: its 95 % quantile over the points of the volume.
     """
     parts = []
     for session in sessions:
@@ -58,8 +57,7 @@ def trials(
         rows = rows[rows["in_sample"]]
         for part, (method, mapper, n_clicks) in WAYS.items():
             of = calibration.pick(rows, method=method, mapper=mapper, n_clicks=n_clicks)
-            alike = of.groupby("n_bridging", dropna=False, group_keys=False)
-            parts.append(alike[of.columns.tolist()].apply(_different).assign(part=part))
+            parts.append(of.assign(part=part))
     rows = pd.concat(parts, ignore_index=True)
     seed = rows["seed"].astype(object).fillna("").astype(str) if "seed" in rows else ""
     return rows.assign(
@@ -68,15 +66,6 @@ def trials(
         value=rows["volume_rms_cm"].astype(float),
         points=rows["volume_p95_cm"].astype(float),
     )
-
-
-def _different(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return trials of one way without the choices of images that repeat another one."""
-    kept: dict[tuple, float] = {}
-    for offset, of in rows.groupby("offset", dropna=False):
-        key = tuple(of.sort_values("draw")["volume_rms_cm"].fillna(-1.0))
-        kept.setdefault(key if max(key) > 0 else (offset,), offset)
-    return rows[rows["offset"].isin(list(kept.values()))]
 
 
 def sessions(source: Source) -> list[str]:
