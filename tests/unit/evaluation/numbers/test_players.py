@@ -61,4 +61,15 @@ def test_what_stated_errors_hold_is_told_for_large_errors_too(source, value):
     assert value(found, "joints, all sessions", "raw").printed == "95.0"
     large = value(found, "joints, all sessions", "raw_large")
     assert (large.printed, large.n) == ("50", 40)  # 60 % of 30 and 20 % of 10
-    assert {number.row for number in found[2:]} == {"joint angles, all sessions"}
+    assert {number.row for number in found if "all" in number.row} == {
+        "joints, all sessions", "joint angles, all sessions",
+    }  # fmt: skip
+
+
+def test_each_network_of_a_session_has_its_own_row_of_what_is_held(source, value):
+    found = [number for number in players.held(source) if "`repeats`" in number.row]
+    assert {number.row: number.printed for number in found if number.part == "raw"} == {
+        "joints, `repeats`": "96.0",
+        "joints, `repeats` (blazepose-full)": "99.0",
+    }
+    assert [number.printed for number in found if number.part == "raw_large"] == ["46", "49"]

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pandas as pd
+import pytest
 
 from courtside.evaluation import reliability as counting
 from courtside.figures.comparison import reliability
@@ -15,9 +16,20 @@ def made():
                 held = {f"held_{level}": int(n * level / 100) for level in counting.LEVELS}
                 held["held_90"] = 50 if session == "a" else 290
                 flags = {"n_large": 10, "n_flagged": 5, "n_flagged_large": 4}
-                about = {"session": session, "stage": stage, "by": by, "group": group, "n": n}
-                rows.append({**about, **held, **flags})
+                about = {"session": session, "model": "first", "stage": stage}
+                rows.append({**about, "by": by, "group": group, "n": n, **held, **flags})
     return pd.DataFrame(rows)
+
+
+def test_a_second_network_of_a_session_does_not_count_its_joints_twice():
+    again = made().query("session == 'b'").assign(model="another", held_90=0)
+    rows = reliability.table(pd.concat([made(), again]))
+    whole = rows[rows["by"] == "all"].fillna({"model": ""})
+    held = whole.groupby(["session", "model"])["held_90_percent"].first()
+    expected = {("a", "first"): 50, ("all", ""): 85, ("b", "another"): 0, ("b", "first"): 290 / 3}
+    assert held.to_dict() == pytest.approx(expected)
+    left, _, *_ = reliability.draw(rows).axes
+    assert sum(line.get_color() == "#cccccc" for line in left.lines) == 3
 
 
 def test_all_sessions_together_are_weighted_by_their_joints():

@@ -217,6 +217,15 @@ def test_errors_are_those_of_virtual_takes(study, kind, names):
     assert takes.evaluations(study, kind) == expected
 
 
+def test_tables_of_a_sessions_first_network_come_first(study):
+    session = study.sessions["players-tiny"]
+    models = ["blazepose-static", "blazepose-full"]
+    two = replace(session, parameters={**session.parameters, "models": models})
+    other = replace(study, sessions={**study.sessions, "players-tiny": two})
+    found = takes.evaluations(other, "reliability")
+    assert [path.split(".")[-2] for path in found] == 2 * models
+
+
 def test_clocks_are_evaluated_where_cameras_have_no_common_one(study):
     session = study.sessions["players-tiny"]
     apart = {**session.takes, "shot": replace(session.takes["shot"], synchronised=False)}

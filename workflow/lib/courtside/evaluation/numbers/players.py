@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 
 from courtside.evaluation.numbers.register import Builder, Cut, Number, Settings, Source
+from courtside.evaluation.tables.calibration import pick
 from courtside.evaluation.tables.players import STAGES as STAGE_OF
 from courtside.evaluation.tables.players import furthest
 
@@ -136,19 +137,21 @@ LARGE_MM = ("100", "300")  # groups of joints by the size of the error: above 10
 
 
 def held(source: Source) -> list[Number]:
-    """Return what 90 % ellipsoids and intervals hold: joints by session, measures of all."""
+    """Return what 90 % ellipsoids hold of joints by session and network, intervals of measures."""
     build, table, part = Builder("held"), source.table(HELD), "held_90_percent"
-    table = table[table["stage"].isin(STAGE_OF)].assign(group=table["group"].astype(str))
+    table = table[table["stage"].isin(STAGE_OF)].fillna({"model": ""})
+    table = table.assign(group=table["group"].astype(str))
     for (by, group), words_ in GROUPS.items():
         own = table[(table["by"] == by) & (table["group"] == group)]
         own = own if by == "all" else own[own["session"] == "all"]
         for _, row in own[own["n"] > 0].iterrows():
-            session, stage = row["session"], STAGE_OF[row["stage"]]
-            cut = Cut(source, HELD, f"{session}, {row['stage']}, {by} {group}", session)
+            session, model, stage = row["session"], row["model"], STAGE_OF[row["stage"]]
+            cut = Cut(source, HELD, f"{session} {model}, {row['stage']}, {by} {group}", session)
             name = f"{words_}, " + ("all sessions" if session == "all" else f"`{session}`")
+            name += "" if model in ("", NETWORK) else f" ({model})"
             build.add(name, stage, row[part], cut, part, n=row["n"], decimals=1, unit="%")
-            alike = (table["session"] == session) & (table["stage"] == row["stage"])
-            large = table[alike & (table["by"] == "error") & table["group"].isin(LARGE_MM)]
+            large = pick(table, session=session, model=model, stage=row["stage"], by="error")
+            large = large[large["group"].isin(LARGE_MM)]
             if group == "limbs" and len(large):
                 share = np.average(large[part], weights=large["n"])
                 more: Settings = {"n": large["n"].sum(), "decimals": 0, "unit": "%"}

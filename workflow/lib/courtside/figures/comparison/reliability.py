@@ -15,12 +15,15 @@ EVERY = "all"  # the label of all sessions together
 
 
 def table(rows: pd.DataFrame) -> pd.DataFrame:
-    """Add up the tables of `evaluate_reliability` by session, and over all of them.
+    """Add up the tables of `evaluate_reliability` by session and network, and over all sessions.
 
-    Shares in percent (`evaluation.reliability.pooled`), by session, stage and group.
+    Shares in percent (`evaluation.reliability.pooled`), by session, model, stage and group. The
+    session `EVERY`, without a model, counts each session by its first network, the one of its first
+    row: other networks see the same joints again.
     """
-    one = reliability.pooled(rows, ["session", "stage"])
-    together = reliability.pooled(rows.assign(session=EVERY), ["session", "stage"])
+    one = reliability.pooled(rows, ["session", "model", "stage"])
+    first = rows["model"] == rows.groupby("session")["model"].transform("first")
+    together = reliability.pooled(rows[first].assign(session=EVERY), ["session", "stage"])
     return pd.concat([together, one], ignore_index=True)
 
 
@@ -45,8 +48,8 @@ def _panel(axis: Axes, rows: pd.DataFrame, by: str) -> None:
     together = rows[rows["session"] == EVERY]
     axis.plot([0, 100], [0, 100], color="#999999", linewidth=0.6)
     if by == "joint":
-        for session in sorted(set(rows["session"]) - {EVERY}):
-            whole = rows[(rows["session"] == session) & (rows["by"] == "all")]
+        single = rows[(rows["session"] != EVERY) & (rows["by"] == "all")]
+        for _, whole in single.groupby(["session", "model"]):
             axis.plot(reliability.LEVELS, _held(whole), color="#cccccc", linewidth=0.8)
     axis.plot(reliability.LEVELS, _held(together[together["by"] == "all"]), "k-", label="all")
     groups = together[together["by"] == by].sort_values("group", key=_order)
