@@ -112,6 +112,25 @@ def test_frames_in_which_the_person_leaves_the_picture_do_not_count():
     assert (whole.n_frames, whole.share) == (24, 1.0)
 
 
+@pytest.mark.parametrize("cut_off", [["side"], ["back"], ["side", "back"]])
+def test_cameras_that_never_show_the_whole_person_have_no_frames(cut_off):
+    rows = both()
+    cut = (rows.session == "gym-a") & rows.camera.isin(cut_off) & (rows.joint == "left_hip")
+    shares = fig05.table(rows.assign(in_picture=~cut), LAYOUTS)
+    pair = of(shares, "a", fig05.TOGETHER, fig05.ALL)
+    assert (pair.n_frames, pair.session, pair.model) == (0, "gym-a", "m") and np.isnan(pair.share)
+    shown = set(shares[(shares.layout == "a") & (shares.n_frames > 0)].camera)
+    assert shown == {"side", "back"} - set(cut_off)
+    fig05.draw(shares, LAYOUTS, [], [], []).draw_without_rendering()
+
+
+def test_a_layout_without_rows_is_left_out():
+    rows = both()
+    shares = fig05.table(rows[rows.session == "gym-b"], LAYOUTS)
+    assert set(shares.layout) == {"b"}
+    fig05.draw(shares, LAYOUTS, [], [], []).draw_without_rendering()
+
+
 def test_examples_are_of_the_worst_camera_one_good_and_one_bad():
     missed = MISSED | {("back", 20, joint) for joint in JOINTS[2:]}
     chosen = fig05.examples(both(missed), LAYOUTS)

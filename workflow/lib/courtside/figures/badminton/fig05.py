@@ -41,9 +41,11 @@ def table(rows: pd.DataFrame, layouts: dict[str, tuple[str, Sequence[str]]]) -> 
     found = []
     for layout, (session, cameras) in layouts.items():
         part = rows[rows.session == session]
-        part = part[part.groupby(KEY).in_picture.transform("all")]
+        if part.empty:
+            continue
         labels = {"layout": layout, **part.iloc[0][["session", "take", "model"]]}
-        times_s = np.unique(part[part.camera == part.camera.iloc[0]].time_s)
+        part = part[part.groupby(KEY).in_picture.transform("all")]
+        times_s = np.unique(part[part.camera.isin(part.camera[:1])].time_s)
         step_s = float(np.median(np.diff(times_s))) if len(times_s) > 1 else POSE_S
         spans = {ALL: part, STROKE: part[part.in_stroke]}
         for camera, own in part.groupby("camera", sort=False):
@@ -65,14 +67,15 @@ def table(rows: pd.DataFrame, layouts: dict[str, tuple[str, Sequence[str]]]) -> 
 def together(rows: pd.DataFrame, cameras: Sequence[str], step_s: float) -> NDArray:
     """Return in which frames of the first camera all cameras place all joints, (n,) bool.
 
-    Frames of two cameras less than half of `step_s` apart are paired; others are left out.
+    Frames of two cameras less than half of `step_s` apart are paired; others are left out. So are
+    persons whom one of the cameras never shows.
     """
     whole = rows.groupby(["person", "camera", "frame_idx"]).agg(
         time_s=("time_s", "first"), placed=("placed", "all")
     )
-    parts = []
+    parts, there = [], set(whole.index.droplevel("frame_idx"))
     for person in rows.person.unique():
-        if (person, cameras[0]) not in whole.index.droplevel("frame_idx"):
+        if not there.issuperset((person, name) for name in cameras):
             continue
         first = whole.loc[(person, cameras[0])].sort_values("time_s")
         for name in cameras[1:]:
