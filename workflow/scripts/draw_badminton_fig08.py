@@ -8,8 +8,8 @@ from courtside.study.execution.script import run
 
 def main(errors_csv, pdf, png, csv):
     rows = calibration.read(errors_csv)
-    numbers = fig08.table(rows)
     layout = rows["layout"].iloc[0]
+    numbers = fig08.table(rows, layout)
     title = f"{rows['session'].iloc[0]}: {rows['preset'].iloc[0]} hall, layout {layout}"
     style.save(fig08.draw(numbers, title, layout), numbers, pdf, png, csv)
 

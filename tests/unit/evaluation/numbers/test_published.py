@@ -12,7 +12,8 @@ def test_a_walk_is_compared_at_the_nearest_number_of_images(source, value):
     assert (theirs.printed, theirs.origin) == ("4.3", PUBLISHED)
     again = value(found, "`plain-a`: walk of 40 images", "again_volume")
     assert (again.printed, again.origin, again.n) == ("7.00", STUDY, 2)
-    assert value(found, "`plain-b`: 18 points, no walk", "again_xy").printed == "3.00"
+    assert value(found, "`plain-a`: 18 points, no walk", "again_xy").printed == "3.00"
+    assert {number.row[:9] for number in found} == {"`plain-a`"}
 
 
 def test_a_racket_has_absolute_errors_beside_the_ratio(source, value):

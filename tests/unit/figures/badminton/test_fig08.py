@@ -13,7 +13,7 @@ SFM, OUT, FEW, PAPER = ("sfm", 18, True), ("sfm", 18, False), ("sfm", 3, True), 
 
 
 @pytest.fixture(scope="module")
-def numbers():
+def rows():
     errors = {SFM: [1.0, 2.0], OUT: [2.0, 4.0], FEW: [0.1, 0.1], PAPER: [5.0, 7.0]}
     known = {("known", 18, True): [0.5, 0.7], ("known", 18, False): [0.9, 1.1]}
     known |= {("known", 8, True): [1.0, 1.0], ("known", 8, False): [None, None]}
@@ -24,7 +24,12 @@ def numbers():
     ]
     parts += [trials_made.structure(2, mapper="incremental", n_bridging=20, offset=1)]
     parts += [trials_made.structure(2, n_bridging=5), trials_made.known(known)]
-    return fig08.table(calibration.tidy(pd.concat(parts)))
+    return calibration.tidy(pd.concat(parts))
+
+
+@pytest.fixture(scope="module")
+def numbers(rows):
+    return fig08.table(rows, "a")
 
 
 def value(numbers, column="median", **wanted):
@@ -50,6 +55,17 @@ def test_published_values_are_the_papers(numbers):
     assert of["xy_cm"].to_dict() == {300: 4.3, 20: 229.5}
     assert of["xy_cm_strong"].tolist() == [2.2]
     assert of["neighbour_deg_median"].to_dict() == {40: 6.0, 20: 12.0}
+
+
+def test_published_values_stand_beside_their_own_layout_only(rows, numbers):
+    other, ours = fig08.table(rows, "b"), numbers["method"] != "published"
+    assert not (other["method"] == "published").any()
+    pd.testing.assert_frame_equal(other, numbers.drop(ours[~ours].index), check_dtype=False)
+    words = [
+        {text.get_text() for text in fig08.draw(shown, "made up").legends[0].get_texts()}
+        for shown in (numbers, other)
+    ]
+    assert words[0] - words[1] == {"published", "published: below"}
 
 
 def lines(axis):

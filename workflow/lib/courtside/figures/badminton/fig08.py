@@ -37,13 +37,14 @@ ERRORS = {
 }
 DODGE = 0.045  # of the logarithm of N, between series
 WALK_DEG = {"a": 90.0}  # what a walk from one fixed camera to the other turns, by layout
+PUBLISHED_LAYOUT = "a"  # [Shishido2020, sec 3.1, fig 3(a)]
 
 
-def table(rows: pd.DataFrame) -> pd.DataFrame:
+def table(rows: pd.DataFrame, layout: str) -> pd.DataFrame:
     """Return the numbers drawn, from rows of `calibration.tidy` of one session.
 
     For quantities other than `ERRORS` n counts structures from motion. The method `published` holds
-    the paper's values.
+    the paper's values, in sessions of its layout only.
     """
     keys = ["method", "mapper", "n_clicks", "in_sample", "n_bridging"]
     parts = [calibration.summary(rows, keys, name).assign(quantity=name) for name in ERRORS]
@@ -55,7 +56,8 @@ def table(rows: pd.DataFrame) -> pd.DataFrame:
             part = part.assign(median=means.to_numpy(), p05=np.nan, p95=np.nan)
         parts.append(part.assign(quantity=name))
     columns = ["quantity", *keys, "n", "p05", "median", "p95", "n_failed"]
-    return pd.concat([*parts, _published()], ignore_index=True)[columns]
+    parts += [_published()] if layout == PUBLISHED_LAYOUT else []
+    return pd.concat(parts, ignore_index=True)[columns]
 
 
 def _published() -> pd.DataFrame:
@@ -168,7 +170,7 @@ def _mark_published(axis: Axes, numbers: pd.DataFrame) -> None:
     axis.plot(exact["n_bridging"], exact["median"], "*", **look)
     axis.plot(below["n_bridging"], below["median"], marker=r"$\downarrow$", **look)
     beside = STRONG * numbers["n_bridging"].max() * np.exp(-8 * DODGE)
-    axis.plot(beside, strong["median"], "*", **look)
+    axis.plot(np.full(len(strong), beside), strong["median"], "*", **look)
 
 
 def _draw_angles(axis: Axes, numbers: pd.DataFrame, layout: str) -> None:
@@ -203,9 +205,10 @@ def _legend(numbers: pd.DataFrame) -> list[Line2D]:
         bars.mark(grey, label="filled: scored points left out"),
         bars.mark(grey, filled=False, label="hollow: in-sample"),
         bars.mark(grey, marker="x", label="no result"),
-        bars.mark("black", marker="*", label="published"),
-        bars.mark("black", marker=r"$\downarrow$", label="published: below"),
     ]
+    if (numbers["method"] == "published").any():
+        handles.append(bars.mark("black", marker="*", label="published"))
+        handles.append(bars.mark("black", marker=r"$\downarrow$", label="published: below"))
     for mapper, colour in MAPPERS.items():
         if (numbers["mapper"] == mapper).any():
             label = f"{mapper} mapper: solved; median angle"
