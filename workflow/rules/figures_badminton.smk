@@ -117,6 +117,7 @@ rule draw_badminton_fig12:
         "results/figures/logs/draw_badminton_fig12/all.log",
     params:
         code=code("draw_badminton_fig12.py"),
+        length_m=STUDY.parameters["evaluate_racket"]["length_m"],
     script:
         "../scripts/draw_badminton_fig12.py"
 

@@ -6,9 +6,9 @@ from courtside.figures.style import style
 from courtside.study.execution.script import run
 
 
-def main(lengths_csv, pdf, png, csv):
+def main(lengths_csv, pdf, png, csv, *, length_m):
     numbers = racket.table(racket.read(lengths_csv))
-    style.save(fig12.draw(numbers), numbers, pdf, png, csv)
+    style.save(fig12.draw(numbers, length_m), numbers, pdf, png, csv)
 
 
 if __name__ == "__main__":

@@ -31,7 +31,7 @@ def stars(axis):
 
 
 def test_medians_floor_and_published_values_are_drawn(tmp_path):
-    drawing = fig12.draw(numbers(tmp_path, ERRORS))
+    drawing = fig12.draw(numbers(tmp_path, ERRORS), 0.674)
     assert len(drawing.axes) == 5 * 2
     for axis in drawing.axes[:4]:
         expected = [10, 11, 12, 13, 14, 15, *[12] * 6, 9, 10, 11, 12, 13, 14]
@@ -45,11 +45,17 @@ def test_medians_floor_and_published_values_are_drawn(tmp_path):
 
 
 def test_ways_without_a_result_leave_a_gap(tmp_path):
-    drawing = fig12.draw(numbers(tmp_path, ERRORS | {"dlt8": [None] * 3}, ("hall",)))
+    drawing = fig12.draw(numbers(tmp_path, ERRORS | {"dlt8": [None] * 3}, ("hall",)), 0.674)
     drawing.savefig(tmp_path / "figure.png")
     found = medians(drawing.axes[0])
     assert found[1:6] == [11, 12, 13, 14, 15]
     assert found[0] != found[0]
+
+
+def test_the_run_is_drawn_about_the_length_of_the_racket(tmp_path):
+    axis = fig12.draw(numbers(tmp_path, ERRORS, ("hall",)), 0.68).axes[-2]
+    (level,) = (line for line in axis.lines if line.get_linestyle() == ":")
+    assert set(level.get_ydata()) == {680.0} and axis.get_ylim() == (610, 750)
 
 
 def test_groups_of_published_values_span_ways_of_their_kind():

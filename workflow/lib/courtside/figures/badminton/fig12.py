@@ -36,14 +36,14 @@ AGAINST = [  # reference, clicks of the racket: as differences are drawn
     ("known8", "anew", style.CYCLE[1], False),
     ("dlt8", "same", style.CYCLE[4], True),
 ]
-RACKET_MM, BELOW = 674, 10  # its length; frames below the net's height, as published
+BELOW = 10  # frames below the net's height, as published
 SHOWN_MM = 70  # to either side of the length
 TICKS_MM = [5, 10, 20, 50, 100]
 WIDTH = 0.11  # of a box, where groups are 1 apart
 
 
-def draw(numbers: pd.DataFrame) -> Figure:
-    """Draw the table of `racket.table`, one column of panels for each session."""
+def draw(numbers: pd.DataFrame, length_m: float) -> Figure:
+    """Draw the table of `racket.table` of a racket so long, a column of panels for each session."""
     sessions = list(dict.fromkeys(numbers["session"].dropna()))
     sigmas_px = sorted(numbers["tip_sigma_px"].dropna().unique(), reverse=True)
     drawing = style.figure(115 + 45 * len(sigmas_px))
@@ -63,7 +63,7 @@ def draw(numbers: pd.DataFrame) -> Figure:
             _mark_published(axis, published)
         pairs = of[(of["tip_sigma_px"] == sigmas_px[0]) & of["reference"].notna()]
         _draw_differences(column[-3], pairs, published)
-        _draw_run(column[-2], of[of["quantity"] == "length_mm"])
+        _draw_run(column[-2], of[of["quantity"] == "length_mm"], 1000 * length_m)
         _draw_volume(column[-1], of[of["quantity"] == "volume_rms_cm"])
     for axis, sigma_px in zip(axes[:, 0], sigmas_px, strict=False):
         axis.set_ylabel(f"tips {sigma_px:g} px: error (mm)")
@@ -142,17 +142,17 @@ def _draw_differences(axis: Axes, numbers: pd.DataFrame, published: pd.DataFrame
     _group_ticks(axis)
 
 
-def _draw_run(axis: Axes, numbers: pd.DataFrame) -> None:
+def _draw_run(axis: Axes, numbers: pd.DataFrame, true_mm: float) -> None:
     for way in reversed(WAYS):
         of = numbers[numbers["way"] == way.name].sort_values("frame")
         on_top = way.name == racket.OURS
         axis.plot(of["frame"], of["median"], color=way.colour, linewidth=1.6 if on_top else 0.9)
-    axis.axhline(RACKET_MM, color="black", linestyle=":", linewidth=0.8)
+    axis.axhline(true_mm, color="black", linestyle=":", linewidth=0.8)
     axis.axvline(BELOW + 0.5, color="black", linewidth=0.6)
     where = {"transform": axis.get_xaxis_transform(), "va": "top", "fontsize": 6.5}
     axis.text(BELOW + 0.3, 0.99, "below the net's height", ha="right", **where)
     axis.text(BELOW + 0.7, 0.99, "above", ha="left", **where)
-    axis.set(xlim=(0.5, 21.5), ylim=(RACKET_MM - SHOWN_MM, RACKET_MM + SHOWN_MM))
+    axis.set(xlim=(0.5, 21.5), ylim=(true_mm - SHOWN_MM, true_mm + SHOWN_MM))
     axis.set_xticks([1, 5, 10, 15, 21])
     axis.set_xlabel("frame")
 
