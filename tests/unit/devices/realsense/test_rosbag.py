@@ -1,15 +1,25 @@
+import sqlite3
 import struct
 from types import SimpleNamespace
 
 import cv2
 import numpy as np
 import pytest
+from backports import zstd
+from rosbags.rosbag1 import Writer
+from rosbags.typesys import Stores, get_typestore
 
-from courtside.devices.realsense import rosbag
+from courtside.devices.realsense import recording, rosbag
 from courtside.study.errors import InputError
-from fixtures.recordings.depth_recordings_made import write_bag, write_db3
+from fixtures.recordings.depth_recordings_made import (
+    frames,
+    messages_of_db3,
+    write_bag,
+    write_db3,
+)
 
 TEXT = "std_msgs/msg/String"
+ROS1 = get_typestore(Stores.ROS1_NOETIC)
 
 
 @pytest.fixture(scope="module")
@@ -32,6 +42,51 @@ def test_all_returns_at_most_the_limit(tmp_path):
     rows = [("/a", TEXT, k, {"data": str(k)}) for k in range(9)]
     with rosbag.opened(write_db3(tmp_path / "a.db3", rows)) as found:
         assert [message.data for message in found.all("/a", 3)] == ["0", "1", "2"]
+
+
+@pytest.mark.parametrize(("frame_id", "unit"), [("0", b""), ("1", b"unit")])
+def test_the_depth_unit_that_the_sdk_appends_to_pictures_is_no_damage(tmp_path, frame_id, unit):
+    """SDK 2.48 to 2.57 states by the frame_id `1` that four bytes follow the picture."""
+    kind, path, types = "sensor_msgs/msg/Image", tmp_path / "a.bag", ROS1.types
+    stamp = types["builtin_interfaces/msg/Time"](sec=12, nanosec=5)
+    header = types["std_msgs/msg/Header"](seq=7, stamp=stamp, frame_id=frame_id)
+    picture = types[kind](header=header, **vars(message(DEPTH, "mono16")))
+    with Writer(path) as writer:
+        topic = writer.add_connection("/depth", kind, typestore=ROS1)
+        for time_ns in (1, 2):
+            writer.write(topic, time_ns, bytes(ROS1.serialize_ros1(picture, kind)) + unit)
+    with rosbag.opened(path) as found:
+        read = [rosbag.depth(one) for _, _, one in found.messages(["/depth"])]
+    assert np.array_equal(read, [DEPTH, DEPTH])
+
+
+def packed_db3(path, pack):
+    """Write a recording whose messages are packed one by one, as SDK 2.58 does."""
+
+    def plain(image, encoding):
+        return "", "sensor_msgs/msg/Image", vars(message(image, encoding))
+
+    write_db3(path, messages_of_db3(frames(), plain))
+    with sqlite3.connect(path) as base:
+        base.create_function("pack", 1, pack)
+        base.execute("UPDATE messages SET data = pack(data)")
+    return path
+
+
+def test_compressed_messages_are_unpacked(tmp_path):
+    found = recording.read(packed_db3(tmp_path / "a.db3", zstd.compress))
+    pictures = [picture for _, picture in found.depth_frames()]
+    assert np.array_equal(pictures, [steps for _, _, steps in frames()])
+
+
+def test_compressed_messages_that_are_damaged_or_too_large_are_refused(tmp_path, monkeypatch):
+    path = packed_db3(tmp_path / "a.db3", lambda raw: zstd.compress(raw)[:6] + b"damage")
+    with pytest.raises(InputError, match="whole recording"):
+        recording.read(path)
+    monkeypatch.setattr(rosbag, "LARGEST_MESSAGE_BYTES", 1 << 10)
+    large = recording.read(packed_db3(tmp_path / "b.db3", zstd.compress))
+    with pytest.raises(InputError, match="whole recording"):
+        list(large.depth_frames())
 
 
 @pytest.mark.parametrize("name", ["none.bag", "none.db3", "."])

@@ -1,4 +1,4 @@
-"""Read recordings of RealSense cameras: `.bag` (ROS 1) and `.db3` (ROS 2, software 2.59 and later).
+"""Read recordings of RealSense cameras: `.bag` (ROS 1) and `.db3` (ROS 2, SDK 2.58 and later).
 
 A stream has the topic `/device_0/sensor_<n>/Depth_<n>` or `.../Color_<n>`, followed by `image/data`
 (pictures; in a `.db3` also `image/data/compressed` and `image/data/compressedDepth`, both PNG),

@@ -11,6 +11,7 @@ from typing import Any
 import apsw
 import cv2
 import numpy as np
+from backports import zstd
 from numpy.typing import NDArray
 from rosbags import rosbag1, rosbag2
 from rosbags.serde import SerdeError
@@ -19,16 +20,17 @@ from rosbags.typesys import Stores, get_typestore
 from courtside.geometry import camera_fields
 from courtside.study.errors import InputError, StrPath
 
-READERS: dict[str, tuple[Callable[[Path], Any], Stores, str]] = {
-    ".bag": (rosbag1.Reader, Stores.ROS1_NOETIC, "deserialize_ros1"),
-    ".db3": (rosbag2.Reader, Stores.ROS2_HUMBLE, "deserialize_cdr"),
-}
+Parser = Callable[[bytes, str], Any]
 # What rosbags, its parsers and its decompressors raise on damaged files.
 DAMAGED: tuple[type[Exception], ...]
 DAMAGED = (rosbag1.ReaderError, rosbag2.ReaderError, SerdeError, apsw.Error, struct.error)
 DAMAGED += (OSError, EOFError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError)
-DAMAGED += (AssertionError, RuntimeError, MemoryError)
+DAMAGED += (AssertionError, RuntimeError, MemoryError, zstd.ZstdError)
 LARGEST_MESSAGE_BYTES = 1 << 28  # a 4K colour picture has 25 MB
+# SDK 2.48 to 2.57 states by this frame_id, after number and time, that a picture of a `.bag` is
+# followed by the depth unit (float32), which the type of the message does not have.
+FRAME_ID, HAS_UNIT, UNIT_BYTES = slice(12, 17), b"\1\0\0\x001", 4
+ZSTD = b"\x28\xb5\x2f\xfd"  # begins each message that SDK 2.58 compressed
 HOW = (
     "copy it again from the camera's computer, "
     "or record again and stop the recording in its program"
@@ -42,7 +44,7 @@ class Bag:
     path: Path
     counts: dict[str, int]
     _reader: Any  # rosbag1.Reader or rosbag2.Reader: they share what is used, but no base class
-    _parse: Callable[[bytes, str], Any]
+    _parse: Parser
 
     def messages(self, topics: Iterable[str]) -> Iterator[tuple[str, int, Any]]:
         """Yield (topic, time_ns, message) of some topics, in order of time.
@@ -81,8 +83,7 @@ def opened(path: StrPath) -> Iterator[Bag]:
             f"{path}: expected a recording in ROS format (.bag or .db3), found {found}; correct "
             "the path"
         )
-    kind, store, parser = READERS[path.suffix.lower()]
-    parse = getattr(get_typestore(store), parser)
+    kind, parser = READERS[path.suffix.lower()]
     with contextlib.ExitStack() as stack:
         with _guarded(path):
             reader = stack.enter_context(kind(path))
@@ -91,7 +92,34 @@ def opened(path: StrPath) -> Iterator[Bag]:
                 if not isinstance(connection.topic, str) or not connection.topic.isprintable():
                     raise ValueError("a topic without a readable name")
                 counts[connection.topic] = counts.get(connection.topic, 0) + connection.msgcount
-        yield Bag(path, counts, reader, parse)
+        yield Bag(path, counts, reader, parser())
+
+
+def _ros1() -> Parser:
+    parse = get_typestore(Stores.ROS1_NOETIC).deserialize_ros1
+
+    def parsed(raw: bytes, kind: str) -> Any:
+        has_unit = kind == "sensor_msgs/msg/Image" and raw[FRAME_ID] == HAS_UNIT
+        return parse(raw[:-UNIT_BYTES] if has_unit else raw, kind)
+
+    return parsed
+
+
+def _ros2() -> Parser:
+    parse = get_typestore(Stores.ROS2_HUMBLE).deserialize_cdr
+
+    def parsed(raw: bytes, kind: str) -> Any:
+        if raw[: len(ZSTD)] == ZSTD:
+            raw = zstd.ZstdDecompressor().decompress(raw, LARGEST_MESSAGE_BYTES)
+        return parse(raw, kind)
+
+    return parsed
+
+
+READERS: dict[str, tuple[Callable[[Path], Any], Callable[[], Parser]]] = {
+    ".bag": (rosbag1.Reader, _ros1),
+    ".db3": (rosbag2.Reader, _ros2),
+}
 
 
 @contextlib.contextmanager

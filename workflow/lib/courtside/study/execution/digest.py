@@ -20,7 +20,12 @@ PACKAGES = {"courtside", "virtualgym"}
 # Fields that differ between Python versions, or say where a node stands, not what it does.
 IGNORED = {"ctx", "kind", "type_comment", "type_ignores", "type_params"}
 # Packages that are imported by another name than they are installed by.
-INSTALLED_AS = {"cv2": "opencv-python-headless", "PIL": "pillow", "yaml": "pyyaml"}
+INSTALLED_AS = {
+    "backports": "backports-zstd",  # the one such package that is imported
+    "cv2": "opencv-python-headless",
+    "PIL": "pillow",
+    "yaml": "pyyaml",
+}
 
 
 def _rule_digest(paths: Sequence[Path], lock_text: str) -> str:
