@@ -1,5 +1,6 @@
 from dataclasses import replace
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from courtside.depth import lifting
 from courtside.depth.surfaces import Sampling
 from courtside.geometry import camera
 from courtside.records.keypoints import missing_reason, skeleton
+from courtside.study.errors import InputError
 from fixtures.people import keypoints_made
 from fixtures.recordings import depth_scenes
 from fixtures.recordings.depth_scenes import BONES, RADIUS_M, STANDING
@@ -15,6 +17,7 @@ from fixtures.recordings.depth_scenes import BONES, RADIUS_M, STANDING
 RIG = depth_scenes.rig()
 NAMES = list(STANDING)
 N = 12
+SKELETONS = sorted((Path(__file__).parents[3] / "config/skeletons").glob("*.yaml"))
 
 
 def view(xyz):
@@ -186,8 +189,18 @@ def test_the_skin_of_each_joint_by_its_name():
         ["left_wrist", "nose", "right_wrist"], {"wrist": 0.03, "right_wrist": 0.02}
     )
     assert found.tolist() == [0.03, 0.0, 0.02]
-    with pytest.raises(ValueError, match="missing"):
+    with pytest.raises(InputError, match=r"lift_depth\.skin_m: .*found none of tail;"):
         lifting.by_joint(["tail"], {})
+
+
+@pytest.mark.parametrize("path", SKELETONS, ids=lambda path: path.stem)
+def test_every_skeleton_can_be_lifted(path):
+    names = skeleton.read(path).joints
+    skin = dict(zip(names, lifting.by_joint(names), strict=True))
+    assert all(0 <= depth_m <= 0.09 for depth_m in skin.values())
+    assert skin.get("mid_hip", 0.09) == lifting.SKIN_TO_JOINT_M["hip"]
+    assert skin.get("left_big_toe", 0.02) == lifting.SKIN_TO_JOINT_M["foot_index"]
+    assert skin.get("left_jaw_1", 0.01) == lifting.OTHERS_M
 
 
 def test_several_people_or_standing_clocks_are_refused(still):

@@ -12,6 +12,7 @@ from courtside.geometry.camera import Camera
 from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.keypoints import missing_reason, skeleton
 from courtside.records.keypoints.keypoints import Keypoints2D
+from courtside.study.errors import InputError
 
 # Depth of a joint behind the visible skin from any side, metres: the radius of the limb there.
 # ASSUME: limbs are round: half of circumference / pi of adults' medians in ANSUR II (Gordon et al.
@@ -30,10 +31,14 @@ SKIN_TO_JOINT_M = {
     "thumb": 0.01,
     "heel": 0.03,
     "foot_index": 0.02,
+    "big_toe": 0.02,
+    "small_toe": 0.01,
     "ear": 0.01,
     "neck": 0.06,
     "head_top": 0.08,
+    "mid_hip": 0.09,
 }
+OTHERS_M = 0.01  # ASSUME: what has no entry are points of hands and face: thin, or on the skin
 ON_SKIN = ("nose", "eye", "eye_inner", "eye_outer", "mouth")
 # ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
 LEAST_RADIUS_M = 0.02  # of the limb at a joint, for the size of its window
@@ -68,8 +73,8 @@ def lift_take(
     The motion is in the colour camera's axes (x right, y down, z forward), metres. The reason is
     `NO_DEPTH` if there is no depth or another part of the body is in front, else that of the 2D
     joint. Beside it, the standard deviation (T, J) m along the viewing ray by the noise of the
-    depth alone. A `ValueError` if the view has not one person, its times do not increase or a joint
-    is not in `skin_m`.
+    depth alone. A `ValueError` if the view has not one person or its times do not increase; an
+    `InputError` if a joint is not in a given `skin_m`.
 
     Each joint has up to three candidate surfaces: the nearest one whose joint keeps the lengths of
     the bones (medians over the take) is used, from the trunk outwards. A joint without one is
@@ -79,7 +84,7 @@ def lift_take(
         raise ValueError("expected keypoints of one person at increasing times")
     names = list(map(str, view.joints))
     sampling = sampling or Sampling()
-    skin = by_joint(names, SKIN_TO_JOINT_M if skin_m is None else skin_m)
+    skin = by_joint(names, skin_m)
     is_trunk = np.isin(names, skeleton.TRUNK)
     radius_m = np.maximum(skin, LEAST_RADIUS_M)
     sampler = Sampler(rig, radius_m, is_trunk, baseline_m, sampling)
@@ -116,17 +121,22 @@ def _placed(joints_at, xy, z, z_body, radius_px, chain, is_trunk) -> tuple[NDArr
     return xyz, depth
 
 
-def by_joint(names: Sequence[str], table: Mapping[str, float]) -> NDArray:
-    """Return the table's value of each joint (J,), by its name or its name without side.
+def by_joint(names: Sequence[str], skin_m: Mapping[str, float] | None = None) -> NDArray:
+    """Return the depth of each joint behind the skin (J,), metres.
 
-    Raise ValueError if a joint is not in the table.
+    `skin_m` gives it by the joint's name or its name without side; without it, `SKIN_TO_JOINT_M`
+    does, and `OTHERS_M`. Raise `InputError` if a joint is not in a given `skin_m`.
     """
     plain = [name.removeprefix("left_").removeprefix("right_") for name in names]
-    table = dict.fromkeys(ON_SKIN, 0.0) | dict(table)
+    table = dict.fromkeys(ON_SKIN, 0.0) | dict(SKIN_TO_JOINT_M if skin_m is None else skin_m)
     missing = [n for n, p in zip(names, plain, strict=True) if n not in table and p not in table]
-    if missing:
-        raise ValueError(f"expected a depth behind the skin of every joint, missing {missing}")
-    return np.array([table.get(n, table.get(p)) for n, p in zip(names, plain, strict=True)])
+    if missing and skin_m is not None:
+        raise InputError(
+            f"lift_depth.skin_m: expected a depth behind the skin of every joint, found none of "
+            f"{', '.join(missing)}; add them, or leave skin_m out"
+        )
+    values = [table.get(n, table.get(p, OTHERS_M)) for n, p in zip(names, plain, strict=True)]
+    return np.array(values)
 
 
 def nearest_frames(

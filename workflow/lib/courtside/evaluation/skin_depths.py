@@ -13,7 +13,7 @@ import pandas as pd
 import scipy
 from numpy.typing import NDArray
 
-from courtside.depth.lifting import SKIN_TO_JOINT_M, by_joint
+from courtside.depth.lifting import by_joint
 from courtside.evaluation.joints import at_times
 from courtside.geometry import rotations
 from courtside.records.devices import clocks
@@ -52,7 +52,7 @@ def estimate(
     camera, metres, NaN where missing; `joints` and `true_joints` name the J and the K joints.
     `skin_m` and `beyond_m` were used for lifting; by default `lifting.SKIN_TO_JOINT_M`, and 0.
     """
-    used_m = by_joint(skeleton.LIMBS, SKIN_TO_JOINT_M if skin_m is None else skin_m)
+    used_m = by_joint(skeleton.LIMBS, skin_m)
     rows = []
     for joint, used in zip(skeleton.LIMBS, used_m, strict=True):
         deep, beyond = [], []
