@@ -161,6 +161,15 @@ def test_a_model_must_fit_its_artefact_and_skeleton(folder):
     assert "blazepose-full.landmarks" in text
 
 
+def test_a_single_video_needs_a_network_with_a_metric_body(folder):
+    session = changed("takes", "t1", "devices", value={"phone": {"file": "l.mp4"}})
+    assert load(folder, session).sessions["hall"].takes["t1"].devices["phone"].kind == "rgb"
+    (line,) = faults(folder, session, models=["cpm-mobile-14"])
+    assert "hall.yaml: takes.t1.devices.phone: expected a network with a metric body" in line
+    assert "found cpm-mobile-14" in line
+    load(folder, session | {"override": {"models": ["blazepose-full"]}}, models=["cpm-mobile-14"])
+
+
 def test_a_fault_in_one_file_hides_no_fault_in_another(folder):
     (folder / "external.yaml").write_text("a: {sha256: x, licence: MIT, members: {../b: y}}\n")
     (folder / "models.yaml").write_text("m: {decoder: heatmap}\n")

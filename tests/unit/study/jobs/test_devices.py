@@ -39,6 +39,12 @@ def test_sources_are_what_devices_give_and_the_corrected_ones(job):
     assert devices.skeletons(job(**CLAPS))["mocopi"] == "mocopi27"
 
 
+def test_a_depth_camera_gives_no_metric_body_of_other_networks(job):
+    found = devices.sources(job(**CLAPS | {"model": "cpm-mobile-14"}))
+    assert list(found) == ["d415-depth", "mocopi", "mocopi-corrected"]
+    assert found["d415-depth"].skeleton == "cpm14"
+
+
 def test_a_suit_is_exported_only_where_its_person_agreed(job, study):
     wildcards = CLAPS | {"device": "mocopi"}
     assert devices.exported(job(**wildcards)) == f"{FOLDER}/devices/mocopi.npz"

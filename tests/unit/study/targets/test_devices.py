@@ -45,6 +45,15 @@ def test_devices_are_exported_where_their_person_agreed(study):
     assert devices.every_device_export(silent) == []
 
 
+def test_other_networks_than_blazepose_make_no_metric_body(study):
+    session = study.sessions["single-view-tiny"]
+    parameters = {**session.parameters, "models": ["cpm-mobile-14"]}
+    other = replace(study, sessions={session.name: replace(session, parameters=parameters)})
+    made = [*devices.every_device_export(other), *devices.every_source_angle(other)]
+    assert [path for path in made if "d415-depth" in path]
+    assert [path for path in made if "d415-rgb" in path] == []
+
+
 def test_joint_angles_are_measured_of_every_source(study):
     names = ("d415-depth", "d415-rgb", "mocopi", "mocopi-corrected")
     expected = [f"{TAKE}/motion/devices/{name}/blazepose-full.angles.csv" for name in names]

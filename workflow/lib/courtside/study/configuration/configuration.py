@@ -56,9 +56,7 @@ def load(config: Content, config_file: str, folder: StrPath, root: StrPath = "."
         content = None if missing else _checked(file, "session", faults)
         if content is not None:
             faults += session_faults.find(folder, file, content, known, Path(root))
-            wanted = content.get("override", {}).get("models", [])
-            there = [*(models or wanted), *take_faults.imported(content)]
-            faults += take_faults.unknown(f"{file}: override.models", wanted, there)
+            faults += _override_faults(file, content, models)
             found[name] = (file, content)
     if not faults:
         faults += session_faults.conditions(config_file, config, found)
@@ -67,13 +65,38 @@ def load(config: Content, config_file: str, folder: StrPath, root: StrPath = "."
         faults += model_faults.absent(folder, Path(root), models, detectors, _used(config, found))
     if faults or known is None or models is None or detectors is None:
         raise InputError(*faults)
-    return Study(
+    study = Study(
         sessions=_sessions(config, found, root),
         artefacts=known,
         models=_models(models, detectors, found),
         parameters=config,
         folder=folder,
     )
+    _check_bodies(study)
+    return study
+
+
+def _override_faults(file: Path, content: Content, models: Content | None) -> list[str]:
+    """Return a fault for each unknown model of a session; all are known if `models` has faults."""
+    wanted = content.get("override", {}).get("models", [])
+    there = [*(models or wanted), *take_faults.imported(content)]
+    return take_faults.unknown(f"{file}: override.models", wanted, there)
+
+
+def _check_bodies(study: Study) -> None:
+    """Raise `InputError` if a network without a metric body measures single videos."""
+    faults = []
+    for session, take in study.takes():
+        videos = [name for name, device in take.devices.items() if device.kind == "rgb"]
+        model = session.parameters["models"][0]
+        for name in () if study.models[model].metric_body else videos:
+            faults.append(
+                f"{session.file}: takes.{take.name}.devices.{name}: expected a network with a "
+                f"metric body (decoder blazepose) as the first of `models`, found {model}; name "
+                "one, or remove the device"
+            )
+    if faults:
+        raise InputError(*faults)
 
 
 def _used(config: Content, found: dict[str, tuple]) -> list[str]:

@@ -52,9 +52,13 @@ class Device:
     unit: str | None = None  # of the lengths in its file, where that is not its format's
     angles: str | None = None  # of a BVH: `degrees` or `radians`, where that is stated
 
-    def sources(self, name: str) -> tuple[str, ...]:
-        """Return the names of the skeletons that this device, called `name`, gives."""
-        endings = {"rgb": ("-rgb",), "rgbd": ("-depth", "-rgb")}
+    def sources(self, name: str, metric_body: bool) -> tuple[str, ...]:
+        """Return the names of the skeletons that this device, called `name`, gives.
+
+        Those called `-rgb` need a network with a metric body (`Model.metric_body`).
+        """
+        own = ("-rgb",) if metric_body else ()
+        endings = {"rgb": own, "rgbd": ("-depth", *own)}
         return tuple(name + ending for ending in endings.get(self.kind, ("",)))
 
 
@@ -312,6 +316,11 @@ class Model:
     landmarks: Network | None = None
     tracking: bool = True
     options: dict[str, Any] = field(default_factory=dict)  # of its decoder
+
+    @property
+    def metric_body(self) -> bool:
+        """Whether it estimates the body in metres from one picture (`xyz_in_body`)."""
+        return self.decoder == "blazepose"
 
     def decoder_options(self) -> dict[str, Any]:
         """Return the keyword arguments of `courtside.pose.decoders.landmark_network`."""

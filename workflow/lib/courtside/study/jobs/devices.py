@@ -36,7 +36,7 @@ def sources(job: Job, corrected: bool = True) -> dict[str, Source]:
     devices = sorted(job.take.devices.items(), key=lambda pair: pair[1].kind == "inertial")
     for name, device in devices:
         own = OF_KIND.get(device.kind)
-        for source in device.sources(name):
+        for source in device.sources(name, job.model.metric_body):
             known = {"device": name, "source": source}
             file = job.fill(paths.DEVICE if own else paths.SOURCE, **known)
             found[source] = Source(file, own or of_network, name)

@@ -16,11 +16,15 @@ THESIS_FIGURES = ("thesis_fig3_1", "thesis_fig3_2")
 
 @dataclass(frozen=True)
 class DeviceTake:
-    """A take with devices, and the session's first network, which measures its videos."""
+    """A take with devices, and the session's first network, which measures its videos.
+
+    `metric_body`: whether that gives a body in metres.
+    """
 
     session: Session
     take: Take
     model: str
+    metric_body: bool
 
     @property
     def labels(self) -> dict[str, str]:
@@ -40,7 +44,8 @@ class DeviceTake:
         found: dict[str, str] = {}
         for name, device in self.take.devices.items():
             corrected = (f"{name}-corrected",) if seen and device.kind == "inertial" else ()
-            found |= dict.fromkeys((*device.sources(name), *corrected), device.subject)
+            sources = device.sources(name, self.metric_body)
+            found |= dict.fromkeys((*sources, *corrected), device.subject)
         return found
 
     def true_file(self, pattern: str, **more: str) -> list[str]:
@@ -50,17 +55,18 @@ class DeviceTake:
 
 def device_takes(study: Study) -> list[DeviceTake]:
     """Return all takes with devices."""
-    return [
-        DeviceTake(session, take, session.parameters["models"][0])
-        for session, take in study.takes()
-        if take.devices
-    ]
+    return [_measured(study, *pair) for pair in study.takes() if pair[1].devices]
+
+
+def _measured(study: Study, session: Session, take: Take) -> DeviceTake:
+    model = session.parameters["models"][0]
+    return DeviceTake(session, take, model, study.models[model].metric_body)
 
 
 def thesis_take(study: Study) -> DeviceTake | None:
     """Return the take of figures 3.1 and 3.2; None where the study does not have it."""
-    for session, take in study.named_takes([study.parameters["draw_thesis_fig3"]["take"]]):
-        return DeviceTake(session, take, session.parameters["models"][0])
+    for pair in study.named_takes([study.parameters["draw_thesis_fig3"]["take"]]):
+        return _measured(study, *pair)
     return None
 
 
@@ -90,7 +96,8 @@ def every_device_export(study: Study) -> list[str]:
                 known = {**one.labels, "device": name, "suffix": EXPORTED}
                 found += paths.each(paths.DEVICE_EXPORT, **known)
             else:
-                known = {**one.labels, "source": device.sources(name), "model": one.model}
+                sources = device.sources(name, one.metric_body)
+                known = {**one.labels, "source": sources, "model": one.model}
                 found += paths.each(paths.SOURCE_EXPORT, **known, suffix=POSED)
         if paths.MODELLED in one.session.parameters["export_stages"]:
             agreed = {name: who for name, who in one.fitted.items() if who not in refusing}
