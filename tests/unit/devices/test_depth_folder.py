@@ -68,6 +68,13 @@ def test_files_that_macos_adds_are_no_pictures(folder):
     assert len(list(depth_folder.read(folder).depth_frames())) == N
 
 
+def test_depth_pictures_are_ordered_by_the_value_of_their_numbers(folder):
+    for k, name in enumerate(("0", "2", "9", "10", "11")):
+        (folder / "depth" / f"{k:04}.png").rename(folder / "depth" / f"{name}.png")
+    found = [steps for _, steps in depth_folder.read(folder).depth_frames()]
+    assert np.array_equal(found, DEPTHS)
+
+
 def test_frame_times_come_from_the_tables(folder):
     (folder / "colour.csv").write_text("number,time_s\n7,1.0\n8,1.1\n9,1.2\n11,1.4\n12,1.5\n")
     (folder / "depth.csv").write_text("number,time_s\n7,1.01\n8,1.11\n10,1.31\n11,1.41\n")

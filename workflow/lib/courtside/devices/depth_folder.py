@@ -7,7 +7,8 @@ The folder holds
   `depth_unit_m` (metres of one step of depth; 0.001 where absent) and `baseline_m` (between the
   imagers that depth comes from);
 - `colour.mp4` (or .mkv .mov .avi): the colour video;
-- `depth/`: one 16-bit PNG of one channel per frame, taken in the order of their names; 0 is a hole;
+- `depth/`: one 16-bit PNG of one channel per frame, taken in the order of their names, numbers by
+  value; 0 is a hole;
 - where a frame was lost or the clocks differ, `colour.csv` and `depth.csv` with the columns
   `number` (as the camera counted) and `time_s` (on one clock), one row per frame. Without them
   frame k of both is taken at the time the video says, and both must hold equally many.
@@ -115,7 +116,7 @@ def _film(folder: Path) -> Path:
 
 
 def _pictures(folder: Path) -> list[Path]:
-    found = sorted(folder.glob("[!.]*.png"))
+    found = sorted(folder.glob("[!.]*.png"), key=images.name_order)
     if not found:
         raise InputError(f"{folder}: expected 16-bit PNG pictures of depth, found none; add them")
     return found

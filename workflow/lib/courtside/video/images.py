@@ -1,5 +1,6 @@
 """Pictures in files: OpenCV reports faults in three ways, here they all become an InputError."""
 
+import re
 from pathlib import Path
 
 import cv2
@@ -24,6 +25,12 @@ def read(
     return decode(
         path, path.read_bytes() if path.is_file() else b"", flags, what=what, advice=advice
     )
+
+
+def name_order(path: Path) -> tuple[list[int | str], str]:
+    """Return the key to sort pictures by name, numbers by value: picture 9 before picture 10."""
+    parts = re.split(r"(\d+)", path.stem)
+    return [int(part) if at % 2 else part for at, part in enumerate(parts)], str(path)
 
 
 def decode(

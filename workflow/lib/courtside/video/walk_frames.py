@@ -1,6 +1,5 @@
 """Frames of walks and static recordings: from a video, or from photos in name order."""
 
-import re
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
@@ -102,7 +101,7 @@ def photo_paths(source: Source) -> list[Path]:
                 f"{path}: expected photos as {' '.join(PHOTOS)}, found {path.suffix}: "
                 "convert all to .jpg"
             )
-    photos = sorted((p for p in paths if p.suffix.lower() in PHOTOS), key=_name_order)
+    photos = sorted((p for p in paths if p.suffix.lower() in PHOTOS), key=images.name_order)
     if not photos and (single is None or single.is_dir()):
         raise InputError(
             f"{single or 'list of photos'}: expected photos as {' '.join(PHOTOS)}, found none: "
@@ -141,11 +140,6 @@ def _photos(paths: Sequence[Path]) -> Iterator[NDArray]:
 
 def _paths(source: Source) -> list[Path]:
     return [Path(p) for p in ([source] if isinstance(source, StrPath) else source)]
-
-
-def _name_order(path: Path) -> tuple[list[int | str], str]:
-    parts = re.split(r"(\d+)", path.stem)
-    return [int(part) if at % 2 else part for at, part in enumerate(parts)], str(path)
 
 
 def _cut_short(data: bytes) -> bool:
