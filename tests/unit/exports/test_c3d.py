@@ -36,15 +36,6 @@ def test_parameters_say_units_rate_and_labels(written):
     assert (point["X_SCREEN"]["value"], point["Y_SCREEN"]["value"]) == (["+X"], ["+Z"])
 
 
-def test_residuals_are_deviations_and_minus_one_where_missing(written):
-    _, path = written
-    residual = ezc3d.c3d(str(path))["data"]["meta_points"]["residuals"][0].T
-    assert residual[3, 4] == -1
-    present = np.delete(residual.ravel(), 3 * 33 + 4)
-    # sqrt of the mean of 1, 4 and 9 square centimetres
-    np.testing.assert_allclose(present, 10 * np.sqrt(14 / 3), rtol=0.05)
-
-
 def test_the_header_counts_from_one(written):
     _, path = written
     header = path.read_bytes()[:24]
@@ -74,7 +65,7 @@ def fourth_words(path, n_points, n_frames):
         struct.unpack_from("<H", content, 16)[0],
         struct.unpack_from("<f", content, 12)[0],
     )
-    assert scale < 0  # floating-point data
+    assert scale == -1  # floating-point data, residuals in POINT:UNITS
     count = n_points * n_frames * 4
     found = np.frombuffer(content, "<f4", count, (block - 1) * 512)
     return found.reshape(n_frames, n_points, 4)
@@ -90,23 +81,48 @@ def test_the_bytes_hold_the_points_frame_by_frame(written):
     assert struct.unpack_from("<f", path.read_bytes(), 20)[0] == 50
 
 
+def bytes_of(words):
+    """Return residual and cameras of fourth words, as the format has them: an integer's bytes."""
+    whole = words.astype(np.int16)
+    assert (whole == words).all()
+    return whole & 0xFF, whole >> 8
+
+
+def test_residuals_are_deviations_and_minus_one_where_missing(written):
+    _, path = written
+    words = fourth_words(path, 33, 20)[..., 3]
+    assert words[3, 4] == -1
+    residual_mm, cameras = bytes_of(np.delete(words.ravel(), 3 * 33 + 4))
+    # sqrt of the mean of 1, 4 and 9 square centimetres
+    assert (residual_mm == round(10 * np.sqrt(14 / 3))).all()
+    assert (cameras == 0).all()
+
+
 @pytest.mark.parametrize(("sd_m", "residual_mm"), [(0.02, 20), (0.127, 127), (0.2, 127), (9, 127)])
 def test_a_large_deviation_neither_wraps_nor_looks_missing(tmp_path, sd_m, residual_mm):
     record = walker.points()
     covariance = np.broadcast_to(np.eye(3) * sd_m**2, record.covariance_2d.shape)
     path = tmp_path / "f.c3d"
     c3d.write(path, replace(record, covariance_2d=covariance), 0)
-    assert ezc3d.c3d(str(path))["data"]["meta_points"]["residuals"][0, 0, 0] == residual_mm
-    # as a signed 16-bit number, which must not be negative for a point that is there
-    assert 0 <= fourth_words(path, 33, 20)[0, 0, 3] < 32768
+    assert bytes_of(fourth_words(path, 33, 20)[0, 0, 3]) == (residual_mm, 0)
 
 
 def test_an_unknown_deviation_is_zero(tmp_path):
     record = walker.points()
     unknown = np.full_like(record.covariance_2d, np.nan)
     c3d.write(tmp_path / "f.c3d", replace(record, covariance_2d=unknown), 0)
-    found = ezc3d.c3d(str(tmp_path / "f.c3d"))["data"]["meta_points"]["residuals"][0].T
+    found = fourth_words(tmp_path / "f.c3d", 33, 20)[..., 3]
     np.testing.assert_array_equal(found, np.where(np.isnan(record.xyz[0, ..., 0]), -1, 0))
+
+
+def test_another_reader_finds_residuals_and_missing_points(written):
+    peer = pytest.importorskip("c3d", reason="needs `pip install c3d`")
+    record, path = written
+    with path.open("rb") as stream:
+        found = np.array([points for _, points, _ in peer.Reader(stream).read_frames()])
+    missing = np.isnan(record.xyz[0]).any(axis=-1)
+    assert (found[..., 3] == np.where(missing, -1, 22)).all()
+    np.testing.assert_allclose(found[..., :3][~missing], 1000 * record.xyz[0][~missing], atol=1e-3)
 
 
 def one_joint(n_frames):

@@ -2,6 +2,11 @@
 
 Millimetres, because many readers take C3D points for millimetres without looking at POINT:UNITS.
 World axes, z up, as POINT:X_SCREEN and Y_SCREEN say.
+
+The fourth word of a point, taken as an integer, has the residual in its low byte, in units of
+|POINT:SCALE|, and the cameras that saw the point in its high byte (c3d.org, "3D point residuals").
+ezc3d 1.7 exchanges the two bytes, so the words are written here. Programs that read by ezc3d
+therefore see 0 for every point that is there.
 """
 
 import struct
@@ -16,7 +21,7 @@ from courtside.study.execution.files import atomic
 
 MM_PER_M = 1000.0
 MISSING = -1.0
-MOST_RESIDUAL_MM = 127.0  # above, other readers see a missing point; from 256 on it wraps
+MOST_RESIDUAL_MM = 127.0  # above, readers that take the byte as signed see a missing point
 BLOCK_BYTES = 512
 FIRST_DATA_BLOCK = slice(16, 18)  # of the header: the block, from 1, in which the points begin
 MOST_FRAMES = 65535  # the header counts frames in 16 bits
@@ -49,17 +54,21 @@ def write(path: StrPath, keypoints: Keypoints3D, person: int) -> None:
     points = np.ones((4, n_joints, n_frames))
     points[:3] = xyz.transpose(2, 1, 0)
     file["data"]["points"] = points
-    residuals = _residuals(keypoints, person)[None].transpose(0, 2, 1)
-    file["data"]["meta_points"]["residuals"] = residuals
+    residuals = _residuals(keypoints, person)
+    file["data"]["meta_points"]["residuals"] = residuals.T[np.newaxis]
     with atomic(path) as temporary:
         file.write(str(temporary))
-        _check_whole(path, temporary.read_bytes(), points.size * 4)
+        content = bytearray(temporary.read_bytes())
+        start = _first_point(path, content, points.size * 4)
+        stored = np.frombuffer(content, "<f4", points.size, start).reshape(n_frames, n_joints, 4)
+        stored[..., 3] = residuals
+        temporary.write_bytes(content)
 
 
-def _check_whole(path: StrPath, content: bytes, n_bytes: int) -> None:
-    """Check that the file is complete, because ezc3d does not notice a full disk.
+def _first_point(path: StrPath, content: bytes | bytearray, n_bytes: int) -> int:
+    """Return where the points begin, and check that the file is complete.
 
-    It writes last where the points begin.
+    ezc3d does not notice a full disk; it writes last where the points begin.
     """
     header = content[FIRST_DATA_BLOCK].ljust(2, b"\0")
     before = BLOCK_BYTES * (struct.unpack("<H", header)[0] - 1)
@@ -68,11 +77,12 @@ def _check_whole(path: StrPath, content: bytes, n_bytes: int) -> None:
             f"{path}: expected to write {n_bytes} bytes of points, found {len(content)} bytes of a "
             "file that is not whole: free or allow the space"
         )
+    return before
 
 
 def _residuals(keypoints: Keypoints3D, person: int) -> NDArray:
-    """Return (T, J) in mm."""
+    """Return (T, J) in whole mm."""
     variance = np.trace(keypoints.covariance[person], axis1=-2, axis2=-1) / 3
     residual = np.sqrt(np.nan_to_num(variance, nan=0.0)) * MM_PER_M
-    residual = np.minimum(residual, MOST_RESIDUAL_MM)
+    residual = np.minimum(np.rint(residual), MOST_RESIDUAL_MM)
     return np.where(np.isfinite(keypoints.xyz[person]).all(axis=-1), residual, MISSING)
