@@ -1,6 +1,7 @@
 """For OpenSim: a marker set for the joints of a TRC file, and joint angles as a motion file."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
@@ -9,6 +10,7 @@ from courtside.exports import markers, opensim_model
 from courtside.records.devices import hierarchy
 from courtside.records.keypoints.skeletal_motion import SkeletalMotion
 from courtside.study.errors import InputError, StrPath
+from courtside.study.execution import log
 from courtside.study.execution.files import atomic
 
 # In the models of Rajagopal et al. 2016 and Beaucage-Gauvreau et al. 2019, which Pose2Sim's joins,
@@ -47,34 +49,39 @@ def write_markers(path: StrPath, joints: Sequence[str]) -> None:
     """Write the marker set (`.xml`) of joints, named as in `pose2sim.write_project`'s TRC files.
 
     For models with the bodies `head`, `torso`, `pelvis` and those of the limbs, as Pose2Sim's has.
-    Raises `InputError` if the position of a joint on a body is unknown.
+    A joint whose place on these is unknown gets no marker: OpenSim ignores it in the TRC file.
     """
     root = ElementTree.Element("OpenSimDocument", Version=opensim_model.VERSION)
     group = ElementTree.SubElement(root, "MarkerSet", name="markerset")
     objects = ElementTree.SubElement(group, "objects")
+    unplaced = []
     for joint, marker in zip(joints, markers.names(joints), strict=True):
-        body, place, exact = _place(path, joint)
+        found = _place(joint)
+        if found is None:
+            unplaced.append(joint)
+            continue
+        body, place, exact = found
         entry = ElementTree.SubElement(objects, "Marker", name=marker)
         ElementTree.SubElement(entry, "socket_parent_frame").text = f"/bodyset/{body}"
         ElementTree.SubElement(entry, "location").text = " ".join(f"{value:g}" for value in place)
         ElementTree.SubElement(entry, "fixed").text = str(exact).lower()
+    if unplaced:
+        message = "%s: no markers for %d joints such as %s: their places on a body are unknown"
+        log.logger.info(message, Path(path).name, len(unplaced), unplaced[0])
     ElementTree.SubElement(group, "groups")
     ElementTree.indent(root)
     with atomic(path) as temporary:
         ElementTree.ElementTree(root).write(temporary, encoding="UTF-8", xml_declaration=True)
 
 
-def _place(path: StrPath, joint: str) -> tuple[str, tuple[float, float, float], bool]:
-    """Return body, position and whether the position is exact."""
+def _place(joint: str) -> tuple[str, tuple[float, float, float], bool] | None:
+    """Return body, position and whether the position is exact; None where it is unknown."""
     side, part = markers.side_and_part(joint)
     letter = markers.SIDES.get(side, "").lower()
     if side and part in AT_ORIGIN:
         return AT_ORIGIN[part].format(letter), (0.0, 0.0, 0.0), True
     if part not in ROUGH:
-        raise InputError(
-            f"{path}: expected joints whose place on an OpenSim body is known, found {joint!r}; "
-            "leave it out"
-        )
+        return None
     body, (x, y, z) = ROUGH[part]
     return body.format(letter), (x, y, -z if side == "left" and z else z), False
 
