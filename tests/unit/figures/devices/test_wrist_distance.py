@@ -131,3 +131,19 @@ def test_many_candidates_do_not_crowd_out_a_late_clap():
     titles = [axis.get_title() for axis in drawing.subfigs[1].axes]
     assert len(titles) == 9 and any(title.startswith("clap 1, 30.00 s") for title in titles)
     assert drawing.subfigs[2].texts[0].get_text().endswith("and 12 more, in the CSV")
+
+
+def test_candidates_by_the_hundred_have_letters_of_their_own():
+    """Hands that often come together, one time in a row: more than a to zz."""
+    many = [event("mocopi", "none", 0.02 * at, why="the arms are bent") for at in range(703)]
+    rows = wrist_distance.table(wrists({"mocopi": 0.0}), pd.DataFrame(many))
+    assert rows["note"].iloc[[0, 25, 26, 701, 702]].tolist() == ["a", "z", "aa", "zz", "aaa"]
+    assert rows["note"].is_unique
+
+
+@pytest.mark.parametrize(("aligned", "panels"), [(True, [1, 2, 3, 1]), (False, [1, 3, 4, 2])])
+def test_events_share_a_panel_to_half_a_second_from_the_first(aligned, panels):
+    times = [("cameras", 3.0), ("cameras", 3.6), ("cameras", 4.2), ("mocopi", 3.4)]
+    events = pd.DataFrame([event(source, "clap", time_s, 1) for source, time_s in times])
+    rows = wrist_distance.table(wrists(TWO), events, aligned=aligned)
+    assert rows["panel"].tolist() == panels

@@ -86,20 +86,22 @@ def draw(
 def _together(shown: pd.DataFrame, aligned: bool) -> list[list[int]]:
     """Return lists of the index of simultaneous events."""
     groups: list[list[int]] = []
-    for at, row in shown.sort_values("time_s", kind="stable").iterrows():
-        for group in reversed(groups):
-            near = row["time_s"] - shown.loc[group[0], "time_s"] <= SAME_S
-            if near and (aligned or shown.loc[group[0], "source"] == row["source"]):
-                group.append(at)
-                break
+    latest: dict[str, tuple[float, list[int]]] = {}  # by source: start and members of its last one
+    for row in shown.sort_values("time_s", kind="stable").itertuples():
+        source = "" if aligned else row.source
+        start_s, members = latest.get(source, (-np.inf, []))
+        if row.time_s - start_s <= SAME_S:
+            members.append(row.Index)
         else:
-            groups.append([at])
+            groups.append([row.Index])
+            latest[source] = row.time_s, groups[-1]
     return groups
 
 
 def _letter(at: int) -> str:
+    """Return a, b ... z, aa, ab ... of 0, 1 ... ."""
     more, letter = divmod(at, 26)
-    return (ascii_lowercase[more - 1] if more else "") + ascii_lowercase[letter]
+    return (_letter(more - 1) if more else "") + ascii_lowercase[letter]
 
 
 def _panels(events: pd.DataFrame) -> list[float]:
