@@ -332,6 +332,20 @@ def test_a_gap_is_bridged_but_not_for_ever():
     assert len(openpose.link(people)) == 2
 
 
+def test_persons_of_very_few_frames_are_left_out_of_a_long_take(caplog):
+    """Each track fills an array over the whole take: false detections filled the memory."""
+    caplog.set_level("INFO", logger="courtside")
+    people = [stack(person(100.0 + 0.1 * at)) for at in range(600)]
+    for start, n_frames in ((100, 4), (200, 1), (300, 5)):
+        for at in range(start, start + n_frames):
+            people[at] = stack(people[at][0], person(900.0))
+    tracks = openpose.link(people)
+    assert np.isfinite(tracks[:, :, 0, 0]).sum(axis=1).tolist() == [600, 5]
+    assert np.array_equal(tracks[0, :, 0, 0], 100.0 + 0.1 * np.arange(600))
+    assert caplog.messages == ["2 persons seen in fewer than 5 frames are left out"]
+    assert len(openpose.link(people[190:210])) == 2  # a short take: one frame is much of it
+
+
 def test_somebody_elsewhere_is_somebody_else():
     people = [stack(person(100.0)), stack(person(170.0 + 200))]
     tracks = openpose.link(people)

@@ -212,6 +212,9 @@ FARTHEST = 0.33
 LONGEST_GAP = 10  # frames. ASSUME: a person unseen for longer may be another one
 # ASSUME: smaller visible parts of a person say little of how far they may move.
 LEAST_SIZE_PX = 30.0
+# ASSUME: who is seen in fewer frames of a long take (and in less than this share of a short one) is
+# a false detection. Each track fills an array over the whole take.
+FEWEST_FRAMES, FEWEST_SHARE = 5, 0.01
 
 
 def link(people: Sequence[NDArray]) -> NDArray:
@@ -222,7 +225,7 @@ def link(people: Sequence[NDArray]) -> NDArray:
 
     Each frame's persons are assigned to the tracks so that the sum of median distances between
     common keypoints is least (Kuhn 1955); a person too far from all tracks begins a new one.
-    Crossing persons may be swapped.
+    Crossing persons may be swapped. Tracks of very few frames are left out, and logged.
     """
     tracks: list[dict[int, NDArray]] = []
     last_seen: list[int] = []
@@ -241,7 +244,12 @@ def link(people: Sequence[NDArray]) -> NDArray:
                 tracks.append({})
                 last_seen.append(at)
             tracks[k][at], last_seen[k] = person, at
-    return _stacked(tracks, people)
+    fewest = min(FEWEST_FRAMES, FEWEST_SHARE * len(people))
+    kept = [track for track in tracks if len(track) >= fewest]
+    if len(kept) < len(tracks):
+        message = "%d persons seen in fewer than %g frames are left out"
+        log.logger.info(message, len(tracks) - len(kept), fewest)
+    return _stacked(kept, people)
 
 
 def _distance(before: NDArray, after: NDArray) -> float:
