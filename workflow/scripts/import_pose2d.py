@@ -20,6 +20,7 @@ def main(paths, pose2d_npz, *, camera, model, trim_s, folders=None, rate_hz=None
         # All frames of the video, whatever is used of them: the files count them.
         times_s = packets.list_packets(paths.video, stop_s=stop_s).times_s
         frames = {"size": reader.probe(paths.video, stop_s=stop_s).size, "time_s": times_s}
+        frames["video"] = paths.video
     else:
         numbers = frame_numbers.common(folders)
         known = {one.name: one for one in camera_models.read_toml(paths.cameras)}

@@ -122,7 +122,7 @@ def test_numbers_that_do_not_say_the_frame_are_refused(tmp_path, numbers, messag
 
 def test_the_script_counts_the_frames_of_the_whole_video(tmp_path):
     """With trim_s the files still count from the video's first frame."""
-    writer.write_video(tmp_path / "v.mp4", [np.zeros((48, 64, 3), np.uint8)] * 12, 10.0, crf=30)
+    writer.write_video(tmp_path / "v.mp4", [np.zeros((480, 640, 3), np.uint8)] * 12, 10.0, crf=30)
     write_numbers(tmp_path / "j", range(12))
     script = runpy.run_path(str(SKELETONS.parents[1] / "workflow/scripts/import_pose2d.py"))
     paths = SimpleNamespace(
@@ -132,8 +132,7 @@ def test_the_script_counts_the_frames_of_the_whole_video(tmp_path):
     script["main"](paths, out, camera="left", model="theirs", trim_s=trim_s)
     found = keypoint_files.read_2d(out)
     assert found.time_s == pytest.approx([0.3, 0.4, 0.5])
-    assert found.size.tolist() == [64, 48]
-    assert (found.reason == missing_reason.OUT_OF_IMAGE).any()  # the points are beyond 64 px
+    assert found.size.tolist() == [640, 480]
     alone = SimpleNamespace(**vars(paths) | {"video": [], "cameras": tmp_path / "cameras.toml"})
     camera = Camera("left", (640, 480), np.diag([500.0, 500, 1]), np.zeros(5), np.eye(3, 4))
     write_toml(alone.cameras, [camera], source="test")
@@ -142,8 +141,14 @@ def test_the_script_counts_the_frames_of_the_whole_video(tmp_path):
     unfilmed = keypoint_files.read_2d(out)
     assert unfilmed.time_s == pytest.approx(found.time_s)
     assert unfilmed.size.tolist() == [640, 480]
-    seen = found.reason == missing_reason.OK
-    assert np.array_equal(unfilmed.xy[seen], found.xy[seen])
+    assert np.array_equal(unfilmed.xy, found.xy)
+    pictures = [np.zeros((96, 128, 3), np.uint8)] * 12
+    writer.write_video(tmp_path / "small.mp4", pictures, 10.0, crf=30)
+    small = SimpleNamespace(**vars(paths) | {"video": tmp_path / "small.mp4"})
+    with pytest.raises(
+        InputError, match=r"within the 128x96 px of .*small\.mp4, found 84% outside"
+    ):
+        script["main"](small, out, camera="left", model="theirs", trim_s=trim_s)
     with pytest.raises(InputError, match="correct trim_s"):
         script["main"](paths, out, camera="left", model="theirs", trim_s=(2.0, 3.0))
 
@@ -179,6 +184,13 @@ def test_without_a_video_frames_are_counted_from_the_first_number(tmp_path):
     assert found.xy[0, 1:4, 0, 0].tolist() == [107, 108, 109]
     with pytest.raises(InputError, match=r"within the 120x480 px that .* found 88% outside, up to"):
         read(tmp_path / "j", n_frames=5, first=6, size=(120, 480))
+
+
+def test_points_of_larger_pictures_than_the_videos_are_refused(tmp_path):
+    write_numbers(tmp_path / "j", range(4))
+    says = r"/j: expected points within the 130x180 px of hall/cam1.mp4, found 8\d% outside, up to"
+    with pytest.raises(InputError, match=says):
+        read(tmp_path / "j", size=(130, 180), video="hall/cam1.mp4")
 
 
 @pytest.mark.parametrize(

@@ -31,6 +31,7 @@ def read(
     model: str,
     size: tuple[int, int],
     time_s: NDArray,
+    video: StrPath | None = None,
     first: int | None = None,
     trim_s: tuple[float, float] | None = None,
 ) -> Keypoints2D:
@@ -38,16 +39,15 @@ def read(
 
     The `folder` holds files `*.json`; the last number in a name is that of the frame
     (`frame_numbers`). Their points are in the order of the `skeleton`; `size` is the width and
-    height of the picture, px. `time_s` (T,) are the times of all frames of the video; in those
+    height of the picture, px. `time_s` (T,) are the times of all frames of the `video`; in those
     without a file nobody is seen. Without a video, `first` is the number of the first of them. With
     `trim_s`, only frames from its start to before its stop.
 
     An `InputError` if there are no such files, one is damaged or has another number of points, the
     numbers do not say which frames the files are of, no frame lies within `trim_s`, the points are
-    those of another skeleton, or, without a video, of pictures of another size.
+    those of another skeleton, or lie outside the pictures.
     """
     files, times = frame_numbers.numbered(folder), np.asarray(time_s, dtype=float)
-    known = first is not None
     if first is None:
         first, remark = frame_numbers.matched(folder, files, len(times), _n_needed(times, trim_s))
         if remark:
@@ -64,8 +64,7 @@ def read(
         if number - first < len(people):  # the last one may be one too many
             people[number - first] = _people(path, len(skeleton.joints), skeleton.name)
     _check_order(folder, skeleton.name, people)
-    if known:
-        _check_size(folder, np.concatenate(people), size)
+    _check_size(folder, np.concatenate(people), size, video)
     tracks = link([people[at] for at in kept])
     return _keypoints(tracks, skeleton, camera, model, size, times[kept])
 
@@ -78,16 +77,19 @@ def _n_needed(times: NDArray, trim_s: tuple[float, float] | None) -> int:
     return int(np.count_nonzero(times < trim_s[1])) if trim_s else len(times)
 
 
-def _check_size(folder: StrPath, people: NDArray, size: tuple[int, int]) -> None:
-    """Raise `InputError` if points, (K, J, 3), were found in pictures of another `size`, px."""
+def _check_size(
+    folder: StrPath, people: NDArray, size: tuple[int, int], video: StrPath | None
+) -> None:
+    """Raise `InputError` if points, (K, J, 3), were found in pictures larger than `size`, px."""
     xy = people[np.isfinite(people[..., 0])][:, :2]
     within = ((xy >= -0.5) & (xy <= np.array(size) - 0.5)).all(axis=1)
     if len(xy) and within.mean() < WITHIN:
+        of = f"of {video}" if video else "that the camera was calibrated for"
+        how = "name the video that they were found in"
         raise InputError(
-            f"{folder}: expected points within the {size[0]}x{size[1]} px that the camera was "
-            f"calibrated for, found {1 - within.mean():.0%} outside, up to "
-            f"({xy[:, 0].max():.0f}, {xy[:, 1].max():.0f}); declare `scale` or `crop_px` of the "
-            "camera, or name its own folder"
+            f"{folder}: expected points within the {size[0]}x{size[1]} px {of}, found "
+            f"{1 - within.mean():.0%} outside, up to ({xy[:, 0].max():.0f}, {xy[:, 1].max():.0f}); "
+            f"{how if video else 'declare `scale` or `crop_px` of the camera'}, or its own folder"
         )
 
 
