@@ -99,6 +99,16 @@ def test_millimetres_become_metres(written, tmp_path):
         ("DataRate", "Rate", "expected a TRC file"),
         ("1\t0.000000\t", "1\t0.000000\tx", "line 7: expected numbers"),
         ("\n1\t0.000000\t", "\n1\t0.000000\t1\t2\t3\t", "line 7: expected 101 values"),
+        (
+            "\n2\t0.020000\t",
+            "\n2\t\t",
+            r"frames 0.02 s apart, .* found 0 and nan s from frame 1 on",
+        ),
+        ("\n3\t0.040000\t", "\n3\t0.020000\t", "found 0.02 and 0.02 s from frame 2 on"),
+        ("\n3\t0.040000\t", "\n3\t0.010000\t", "found 0.02 and 0.01 s from frame 2 on"),
+        ("\n3\t0.040000\t", "\n3\t0.055000\t", "found 0.02 and 0.055 s from frame 2 on"),
+        ("\n50\t", "\n101\t", r"as DataRate \(101\) says"),
+        ("\n50\t", "\n0\t", "found: a DataRate of 0"),
     ],
 )
 def test_a_damaged_file_is_one_line(written, tmp_path, old, new, message):

@@ -56,13 +56,15 @@ def read(path: StrPath) -> tuple[list[str], float, NDArray, NDArray]:
     """Read joints, rate (Hz), times (T,) s and positions (T, J, 3) of any program's TRC file.
 
     Positions are metres along world axes, NaN where blank. Raises `InputError` if the file is not a
-    TRC file in m, cm or mm, a line has another number of values, or the header counts other markers
-    or frames than there are.
+    TRC file in m, cm or mm, a line has another number of values, the header counts other markers
+    or frames than there are, or times do not follow each other as its rate says.
     """
     with reading(path, "a TRC file", "export it again"):
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
         header = dict(zip(lines[1].split("\t"), lines[2].split("\t"), strict=False))
         unit, rate_hz = header["Units"].strip(), float(header["DataRate"])
+        if not 0 < rate_hz < np.inf:
+            raise ValueError(f"a DataRate of {rate_hz:g}")
         stated = {key: int(header[key]) for key in ("NumMarkers", "NumFrames")}
         joints = [name.strip() for name in lines[3].split("\t")[2:] if name.strip()]
     if unit not in METRES:
@@ -78,8 +80,21 @@ def read(path: StrPath) -> tuple[list[str], float, NDArray, NDArray]:
             f"{len(rows)} frames; the file may be cut off"
         )
     table = np.array(rows).reshape(len(rows), 2 + 3 * len(joints))
+    _check_times(path, table[:, 1], rate_hz)
     xyz = table[:, 2:].reshape(len(rows), len(joints), 3)[..., TRC_AXES] * METRES[unit]
     return joints, rate_hz, table[:, 1], xyz
+
+
+def _check_times(path: StrPath, time_s: NDArray, rate_hz: float) -> None:
+    """Raise `InputError` unless the times (T,) s are even within half a step of the rate."""
+    even = np.abs(np.diff(time_s) * rate_hz - 1) <= 0.5  # False beside a time that is missing
+    if not (even.all() and np.isfinite(time_s).all()):
+        at = int(np.argmin(even)) if len(even) else 0
+        raise InputError(
+            f"{path}: Time: expected frames {1 / rate_hz:.4g} s apart, as DataRate ({rate_hz:g}) "
+            f"says, found {' and '.join(f'{one:g}' for one in time_s[at : at + 2])} s from frame "
+            f"{at + 1} on; export it again without gaps, or correct DataRate"
+        )
 
 
 def _row(path: StrPath, number: int, line: str, wanted: int) -> list[float]:
