@@ -176,6 +176,21 @@ def test_a_lost_depth_picture_is_no_depth(still):
     assert "91.7%" in lifting.summary(motion, np.ones(3))
 
 
+def test_a_slower_depth_stream_serves_every_colour_frame(still):
+    """Colour at 60 frames a second, depth at 30; then one picture of depth is lost."""
+    xyz, pictures = still
+    keypoints = replace(view(xyz), time_s=5 + np.arange(N) / 60)
+    times = keypoints.time_s[::2]
+    taken = [(t, depth_scenes.steps(z)) for t, z in zip(times, pictures, strict=False)]
+    settings = {"bones": BONES, "baseline_m": 0.055, "skin_m": RADIUS_M}
+    motion, _ = lifting.lift_take("d", keypoints, taken, RIG, **settings)
+    assert (motion.reason == missing_reason.OK).all()
+    del taken[3]
+    motion, _ = lifting.lift_take("d", keypoints, taken, RIG, **settings)
+    lost = (motion.reason == missing_reason.NO_DEPTH).all(axis=1)
+    assert np.flatnonzero(lost).tolist() == [6]
+
+
 def test_frames_are_taken_at_the_nearest_time():
     frames = [(0.0, "a"), (0.1, "b"), (0.3, "c")]
     times = [-0.2, 0.04, 0.06, 0.19, 0.29, 0.5]

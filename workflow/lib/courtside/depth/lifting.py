@@ -1,7 +1,7 @@
 """Lift the 2D joints of a colour picture into 3D by the depth camera beside it."""
 
+import itertools
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,7 +42,9 @@ OTHERS_M = 0.01  # ASSUME: what has no entry are points of hands and face: thin,
 ON_SKIN = ("nose", "eye", "eye_inner", "eye_outer", "mouth")
 # ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
 LEAST_RADIUS_M = 0.02  # of the limb at a joint, for the size of its window
-LAG = 0.75  # of the colour frames' interval: an older or newer depth picture shows another pose
+# Of the longer interval of colour and depth: an older or newer depth picture shows another pose.
+LAG = 0.75
+FIRST = 11  # depth pictures that tell their interval
 BONE_TOLERANCE, BONE_TOLERANCE_M = 0.25, 0.06  # share of a bone's length, and least tolerance
 FEWEST = 10  # frames that a bone's median length needs
 FROM_BODY_M = {True: 0.4, False: 1.1}  # largest depth from the trunk: joints of the trunk, others
@@ -64,7 +66,7 @@ def lift_take(
     """Lift the joints of one person over a take to a motion named `source`.
 
     `view` has one person (P = 1), its times on the recording's clock, increasing. `depth_frames`
-    are times and depth (h, w) uint16, in order of time; one is held at a time. `bones` are pairs of
+    are times and depth (h, w) uint16, in order of time; few are held at once. `bones` are pairs of
     joints whose distance is constant; `baseline_m`, between the imagers that depth comes from, is
     for the noise. `skin_m` is the depth of each joint behind the skin, by default
     `SKIN_TO_JOINT_M`; `beyond_m` how far the network places a joint beyond the end of its limb
@@ -161,8 +163,12 @@ def nearest_frames(
 def _sampled(sampler, xy, times_s, depth_frames) -> tuple[NDArray, NDArray]:
     """Return the surfaces (T, J, 3) and the depth of the body (T,), metres."""
     z, z_body = np.full((*xy.shape[:2], 3), np.nan), np.full(len(xy), np.nan)
-    interval_s = np.median(np.diff(times_s)) if len(times_s) > 1 else 1.0
-    for t, depth in enumerate(nearest_frames(times_s, depth_frames, LAG * interval_s)):
+    depth_frames = iter(depth_frames)
+    first = list(itertools.islice(depth_frames, FIRST))
+    steps_s = [np.diff(times_s), np.diff([time_s for time_s, _ in first])]
+    interval_s = max((np.median(one) for one in steps_s if len(one)), default=1.0)
+    frames = itertools.chain(first, depth_frames)
+    for t, depth in enumerate(nearest_frames(times_s, frames, LAG * interval_s)):
         if depth is not None:
             z[t], z_body[t] = sampler.surfaces(xy[t], depth)
     return z, z_body
@@ -180,7 +186,7 @@ def _behind_skin(colour: Camera, xy: NDArray, z: NDArray, skin: NDArray) -> NDAr
 def _drawn_back(xyz: NDArray, names: Sequence[str], beyond_m: Mapping[str, float]) -> NDArray:
     """Return joints (T, J, 3) moved towards their parents, where these are known."""
     moved = xyz.copy()
-    for (joint, beyond), side in product(beyond_m.items(), ("left", "right")):
+    for (joint, beyond), side in itertools.product(beyond_m.items(), ("left", "right")):
         ends = f"{side}_{skeleton.PARENT[joint]}", f"{side}_{joint}"
         if set(ends) <= set(names):
             start, stop = (names.index(end) for end in ends)
