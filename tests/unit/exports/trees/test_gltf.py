@@ -1,5 +1,9 @@
 """GLB written, and read back by pygltflib: every joint where the motion has it, in every frame."""
 
+import json
+import struct
+from dataclasses import replace
+
 import numpy as np
 import pygltflib
 import pytest
@@ -149,3 +153,16 @@ def test_without_frames_there_is_the_pose_at_rest(tmp_path):
     read = pygltflib.GLTF2().load(str(tmp_path / "a.glb"))
     assert read.animations == []
     assert read.nodes[1].translation == made().hierarchy.offsets[1].tolist()
+
+
+def test_a_body_that_was_never_placed_is_a_file_without_buffers(tmp_path):
+    """The specification has no empty lists and no buffer of zero bytes (glTF 2.0, 3.6 and 5.1)."""
+    one, path = made(0), tmp_path / "a.glb"
+    shape = Hierarchy(one.hierarchy.joints, one.hierarchy.parents, np.zeros((5, 3)))
+    gltf.write(path, replace(one, hierarchy=shape), "a")
+    content = path.read_bytes()
+    size, length, kind = struct.unpack_from("<8xII4s", content)
+    assert (size, length, kind) == (len(content), len(content) - 20, b"JSON")  # one chunk alone
+    read = json.loads(content[20:])
+    assert sorted(read) == ["asset", "materials", "nodes", "scene", "scenes"]
+    assert [key for key, value in read.items() if value == []] == []

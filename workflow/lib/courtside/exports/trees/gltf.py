@@ -53,10 +53,11 @@ def write(path: StrPath, posed: PosedHierarchy, name: str) -> None:
     _sticks(made, binary, posed)
     if len(posed.time_s):
         _animation(made, binary, posed, name)
-    made["buffers"] = [{"byteLength": len(binary)}]
+    made["buffers"] = [{"byteLength": len(binary)}] if binary else []
+    made = {key: value for key, value in made.items() if value != []}  # glTF has no empty lists
     text = json.dumps(made, separators=(",", ":"), allow_nan=False).encode()
     text += b" " * (-len(text) % 4)
-    chunks = [(b"JSON", text), (b"BIN\0", bytes(binary))]
+    chunks = [(b"JSON", text), *([(b"BIN\0", bytes(binary))] if binary else [])]
     size = 12 + sum(8 + len(content) for _, content in chunks)
     with atomic(path) as temporary, temporary.open("wb") as stream:
         stream.write(struct.pack("<4sII", MAGIC, VERSION, size))
