@@ -39,7 +39,9 @@ def solved(basis, time_s, inner, outer, wanted):
     first, values = basis.at(time_s)
     per_frame = inner.swapaxes(1, 2) @ inner
     sides = np.concatenate([outer, wanted[..., None]], axis=2)
-    blocks, right = splines.gather(basis, first, values, per_frame, inner.swapaxes(1, 2) @ sides)
+    vector = inner.swapaxes(1, 2) @ sides
+    blocks, right = np.zeros((basis.n, 4, P, P)), np.zeros((basis.n, P, Q + 1))
+    splines.gather(blocks, right, first, values, per_frame, vector)
     band = splines.precision(basis, 2.0)
     blocks[:, :, range(P), range(P)] += band[..., None]
     flat = outer.reshape(-1, Q)
@@ -109,3 +111,28 @@ def test_values_are_those_of_a_spline_through_them():
     other = make_interp_spline(time_s[::10], values[::10], k=3, t=None)
     assert len(knots) == basis.n_intervals + 1
     assert other(time_s[2:-2]) == pytest.approx(values[2:-2], abs=0.05)
+
+
+def test_frames_are_added_to_the_coefficients_that_they_reach_alone(problem):
+    """A part of a long take costs as much as a part of a short one."""
+    basis, time_s, inner, outer, _ = problem
+    time_s = np.sort(time_s)
+    first, values = basis.at(time_s)
+    per_frame, vector = inner.swapaxes(1, 2) @ inner, inner.swapaxes(1, 2) @ outer
+    whole, parts = [
+        (np.zeros((basis.n, 4, P, P)), np.zeros((basis.n, P, Q))) for _ in ("whole", "parts")
+    ]
+    splines.gather(*whole, first, values, per_frame, vector)
+    for part in np.array_split(np.arange(N), 7):
+        splines.gather(*parts, first[part], values[part], per_frame[part], vector[part])
+    for one, other in zip(whole, parts, strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-12, atol=1e-12)
+    unknown = [np.full_like(one, np.nan) for one in whole]
+    few = slice(100, 120)
+    reached = np.zeros(basis.n, dtype=bool)
+    reached[first[few].min() : first[few].max() + 4] = True
+    for one in unknown:
+        one[reached] = 0.0
+    splines.gather(*unknown, first[few], values[few], per_frame[few], vector[few])
+    assert all(np.isfinite(one[reached]).all() for one in unknown)
+    assert all(np.isnan(one[~reached]).all() for one in unknown) and 0 < reached.sum() < basis.n

@@ -174,21 +174,22 @@ class Fit:
         white = self.noise.whitening() / self.seen.sigma_m[..., None, None]
         residual = np.nan_to_num(self.vision - predicted)
         white = np.nan_to_num(white)
-        sums: list[NDArray] = []
+        n, size, n_fixed = self.basis.n, self.model.n_slow, self.model.n_fixed
+        blocks, border = np.zeros((n, splines.REACH, size, size)), np.zeros((n, size, n_fixed + 1))
+        fixed = np.zeros((n_fixed, n_fixed + 1))
         for part in self._parts():
             _, by_slow, by_fixed = self.model.linear(self.frames(part), slow[part], self.fixed)
             rows = len(by_slow)
-            by_slow = (white[part] @ by_slow).reshape(rows, -1, self.model.n_slow)
-            by_fixed = (white[part] @ by_fixed).reshape(rows, -1, self.model.n_fixed)
+            by_slow = (white[part] @ by_slow).reshape(rows, -1, size)
+            by_fixed = (white[part] @ by_fixed).reshape(rows, -1, n_fixed)
             left = (white[part] @ residual[part][..., None]).reshape(rows, -1, 1)
             across = np.concatenate([by_fixed, left], axis=2)
             per_frame = by_slow.swapaxes(1, 2) @ by_slow
             vector = by_slow.swapaxes(1, 2) @ across
-            gathered = splines.gather(self.basis, first[part], values[part], per_frame, vector)
-            flat = by_fixed.reshape(-1, self.model.n_fixed)
-            found = [*gathered, flat.T @ across.reshape(len(flat), -1)]
-            sums = [a + b for a, b in zip(sums, found, strict=True)] if sums else found
-        return self._solve(*sums)
+            splines.gather(blocks, border, first[part], values[part], per_frame, vector)
+            flat = by_fixed.reshape(-1, n_fixed)
+            fixed += flat.T @ across.reshape(len(flat), -1)
+        return self._solve(blocks, border, fixed)
 
     def _solve(self, blocks: NDArray, border: NDArray, fixed: NDArray) -> splines.Solution:
         scale = self._inverse_squares()

@@ -85,27 +85,34 @@ def precision(basis: Basis, memory_s: float) -> NDArray:
 
 
 def gather(
-    basis: Basis, first: NDArray, values: NDArray, per_frame: NDArray, vector: NDArray
-) -> tuple[NDArray, NDArray]:
-    """Sum the normal equations of every frame into those of the coefficients.
+    blocks: NDArray,
+    right: NDArray,
+    first: NDArray,
+    values: NDArray,
+    per_frame: NDArray,
+    vector: NDArray,
+) -> None:
+    """Add the normal equations of frames to those of the coefficients, in place.
 
     `first` and `values` are of `Basis.at`; `per_frame` (T, P, P) is the normal matrix of each frame
     in the values of the P functions there, `vector` (T, P, ...) its right-hand side or the matrix
-    to border parameters. Return blocks (K, 4, P, P), where block (k, l) has the rows of
-    coefficients k and the columns of coefficients k + l, and the right side (K, P, ...).
+    to border parameters. In `blocks` (K, 4, P, P), block (k, l) has the rows of coefficients k and
+    the columns of coefficients k + l; `right` (K, P, ...) is the right side. Only the coefficients
+    that the frames reach are touched.
     """
-    blocks = np.zeros((basis.n, REACH, *per_frame.shape[1:]))
-    right = np.zeros((basis.n, *vector.shape[1:]))
+    reached = slice(first.min(), first.max() + REACH)
     order = np.argsort(first, kind="stable")
-    intervals, starts = np.unique(first[order], return_index=True)
+    intervals, starts = np.unique(first[order] - reached.start, return_index=True)
     per_frame, vector, values = per_frame[order], vector[order], values[order]
     spread = (-1,) + (1,) * (vector.ndim - 1)
+    added, added_right = np.zeros_like(blocks[reached]), np.zeros_like(right[reached])
     for a in range(REACH):
-        right[intervals + a] += np.add.reduceat(values[:, a].reshape(spread) * vector, starts)
+        added_right[intervals + a] += np.add.reduceat(values[:, a].reshape(spread) * vector, starts)
         for b in range(a, REACH):
             both = (values[:, a] * values[:, b])[:, None, None]
-            blocks[intervals + a, b - a] += np.add.reduceat(both * per_frame, starts)
-    return blocks, right
+            added[intervals + a, b - a] += np.add.reduceat(both * per_frame, starts)
+    blocks[reached] += added
+    right[reached] += added_right
 
 
 def _to_band(blocks: NDArray) -> NDArray:
