@@ -364,8 +364,14 @@ def test_a_hostile_file_is_refused_at_once(tmp_path, name):
 def test_a_file_too_large_is_not_even_opened(tmp_path):
     with (tmp_path / "large.bvh").open("wb") as stream:
         stream.truncate(bvh.MAX_BYTES + 1)  # a hole: takes no space
-    with pytest.raises(InputError, match="at most 64 MiB"):
+    with pytest.raises(InputError, match="at most 256 MiB"):
         bvh.read_text(tmp_path / "large.bvh")
+
+
+def test_half_an_hour_of_mocopi_is_not_too_large(tmp_path):
+    """It has 150 MiB; here blanks after the last row take most of them."""
+    found = read(tmp_path, ARM + " " * (150 << 20))
+    np.testing.assert_array_equal(found.rows, read(tmp_path, ARM).rows)
 
 
 def test_rows_are_numbers_whatever_their_padding():

@@ -181,7 +181,7 @@ AXES = ("X", "Y", "Z")
 CHANNELS = {
     f"{axis}{kind}".lower(): f"{axis}{kind}" for kind in ("position", "rotation") for axis in AXES
 }
-MAX_BYTES = 64 << 20  # 12 minutes of mocopi at 60 frames a second
+MAX_BYTES = 256 << 20  # 50 minutes of mocopi at 60 frames a second
 # ASSUME: far above any take and any body, far below what would fill the memory.
 MAX_LINES = 1_000_000
 MAX_JOINTS = 1000
