@@ -54,7 +54,7 @@ rule export_source:
     log:
         "results/{session}/logs/export_source/{take}.{source}.{model}.log",
     wildcard_constraints:
-        source=f"(?!cameras){NAME}(?<!-corrected)",
+        source=rf"(?!cameras\.){NAME}(?<!-corrected)",
     params:
         code=code("export_source.py"),
         person=of_job(devices.person),

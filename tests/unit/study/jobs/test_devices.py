@@ -1,6 +1,8 @@
 """Files and settings of devices: written out for the tiny study and for takes made up of it."""
 
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -157,6 +159,27 @@ def test_without_vision_nothing_is_corrected(job, study):
     assert list(devices.sources(one)) == ["suit"]
     with pytest.raises(InputError, match=r"takes\.claps: expected fixed cameras or a depth camera"):
         devices.vision_file(one)
+
+
+def test_names_of_devices_do_not_make_them_cameras(job, study):
+    suit, skeletons = Device("inertial", "m.bvh", "p1"), Device("nuitrack", "n.csv", "p1")
+    named = {"suit-cameras": suit, "nuitrack-depth": skeletons}
+    alone = job(of_devices(study, **named), **CLAPS)
+    assert devices.vision(alone) is None and devices.correctable(alone) == []
+    beside = job(of_devices(study, **named, d415=Device("rgbd", "d.bag", "p1")), **CLAPS)
+    assert devices.vision(beside) == "d415-depth"
+
+
+def test_only_the_fixed_cameras_are_no_source_of_the_export_rule():
+    """A device may be called `cameras2`."""
+    text = (Path(__file__).parents[4] / "workflow" / "rules" / "devices.smk").read_text()
+    rule = text.partition("rule export_source:")[2]
+    pattern = re.search(r'source=rf"(.*)"', rule)[1].replace("{NAME}", "[a-z0-9][a-z0-9_-]*")
+    path = re.compile(rf"({pattern})\.blazepose-full\.bvh")
+    assert path.fullmatch("cameras2.blazepose-full.bvh")
+    assert path.fullmatch("cameras-rgb.blazepose-full.bvh")
+    assert not path.fullmatch("cameras.blazepose-full.bvh")
+    assert not path.fullmatch("suit-corrected.blazepose-full.bvh")
 
 
 def test_persons_and_kinds_of_devices(job, study):

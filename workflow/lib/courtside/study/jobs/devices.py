@@ -126,8 +126,8 @@ def alignment(job: Job) -> dict[str, Any]:
 def vision(job: Job) -> str | None:
     """Return the source that corrects inertial ones: fixed cameras, a depth camera, or None."""
     found = sources(job, corrected=False)
-    ranked = [name for end in ("cameras", "-depth") for name in found if name.endswith(end)]
-    return ranked[0] if ranked else None
+    lifted = [name for name, source in found.items() if name == f"{source.device}-depth"]
+    return CAMERAS if CAMERAS in found else next(iter(lifted), None)
 
 
 def correctable(job: Job) -> list[str]:
