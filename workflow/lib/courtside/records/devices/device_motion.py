@@ -49,7 +49,7 @@ class DeviceMotion:
 # Rotations to upright axes (z up) from a device's own: y up, or camera axes (y down, z forward).
 Y_UP = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
 CAM = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])
-UPRIGHT = {"inertial": Y_UP, "nuitrack": Y_UP, "rgb": CAM, "rgbd": CAM}
+UPRIGHT = {"inertial": Y_UP, "rgb": CAM, "rgbd": CAM}
 
 
 def upright(motion: DeviceMotion) -> NDArray:
