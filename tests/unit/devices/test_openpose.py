@@ -155,7 +155,8 @@ def test_the_script_counts_the_frames_of_the_whole_video(tmp_path):
 
 def test_the_script_takes_a_video_that_was_cut_after_the_trimmed_part(tmp_path):
     fast = {"movflags": "faststart"}  # the index stands before the pictures
-    whole = video_files.write(tmp_path / "whole.mp4", n=40, rate=10, container=fast)
+    how = {"n": 40, "rate": 10, "size": (640, 480), "container": fast}
+    whole = video_files.write(tmp_path / "whole.mp4", **how)
     video = tmp_path / "v.mp4"
     video.write_bytes(whole.read_bytes()[: int(0.8 * whole.stat().st_size)])
     n_frames = len(list_packets(video, stop_s=1.0).pts)
