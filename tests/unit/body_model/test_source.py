@@ -50,6 +50,13 @@ def test_a_lost_frame_is_interpolated_and_a_long_gap_is_not():
     np.testing.assert_allclose(found.xyz[0, 43:], points.xyz[0, 43:], atol=1e-9)
 
 
+def test_times_in_milliseconds_keep_their_frames():
+    points = record()
+    time_s = np.round(np.arange(len(points.time_s)) / 60, 3)
+    found = source.even(replace(points, time_s=time_s))
+    assert len(found.time_s) == len(time_s)
+
+
 def test_frames_off_even_times_are_moved_to_them():
     points = record()
     late = points.time_s + 0.004 * np.sin(np.arange(len(points.time_s)))

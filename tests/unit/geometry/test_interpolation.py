@@ -1,6 +1,7 @@
 """Linear interpolation, against NumPy's."""
 
 import numpy as np
+import pytest
 
 from courtside.geometry import interpolation
 
@@ -47,3 +48,17 @@ def test_interpolation_is_a_cubic_and_bridges_no_gap():
     assert np.isnan(interpolation.between(time_s, cubic, [0.97, 1.1, 1.17], 0.1)).all()
     holed, left = (np.delete(one, [20, 21, 22], axis=0) for one in (time_s, cubic))
     assert np.isnan(interpolation.between(holed, left, [1.05], 0.1)).all()
+
+
+@pytest.mark.parametrize("rate_hz", [30, 60, 120, 240])
+@pytest.mark.parametrize("missing", [[], [50, 51, 200]])
+def test_the_step_of_times_in_milliseconds_is_that_of_the_frames(rate_hz, missing):
+    time_s = np.delete(np.round(np.arange(600) / rate_hz, 3), missing)
+    assert interpolation.frame_step_s(time_s) == pytest.approx(1 / rate_hz, rel=1e-4)
+
+
+@pytest.mark.parametrize("rate_hz", [30, 60, 30000 / 1001])
+def test_the_step_of_times_that_are_not_rounded_is_their_median_to_the_bit(rate_hz):
+    time_s = np.delete(12.3 + np.arange(40000) / rate_hz, [7, 8])
+    assert interpolation.frame_step_s(time_s) == np.median(np.diff(time_s))
+    assert interpolation.frame_step_s(time_s[:1]) == 1.0

@@ -70,6 +70,15 @@ def test_common_times_are_what_two_cameras_share():
     np.testing.assert_allclose(np.diff(time_s), 1 / 30)
 
 
+@pytest.mark.parametrize("rate_hz", [30, 60])
+def test_times_of_a_container_that_keeps_milliseconds_have_the_rate_of_the_frames(rate_hz):
+    """At 60 Hz most intervals are 17 ms: as a step they would be 58.8 Hz, away from the frames."""
+    keypoints = view(np.round(np.arange(300) / rate_hz, 3))
+    time_s = resampling.common_times([keypoints, keypoints])
+    assert len(time_s) == 300
+    np.testing.assert_allclose(time_s, np.arange(300) / rate_hz, atol=5e-4)
+
+
 def test_a_parabola_between_frames_is_met_exactly_and_beside_a_gap_by_a_line():
     """Keypoints that are accelerated: a line between frames is off by a h^2 / 8 in the middle."""
     keypoints = view(np.arange(12) / 30)

@@ -43,6 +43,11 @@ def test_missing_frames_are_interpolated_and_others_kept():
     np.testing.assert_allclose(found.translation[:, 0, 1], 2 * found.time_s, atol=1e-9)
 
 
+def test_times_in_milliseconds_keep_their_frames():
+    time_s = np.round(np.arange(600) / 60, 3)
+    assert len(posing.even(spinning(time_s)).time_s) == 600
+
+
 BODY = Skeleton(
     "made",
     ("face", "ankle", "knee", "left_hip", "chest", "hand", "head"),

@@ -38,13 +38,13 @@ def observed(points: Keypoints3D, sigma_m: Mapping[str, float]) -> Keypoints3D:
 def even(points: Keypoints3D) -> Keypoints3D:
     """Return the record of one device at uniform times, from its first frame to its last.
 
-    The step is the median step. Positions between frames are interpolated, across one missing frame
-    at most; all other values are those of the nearest frame.
+    The step is the time between two frames. Positions between frames are interpolated, across one
+    missing frame at most; all other values are those of the nearest frame.
     """
     time_s = points.time_s
     if len(time_s) < 3:
         return points
-    step_s = float(np.median(np.diff(time_s)))
+    step_s = interpolation.frame_step_s(time_s)
     count = round((time_s[-1] - time_s[0]) / step_s) + 1
     wanted_s = np.linspace(time_s[0], time_s[-1], count)
     if count == len(time_s) and np.abs(wanted_s - time_s).max() <= EVEN_S:

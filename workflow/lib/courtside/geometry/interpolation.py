@@ -5,6 +5,22 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+EXACT = 1e-9  # relative: the median interval of unrounded times is nearer to their mean than this
+
+
+def frame_step_s(time_s: NDArray) -> float:
+    """Return the time between two frames, s; of a single frame 1.
+
+    `time_s` (T,) increase; some frames may be missing. Containers such as Matroska round times to
+    milliseconds: the median interval at 60 Hz is then 17 ms, the mean interval is right.
+    """
+    apart = np.diff(time_s)
+    if not len(apart):
+        return 1.0
+    usual = np.median(apart)
+    mean = apart.sum() / np.rint(apart / usual).clip(1).sum()
+    return float(usual if abs(mean - usual) <= EXACT * usual else mean)
+
 
 def shares(time_s: NDArray, wanted_s: NDArray) -> tuple[NDArray, NDArray]:
     """Return the sample before each wanted time (N,) and the share of the way to the next (N,).

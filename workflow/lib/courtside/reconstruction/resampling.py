@@ -19,7 +19,7 @@ LONGEST_STEP = 1.5
 def common_times(views: Sequence[Keypoints2D], clocks: Sequence[Clock] | None = None) -> NDArray:
     """Return uniform times (T,) of a take on the reference clock.
 
-    They have the median frame interval of the first camera and cover the span that at least two
+    They have the frame interval of the first camera and cover the span that at least two
     cameras share. Without clocks, all agree.
     """
     clocks = clocks or [Clock()] * len(views)
@@ -28,7 +28,7 @@ def common_times(views: Sequence[Keypoints2D], clocks: Sequence[Clock] | None = 
     last = sorted((time_s[-1] for time_s in on_reference), reverse=True)
     second = min(1, len(views) - 1)
     start, stop = first[second], last[second]
-    step_s = float(np.median(np.diff(on_reference[0]))) if len(on_reference[0]) > 1 else 1.0
+    step_s = interpolation.frame_step_s(on_reference[0])
     return start + step_s * np.arange(int(np.floor((stop - start) / step_s + RATE_TOLERANCE)) + 1)
 
 

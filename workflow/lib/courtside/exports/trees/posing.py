@@ -30,12 +30,12 @@ def turned(posed: PosedHierarchy, rotation: NDArray = Y_UP_FROM_Z) -> PosedHiera
 def even(posed: PosedHierarchy) -> PosedHierarchy:
     """Return the motion at even times, from the first frame to the last, for BVH.
 
-    The step is the median one. Frames that are missing or off these times are interpolated:
-    rotations along the shortest way, places linearly.
+    The step is the time between two frames. Frames that are missing or off these times are
+    interpolated: rotations along the shortest way, places linearly.
     """
     if len(posed.time_s) < 3:
         return posed
-    known, step_s = posed.time_s, float(np.median(np.diff(posed.time_s)))
+    known, step_s = posed.time_s, interpolation.frame_step_s(posed.time_s)
     count = round((known[-1] - known[0]) / step_s) + 1
     time_s = np.linspace(known[0], known[-1], count)
     if count == len(known) and np.abs(time_s - known).max() <= EVEN_S:
