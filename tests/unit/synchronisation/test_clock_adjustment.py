@@ -4,6 +4,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from scipy.ndimage import gaussian_filter1d
 
 from courtside.synchronisation import clock_adjustment
 
@@ -90,3 +91,40 @@ def test_a_prior_as_sure_as_the_data_halves_a_drift():
 def test_students_factor_is_the_tables():
     # t of 95 % with 10 degrees of freedom is 1.812, the normal one 1.645.
     assert clock_adjustment.student(10) == pytest.approx(1.812 / 1.645, abs=1e-3)
+
+
+@pytest.mark.parametrize(("seconds", "most"), [(0.9, 1.6), (1.5, 1.6), (4.0, 1.3)])
+def test_evidence_of_a_short_time_is_as_uncertain_as_many_trials(seconds, most):
+    """Noise that lasts 0.1 s, evidence only about the middle: blocks of seconds hold all of it."""
+    shown = np.abs(TIME_S - 15) < seconds / 2
+    errors, stated = [], []
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        lasting, speed = (gaussian_filter1d(rng.normal(size=900), width) for width in (3, 6))
+        speed = np.where(shown, speed, 0.0)
+
+        def terms(own, lasting=lasting, speed=speed):
+            miss = 0.05 * lasting + speed * (own[1] - own[0])
+            return {(0, 1): (miss * speed, speed**2, speed**2)}
+
+        found = clock_adjustment.adjust(terms, [0, 0], TIME_S, [0, 1])
+        errors.append(found.offset_s[1])
+        stated.append(np.sqrt(found.covariance[2, 2]))
+    assert np.sqrt(np.mean(np.divide(errors, stated) ** 2)) < most
+
+
+def test_hardly_any_evidence_of_one_camera_leaves_the_others_certain():
+    terms = squares(noise(np.random.default_rng(0), 3, 0.2), np.zeros(3), np.zeros(3))
+    shown = np.abs(TIME_S - 15) < 0.25
+
+    def few(own):
+        found = terms(own)
+        return {
+            pair: parts if pair == (0, 1) else tuple(np.where(shown, part, 0.0) for part in parts)
+            for pair, parts in found.items()
+        }
+
+    found = clock_adjustment.adjust(few, [0, 0, 0], TIME_S, [0, 2, 1])
+    assert np.isinf(found.covariance[4, 4])
+    assert 0 < found.covariance[2, 2] < 0.01**2
+    assert 0 < found.covariance[3, 3] < np.inf

@@ -12,7 +12,8 @@ SMALLEST_S = 1e-5  # the adjustment ends with a smaller step: far below a millis
 LARGEST_S = 0.05  # limit of a step, about a frame: the loss is smooth only over such times
 COVERAGE = 0.90  # of the intervals that the study states
 MEMORY_S = 1.5  # ASSUME: two spans of this length carry nearly independent information
-FEWEST_BLOCKS = 8  # but a take is cut into at least this many blocks
+FEWEST_BLOCKS = 8  # but the evidence is cut into at least this many blocks,
+SHORTEST_S = 0.3  # ASSUME: none shorter than this: errors of networks last about a third of it
 PARTITIONS = 3  # ways to cut, averaged
 # ASSUME: effective share of the blocks: fast motion, and with it information, comes in bursts.
 EQUAL = 0.6
@@ -68,7 +69,7 @@ def adjust(
         if largest < SMALLEST_S:
             break
     slope, curvature, steepness = _normal(terms(_own(state, lever, time_s)), lever, free)
-    covariance = _covariance(slope, curvature, steepness, MEMORY_S / (time_s[1] - time_s[0]))
+    covariance = _covariance(slope, curvature, steepness, time_s[1] - time_s[0])
     whole = np.zeros((state.size, state.size))
     whole[np.ix_(free, free)] = covariance
     return Adjusted(state[:, 0], state[:, 1], whole, centre_s)
@@ -118,21 +119,36 @@ def _step(slope: NDArray, curvature: NDArray, steepness: NDArray) -> NDArray:
     return -(np.linalg.pinv(newton if fit else gauss, hermitian=True) @ (slope / scale)) / scale
 
 
-def _covariance(slopes: NDArray, curvature: NDArray, steepness: NDArray, memory: float) -> NDArray:
-    """Return the covariance (K, K) by leaving out blocks of time; infinite without curvature."""
+def _covariance(slopes: NDArray, curvature: NDArray, steepness: NDArray, step_s: float) -> NDArray:
+    """Return the covariance (K, K) by leaving out blocks of time; infinite without curvature.
+
+    Blocks are of times with evidence: leaving out others moves nothing. Parameters with less of it
+    than two of the shortest blocks are infinitely uncertain too.
+    """
+    live = np.trace(steepness, axis1=1, axis2=2) > 0
+    slopes, curvature, steepness = slopes[live], curvature[live], steepness[live]
     scale = np.sqrt(np.maximum(np.diag(steepness.sum(axis=0)), 1e-300))
     slopes, curvature = slopes / scale, curvature / np.outer(scale, scale)
-    size = len(scale)
-    if not size or np.linalg.eigvalsh(curvature.sum(axis=0)).min() <= SMALLEST_CURVATURE:
+    size, few = len(scale), _seen(steepness) < 2 * SHORTEST_S / step_s
+    if few.all() or np.linalg.eigvalsh(curvature.sum(axis=0)).min() <= SMALLEST_CURVATURE:
         return np.diag(np.full(size, np.inf))
-    length = max(2, int(min(memory, len(slopes) / FEWEST_BLOCKS)))
+    usual = min(MEMORY_S / step_s, len(slopes) / FEWEST_BLOCKS)
+    length = max(2, int(max(usual, SHORTEST_S / step_s)))
     found = np.zeros((size, size))
     for first in range(0, length, max(1, length // PARTITIONS)):
         cuts = np.unique(np.r_[0, np.arange(first, len(slopes) - length // 2, length)])
         moves = _moves(np.add.reduceat(slopes, cuts), np.add.reduceat(curvature, cuts))
         found += moves.T @ moves * (len(cuts) - 1) / len(cuts)
     found /= len(range(0, length, max(1, length // PARTITIONS)))
-    return found / np.outer(scale, scale) * student(EQUAL * (len(slopes) / length - 1)) ** 2
+    found *= student(EQUAL * (len(slopes) / length - 1)) ** 2 / np.outer(scale, scale)
+    found[few | few[:, None]] = 0.0
+    found[few, few] = np.inf
+    return found
+
+
+def _seen(steepness: NDArray) -> NDArray:
+    """Return the number of times (K,) at which there is evidence of each parameter."""
+    return (np.diagonal(steepness, axis1=1, axis2=2) > 0).sum(axis=0)
 
 
 def _moves(slopes: NDArray, curvature: NDArray) -> NDArray:
