@@ -107,6 +107,19 @@ def test_a_minute_tells_the_drift():
         assert abs(found[camera].drift_ppm - truth.drift_ppm) < 80
 
 
+@pytest.mark.parametrize("sees_s", [0.8, 5.0])
+def test_a_camera_that_sees_little_leaves_the_others_their_drift(sees_s):
+    """A drift of 160 ppm taken for none is 10 ms off at each end of two minutes."""
+    clocks = [Clock(), Clock(0.5, 160.0), Clock(-0.2, -140.0)]
+    views = take(2, seconds=120.0, rate_hz=15, clocks=clocks)
+    beside = np.abs(views[2].time_s - 60.0) > sees_s / 2
+    views[2].xy[:, beside] = np.nan
+    found = camera_sync.synchronise(views, CAMERAS)
+    assert np.abs(errors_s(found["c1"], clocks[1], 120.0)).max() < 0.002
+    assert found["c1"].drift_uncertainty_ppm < 50
+    assert found["c2"].usable == (sees_s > 1)
+
+
 def test_a_short_take_leaves_the_drift_to_what_is_known_of_clocks():
     found = camera_sync.synchronise(take(3, seconds=8.0), CAMERAS)
     assert found["c1"].drift_uncertainty_ppm == pytest.approx(100, abs=15)

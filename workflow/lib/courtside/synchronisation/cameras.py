@@ -131,14 +131,31 @@ def _connected(pairs: list[tuple[int, int]]) -> set[int]:
 
 
 def _adjust(evidence, offset_s, sure, time_s) -> clock_adjustment.Adjusted:
-    """Adjust the clocks of the sure cameras; offsets alone if the drifts cannot be determined."""
+    """Adjust the clocks of the sure cameras; offsets alone where a drift cannot be determined."""
     unknowns = np.array([2 * (camera in sure) for camera in range(len(offset_s))])
     unknowns[0] = 0
-    adjusted = clock_adjustment.adjust(evidence.terms, offset_s, time_s, unknowns)
-    spread = np.sqrt(np.diag(adjusted.covariance)[1::2])
-    if spread.max() <= HOPELESS * PRIOR_DRIFT:
-        return clock_adjustment.with_prior(adjusted, PRIOR_DRIFT)
-    return clock_adjustment.adjust(evidence.terms, offset_s, time_s, np.minimum(unknowns, 1))
+    while True:
+        adjusted = clock_adjustment.adjust(evidence.terms, offset_s, time_s, unknowns)
+        spread = np.sqrt(np.diag(adjusted.covariance)[1::2])
+        lost = (unknowns == 2) & ~(spread <= HOPELESS * PRIOR_DRIFT)
+        if not lost.any():
+            break
+        # One undetermined drift makes all of them infinite: that of the least evidence goes first.
+        told = np.isfinite(spread[lost]).all()
+        known = -spread if told else _of_drifts(evidence, offset_s, time_s)
+        unknowns[np.argmin(np.where(lost, known, np.inf))] = 1
+    if not (unknowns == 2).any():
+        return adjusted
+    return clock_adjustment.with_prior(adjusted, PRIOR_DRIFT)
+
+
+def _of_drifts(evidence, offset_s, time_s) -> NDArray:
+    """Return how much each camera's evidence (C,) tells of its drift: its spread over time."""
+    weight = np.zeros((len(offset_s), len(time_s)))
+    for pair, (_, _, steepness) in evidence.terms(time_s + np.array(offset_s)[:, None]).items():
+        weight[list(pair)] += steepness
+    centre_s = weight @ time_s / np.maximum(weight.sum(axis=1), 1e-300)
+    return (weight * (time_s - centre_s[:, None]) ** 2).sum(axis=1)
 
 
 def _row(view: Keypoints2D) -> float:
