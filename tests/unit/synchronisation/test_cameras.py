@@ -118,6 +118,18 @@ def test_a_camera_that_sees_little_leaves_the_others_their_drift(sees_s):
     assert np.abs(errors_s(found["c1"], clocks[1], 120.0)).max() < 0.002
     assert found["c1"].drift_uncertainty_ppm < 50
     assert found["c2"].usable == (sees_s > 1)
+    assert "inf" not in found["c2"].note
+
+
+def test_the_uncertainty_is_that_of_the_times_that_a_camera_films():
+    """Drifts of 100 ppm that are not known are 20 ms after 200 s, 2 ms within a video of 30 s."""
+    views = take(2, seconds=240.0, rate_hz=10, clocks=[Clock(), Clock(0.5), Clock(-0.2, -140.0)])
+    short = {key: getattr(views[2], key)[:, :300] for key in ("xy", "score", "reason")}
+    views[2] = replace(views[2], time_s=views[2].time_s[:300], **short)
+    found = camera_sync.synchronise(views, CAMERAS)["c2"]
+    assert found.usable
+    assert found.uncertainty_s < 0.006
+    assert np.abs(errors_s(found, Clock(-0.2, -140.0), 30.0)).max() < 0.006
 
 
 def test_a_short_take_leaves_the_drift_to_what_is_known_of_clocks():

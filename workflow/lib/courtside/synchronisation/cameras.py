@@ -75,7 +75,8 @@ def synchronise(
         if camera in sure:
             own, known_s = adjusted.own(camera, time_s), views[camera].time_s
             overlap = time_s[(own >= known_s[0]) & (own <= known_s[-1])]
-            clock = _found(adjusted, camera, overlap, time_s, abs(rows[camera] - rows[0]))
+            overlap = overlap if len(overlap) else time_s
+            clock = _found(adjusted, camera, overlap, abs(rows[camera] - rows[0]))
         else:
             clock = _not_found(placed.get(camera))
         found[views[camera].camera] = clock
@@ -164,11 +165,12 @@ def _row(view: Keypoints2D) -> float:
     return float(np.median(view.xy[..., 1][seen])) / view.size[1] if seen.any() else 0.5
 
 
-def _found(adjusted, camera, overlap, time_s, rows_apart) -> Clock:
+def _found(adjusted, camera, overlap, rows_apart) -> Clock:
+    """Return the clock, with its uncertainty at the ends of the times that the camera filmed."""
     drift, at = adjusted.drift[camera], slice(2 * camera, 2 * camera + 2)
     covariance = adjusted.covariance[at, at]
     offset_s = adjusted.offset_s[camera] - drift * adjusted.centre_s
-    ends = time_s[[0, -1]]
+    ends = overlap[[0, -1]]
     lever = ends - adjusted.centre_s
     variance = covariance[0, 0] + 2 * lever * covariance[0, 1] + lever**2 * covariance[1, 1]
     drift_spread = float(np.sqrt(covariance[1, 1]))
@@ -182,8 +184,8 @@ def _found(adjusted, camera, overlap, time_s, rows_apart) -> Clock:
     if not known:
         note = "offset adjusted; the take says little of the drift"
     if not sure:
-        much = f"{1e3 * uncertainty_s:.0f} ms"
-        note = f"uncertain by {much}: too little fast motion seen by two cameras"
+        much = f" by {1e3 * uncertainty_s:.0f} ms" if np.isfinite(uncertainty_s) else ""
+        note = f"uncertain{much}: too little fast motion seen by two cameras"
     return Clock(
         float(offset_s),
         float(1e6 * drift),
