@@ -13,11 +13,16 @@ from courtside.calibration import file_formats
 from courtside.devices import openpose
 from courtside.exports import markers, trc
 from courtside.geometry.camera import Camera, project, write_toml
+from courtside.reconstruction.association import everybody
+from courtside.records.cameras.footage import Footage
+from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import keypoints as keypoint_files
 from courtside.records.keypoints import missing_reason, skeleton
 from courtside.study.errors import InputError
 from courtside.video import writer
 from courtside.video.packets import list_packets
+from fixtures.cameras import scene
+from fixtures.people import walker
 from fixtures.recordings import video_files
 from fixtures.recordings.real_data import REAL, needs_real
 
@@ -382,6 +387,30 @@ def test_points_that_only_one_frame_has_do_not_count():
     assert len(openpose.link([stack(person(100.0, seen=4)), stack(other)])) == 2
 
 
-def test_frames_without_people_give_no_track():
-    assert openpose.link([stack(), stack()]).shape == (0, 2, 6, 3)
-    assert len(openpose.link([])) == 0
+def test_frames_without_people_give_one_track_without_points():
+    tracks = openpose.link([stack(), stack()])
+    assert tracks.shape == (1, 2, 6, 3)
+    assert np.isnan(tracks).all()
+
+
+def test_a_folder_in_which_nobody_is_seen_takes_part_in_a_take(tmp_path):
+    record, cameras = walker.points(n_frames=40), scene.ring(3)
+    for at in range(40):
+        write(tmp_path / "c2", f"{at}.json")
+    views = walker.views(record, cameras)
+    empty = openpose.read(
+        tmp_path / "c2",
+        walker.SKELETON,
+        camera="c2",
+        model=record.model,
+        size=cameras[2].size,
+        time_s=record.time_s,
+    )
+    footage = [
+        Footage(camera, view, Clock())
+        for camera, view in zip(cameras, (*views[:2], empty), strict=True)
+    ]
+    found, _ = everybody.find(footage, walker.SKELETON, None)
+    shown = replace(footage[2], people=found).view
+    assert shown.xy.shape == (1, 40, walker.N_JOINTS, 2)
+    assert np.isnan(shown.xy).all()

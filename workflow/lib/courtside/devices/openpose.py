@@ -276,7 +276,7 @@ def _assign(costs: NDArray) -> dict[int, int]:
 
 def _stacked(tracks: Sequence[Mapping[int, NDArray]], people: Sequence[NDArray]) -> NDArray:
     n_joints = people[0].shape[1] if people else 0
-    whole = np.full((len(tracks), len(people), n_joints, 3), np.nan)
+    whole = np.full((max(len(tracks), 1), len(people), n_joints, 3), np.nan)
     for k, track in enumerate(tracks):
         for at, person in track.items():
             whole[k, at] = person
