@@ -48,6 +48,16 @@ def test_one_wrong_camera_is_named_with_its_cause_and_the_others_are_good(fault)
     assert "Camera c1: " in rows[ALL, ALL].sentence
 
 
+@pytest.mark.parametrize("people", [False, True], ids=["nobody", "people"])
+def test_a_camera_that_looks_elsewhere_is_good_only_if_it_finds_nobody(people):
+    away = judged.turned(judged.footage(hidden={} if people else {1: 1.0}), 1, 60.0)
+    rows, _ = wholes(away)
+    assert rows["c1", ALL].verdict == (FAILED if people else GOOD)
+    assert ("nobody should be in its picture" in rows["c1", ALL].sentence) != people
+    assert {rows[f"c{k}", ALL].verdict for k in (0, 2, 3)} == {GOOD}
+    assert (rows[ALL, ALL].verdict == GOOD) != people
+
+
 def test_of_three_cameras_that_contradict_each_other_none_is_blamed_for_sure():
     """Cameras as high as what they look at, turned about the vertical: any two agree."""
     rows, _ = wholes(judged.turned(judged.footage(n_cameras=3, height_m=1.0), 1, 1.0))

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import pandas as pd
 
 from courtside.quality import causes, measures
-from courtside.quality.seen import Seen, disagreement, without
+from courtside.quality.seen import Seen, disagreement, shown, without
 from courtside.study.execution.verdicts import ALL, COLUMNS, DOUBTFUL, FAILED, GOOD, ORDER, WHOLE
 
 AGREES = "it agrees with the other cameras"
@@ -202,6 +202,9 @@ def _camera(seen: Seen, at: int, agreed: bool, by_lines: Mapping[str, str]) -> l
     due to those cameras, or to joints triangulated by two cameras that face each other.
     """
     name = seen.cameras[at].name
+    if not seen.expected(at).any() and not shown(seen.rows[at][:, seen.at]).any():
+        sentence = f"Camera {name}: nobody should be in its picture, and nobody was found."
+        return [_whole(name, ALL, GOOD, "", sentence)]
     found = measures.of_camera(seen, at)
     if found["followed"] == 0:  # what is not followed has no keypoints to be judged
         found = {key: found[key] for key in ("found", "followed")}
