@@ -79,6 +79,17 @@ def test_a_bystander_near_the_person_is_no_turned_camera(away_px):
     assert cause.name == causes.DETECTION and "nobody found in it is the person" in cause.sentence
 
 
+def test_a_take_of_one_frame_has_no_clock_to_be_moved():
+    cause = found(judged.turned(judged.footage(n_frames=1), 2, 3.0))
+    assert cause.name == causes.CALIBRATION
+
+
+def test_one_person_in_one_frame_is_too_little_to_compare():
+    one = judged.followed(judged.footage(n_frames=1), dict.fromkeys(SAME, (0,)))
+    cause = found(judged.turned(one, 2, 3.0))
+    assert cause.name == causes.UNKNOWN and "too few frames" in cause.sentence
+
+
 def test_poor_keypoints():
     cameras = judged.footage()
     rng = np.random.default_rng(0)

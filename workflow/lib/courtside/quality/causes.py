@@ -121,6 +121,8 @@ def _by_tests(one: _Camera, absent: float) -> Cause:
         return Cause(IDENTITY, _not_followed(one))
     tested = one.followed if np.isfinite(own) else one.nearest
     before = own if np.isfinite(own) else nearest
+    if np.isnan(before) and absent <= SOME:
+        return Cause(UNKNOWN, "too few frames show the person to compare it", is_shown=False)
     if np.isnan(before):
         return Cause(DETECTION, _absent(absent))
     shift_s, clock = _best_shift(one, tested)
@@ -178,6 +180,8 @@ def _not_followed(one: _Camera) -> str:
 def _best_shift(one: _Camera, tested: NDArray) -> tuple[float, float]:
     """Return the clock shift (s) with the smallest remaining error, and this error."""
     seen = one.seen
+    if len(seen.points.time_s) < 2:
+        return 0.0, float("nan")
     step = max(1, round(FINEST_S * seen.points.rate_hz))
     most = int(MOST_S * seen.points.rate_hz) // step
     followed = np.isfinite(one.left(one.followed))
