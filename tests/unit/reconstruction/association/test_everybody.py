@@ -45,3 +45,13 @@ def test_where_nobody_is_placed_the_line_tells_whether_bodies_are_hidden(score, 
         everybody.find(seen, walker.SKELETON, None)
     assert ("0% in c0" in str(caught.value)) == hidden
     assert ("film whole bodies" in str(caught.value)) == hidden
+
+
+def test_cameras_that_share_no_time_by_their_clocks_are_told_so():
+    views = walker.views(walker.points(n_frames=40), CAMERAS[:2])
+    seen = [
+        Footage(camera, view, Clock(offset_s=offset_s))
+        for camera, view, offset_s in zip(CAMERAS, views, (0.0, 100.0), strict=False)
+    ]
+    with pytest.raises(InputError, match="c0, c1: expected cameras that film at one time"):
+        everybody.find(seen, walker.SKELETON, None)

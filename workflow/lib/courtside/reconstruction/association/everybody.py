@@ -20,13 +20,19 @@ SURE = 0.5  # ASSUME: score of a joint that a network sees, not guesses
 def find(seen: Sequence[Footage], joints: Skeleton, court: Court | None) -> tuple[People, str]:
     """Associate the tracklets of all cameras of a take; also return what the log says.
 
-    Raises `InputError` where people have not the size of people, or nobody can be placed.
+    Raises `InputError` where cameras share no time, people have not the size of people, or nobody
+    can be placed.
     """
     views, clocks = [one.tracklets for one in seen], [one.clock for one in seen]
     names = joints.groups["limbs"]
     chosen = [joints.index(name) for name in names]
     limbs = [replace(v, xy=v.xy[:, :, chosen], score=v.score[:, :, chosen]) for v in views]
     time_s = resampling.common_times(views, clocks)
+    if not len(time_s):
+        raise InputError(
+            f"{', '.join(view.camera for view in views)}: expected cameras that film at one time, "
+            "found none by their clocks; correct `clocks` of the take (t_ref = t_own - offset_s)"
+        )
     xy = [resampling.resample(v, time_s, c)[0] for v, c in zip(limbs, clocks, strict=True)]
     trunk = [at for at, name in enumerate(names) if name.endswith(("hip", "shoulder"))]
     scale.check([one.camera for one in seen], xy, names)
