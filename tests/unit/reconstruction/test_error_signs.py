@@ -1,5 +1,6 @@
 """Signs of a wrong joint: each planted fault raises its own sign, at its joint and time."""
 
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
@@ -76,6 +77,19 @@ def test_a_joint_that_jumps_off_changes_its_limb_and_its_path():
         assert np.abs(rise[:15]).max() < 0.05
     elbow = walker.SKELETON.index("left_elbow")
     assert (found["length"] - plain["length"])[0, FRAMES, elbow].min() > 0.5
+
+
+def test_jumps_of_a_long_take_need_little_memory():
+    """The windows of all joints at once are 31 times as large as the record."""
+    record = walker.points(n_frames=3000)
+    tracemalloc.start()
+    found = error_signs._jumps(record)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 5 * record.xyz.nbytes
+    windows = record.xyz[0, 1000 - 15 : 1000 + 16, WRIST]
+    away = np.linalg.norm(record.xyz[0, 1000, WRIST] - np.median(windows, axis=0))
+    assert found[0, 1000, WRIST] == pytest.approx(away, abs=1e-12)
 
 
 def test_low_scores_and_few_views_count():

@@ -159,9 +159,13 @@ def _length_errors(points: Keypoints3D) -> NDArray:
 def _jumps(points: Keypoints3D) -> NDArray:
     """Return the distance (P, T, J) m of joints from the median of their path."""
     reach = _frames(JUMP_S, points)
-    padded = np.pad(points.xyz, ((0, 0), (reach, reach), (0, 0), (0, 0)), constant_values=np.nan)
-    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=1)
-    return np.linalg.norm(points.xyz - np.nanmedian(windows, axis=-1), axis=-1)
+    found = np.empty(points.xyz.shape[:-1])
+    for person, joint in np.ndindex(found.shape[0], found.shape[2]):  # all at once need much memory
+        path = points.xyz[person, :, joint]
+        padded = np.pad(path, ((reach, reach), (0, 0)), constant_values=np.nan)
+        windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0)
+        found[person, :, joint] = np.linalg.norm(path - np.nanmedian(windows, axis=-1), axis=-1)
+    return found
 
 
 def _frames(seconds: float, points: Keypoints3D) -> int:
