@@ -264,8 +264,9 @@ def keep(points: Keypoints3D) -> Keypoints3D:
     """
     joints, xyz = list(points.joints), points.xyz.copy()
     covariance = points.covariance_2d + np.nan_to_num(points.covariance_camera)
+    known_m = [lengths(one, joints) for one in points.xyz]
     for person, (side, chain) in product(range(len(xyz)), product(SIDES, skeleton.CHAINS)):
-        known = lengths(points.xyz[person], joints)
+        known = known_m[person]
         names = [f"{side}_{joint}" for joint in chain]
         wanted = [known.get(pair) for pair in pairwise(chain)]
         if set(names) <= set(joints) and any(wanted):
