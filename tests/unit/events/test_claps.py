@@ -104,6 +104,16 @@ def test_no_clap_after_the_t_pose_is_told_with_the_times():
     assert "\n" not in why
 
 
+@pytest.mark.parametrize(("rate_hz", "n_claps"), [(12.0, 0), (18.0, 0), (20.0, 2)])
+def test_too_few_frames_per_second_are_told(rate_hz, n_claps):
+    take = device_takes.truth(0)
+    motion = device_takes.device(np.random.default_rng(0), take, rate_hz=rate_hz)
+    if n_claps:
+        assert len(found_at(motion)) == n_claps
+    else:
+        assert f"{rate_hz:.0f} frames per second are too few: a clap needs 20" in why_none(motion)
+
+
 def test_a_clap_without_its_t_pose_is_listed_and_not_used():
     take = device_takes.truth(1)
     motion = device_takes.mocopi(np.random.default_rng(0), take)

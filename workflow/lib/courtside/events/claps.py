@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.events import contact_time, tpose
+from courtside.geometry import interpolation
 from courtside.kinematics import filtering
 from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.devices.events import Clap, NoClap, TPose
@@ -24,6 +25,7 @@ FLAT = 0.06  # spans: hands this close to their rest have nearly met
 HELD_S = (0.03, 0.2)  # after hands come close: the time of rest
 HELD_APART = 0.12  # spans: held or rebounding hands do not part further
 BEFORE_S, BEHIND_S = 0.15, 0.22  # around the contact: what the hinge is fitted to
+LEAST_HZ = contact_time.FEWEST / (BEFORE_S + BEHIND_S)  # with fewer frames there is no such fit
 REBOUND_S = 0.12  # after the contact: the time in which a rebound shows
 REBOUND = 0.015  # spans: hands of a rebound part by more, the overshoot of a filter is less
 REACH_S = 0.08  # search range of the contact about the first guess
@@ -115,6 +117,10 @@ def _after(motion, spell, number, stop_s, bend_deg) -> Clap | NoClap | None:
     close = np.flatnonzero(later & (apart < CLOSE * span_m))
     if not len(close):
         return None
+    rate_hz = 1 / interpolation.frame_step_s(time_s)
+    if rate_hz < LEAST_HZ:
+        why = f"{rate_hz:.3g} frames per second are too few: a clap needs 20"
+        return NoClap(float(time_s[close[0]]), why)
     rest = apart[_within(time_s, time_s[close[0]], HELD_S)]
     floor = float(np.nanmedian(rest)) if np.isfinite(rest).any() else float(apart[close[0]])
     met = np.flatnonzero(later & (apart < floor + FLAT * span_m))
