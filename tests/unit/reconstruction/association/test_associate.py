@@ -218,6 +218,12 @@ def test_rows_go_over_to_frames_of_another_rate():
     assert frames.tolist() == [[0, 0, 0, 0, 0, 1, 1, 1, 1, 1]]
 
 
+def test_a_row_is_not_followed_beyond_the_common_times():
+    frames = association.on_frames(np.zeros((1, 4), int), np.arange(4) / 30, np.arange(-9, 13) / 30)
+    assert np.flatnonzero(frames[0] == 0).tolist() == list(range(6, 16))  # 0.1 s to either side
+    assert set(frames[0].tolist()) == {0, -1}
+
+
 def test_a_row_that_went_over_is_not_kept_at_the_gap():
     index = np.array([[0, -1, -1], [1, 0, 0]])
     frames = association.on_frames(index, np.arange(3) / 30, np.array([0, 0.9, 2]) / 30)

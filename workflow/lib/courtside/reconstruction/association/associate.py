@@ -114,6 +114,7 @@ def on_frames(index: NDArray, time_s: NDArray, frame_s: NDArray) -> NDArray:
     The uniform common times `time_s` (T,) and the times `frame_s` (F,) of the frames are of one
     clock. A frame gets the row of the nearest common time. Where that one has no row, it gets the
     row of the time on the frame's other side, unless that row belongs to another person by then.
+    Frames further than `EVERY_S` outside of the common times get none: nobody checks a row there.
     """
     right = np.clip(np.searchsorted(time_s, frame_s), 0, len(time_s) - 1)
     left = np.maximum(right - 1, 0)
@@ -121,7 +122,8 @@ def on_frames(index: NDArray, time_s: NDArray, frame_s: NDArray) -> NDArray:
     first, second = np.where(nearer, left, right), np.where(nearer, right, left)
     own, other = index[:, first], index[:, second]
     free = ~(other[:, None] == own[None]).any(axis=1)
-    return np.where((own < 0) & free, other, own)
+    inside = (frame_s >= time_s[0] - EVERY_S) & (frame_s <= time_s[-1] + EVERY_S)
+    return np.where(inside, np.where((own < 0) & free, other, own), -1)
 
 
 def _slots(rows: Sequence[Rows]) -> int:
