@@ -218,6 +218,17 @@ def test_rows_go_over_to_frames_of_another_rate():
     assert frames.tolist() == [[0, 0, 0, 0, 0, 1, 1, 1, 1, 1]]
 
 
+@pytest.mark.parametrize("count", [2, 3])
+def test_one_person_is_found_in_the_shortest_takes(count):
+    for n_frames in (5, 7, 10, 13, 16, 30):
+        rng = np.random.default_rng(n_frames)
+        time_s = np.arange(n_frames) / 30
+        person = stick_figures.body(np.column_stack([0.5 * time_s, 0.2 * time_s]), time_s)[None]
+        cameras = cameras_around(count, rng)
+        xy, _ = stick_figures.seen(cameras, person, rng, noise_px=2.0, dropout=0, swaps=0)
+        assert associate(cameras, xy, time_s).placed.tolist() == [1.0]
+
+
 def test_a_row_is_not_followed_beyond_the_common_times():
     frames = association.on_frames(np.zeros((1, 4), int), np.arange(4) / 30, np.arange(-9, 13) / 30)
     assert np.flatnonzero(frames[0] == 0).tolist() == list(range(6, 16))  # 0.1 s to either side

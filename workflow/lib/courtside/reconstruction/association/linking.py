@@ -18,7 +18,10 @@ PLACE_M = 0.07  # standard deviation of a body about its prediction one instant 
 ACCELERATION_MS2 = 6.0  # of a player, for predictions over gaps
 LARGEST_M = 4.0  # limit of the prediction's standard deviation, for persons lost for long
 COAST_S = 0.3  # a lost person is expected to keep the velocity for this long
-BIRTH = 20.0  # cost of a new person: more than that of finding a lost one again
+BIRTH = 20.0  # cost of a new person: more than that of finding a lost one again,
+SHORT = (
+    2.0  # but at most this much for each instant: nobody would be born in a take of half a second
+)
 # Cost of an instant without a candidate, for a person seen within this time.
 MISSED, MISSED_S = 2.0, 1.0
 SHARED = 0.7  # cost of a row that shows somebody else, who may hide this person
@@ -75,6 +78,7 @@ def link(
     """
     colours = looks.middle(candidates) if looks else np.zeros((len(piece), 0))
     state = _Histories(slots, piece.shape[1], colours.shape[1])
+    birth = min(BIRTH, SHORT * len(time_s))
     first = np.searchsorted(candidates.instant, np.arange(len(time_s) + 1))
     parents, choices = [], []
     for at, now_s in enumerate(time_s):
@@ -84,7 +88,8 @@ def link(
             here = np.sort(here[np.argsort(total, kind="stable")[:MOST]])
         if len(here):
             offered, seen = candidates.subset(here), colours[here]
-            own = _own_cost(state, offered, now_s, net_y_m) + _looks_cost(state, seen, looks)
+            own = _own_cost(state, offered, now_s, birth, net_y_m)
+            own = own + _looks_cost(state, seen, looks)
             parent, choice = _advance(state, own, offered, piece[here], seen, now_s)
         else:
             parent = np.arange(len(state.cost))
@@ -126,7 +131,7 @@ def _exchanged(owned: NDArray, pieces: NDArray, shared: NDArray) -> NDArray:
     return (other.any(axis=1) & ~shared).sum(axis=(1, 2))
 
 
-def _own_cost(state, offered, now_s, net_y_m) -> NDArray:
+def _own_cost(state, offered, now_s, birth, net_y_m) -> NDArray:
     """Return (H, S, n) costs of giving each candidate to each person."""
     move = _move_cost(state, offered, now_s)
     if net_y_m is not None:
@@ -135,8 +140,8 @@ def _own_cost(state, offered, now_s, net_y_m) -> NDArray:
     # A person is born only after all before: otherwise the same history comes in many orders.
     unborn = ~state.alive
     unborn[:, 1:] &= state.alive[:, :-1]
-    birth = np.where(unborn[..., None] & ~offered.is_ray, BIRTH, np.inf)
-    return np.where(state.alive[..., None], move, birth) + offered.view_cost.sum(axis=1)
+    born = np.where(unborn[..., None] & ~offered.is_ray, birth, np.inf)
+    return np.where(state.alive[..., None], move, born) + offered.view_cost.sum(axis=1)
 
 
 def _move_cost(state: _Histories, offered: Candidates, now_s: float) -> NDArray:
