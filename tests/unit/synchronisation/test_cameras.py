@@ -121,6 +121,16 @@ def test_a_camera_that_sees_little_leaves_the_others_their_drift(sees_s):
     assert "inf" not in found["c2"].note
 
 
+def test_a_camera_that_sees_seconds_of_a_long_take_is_placed_by_them():
+    """A scan over the whole take would compare it at three times."""
+    clocks = [Clock(), Clock(0.5, 160.0), Clock(-0.2)]
+    views = take(2, seconds=240.0, rate_hz=15, clocks=clocks)
+    views[2].xy[:, np.abs(views[2].time_s - 120.0) > 3.0] = np.nan
+    found = camera_sync.synchronise(views, CAMERAS)
+    assert found["c2"].usable
+    assert np.abs(errors_s(found["c2"], clocks[2], 240.0)).max() < 0.008
+
+
 def test_the_uncertainty_is_that_of_the_times_that_a_camera_films():
     """Drifts of 100 ppm that are not known are 20 ms after 200 s, 2 ms within a video of 30 s."""
     views = take(2, seconds=240.0, rate_hz=10, clocks=[Clock(), Clock(0.5), Clock(-0.2, -140.0)])

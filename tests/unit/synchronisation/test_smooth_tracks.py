@@ -94,3 +94,16 @@ def test_product_terms_are_derivatives_by_the_offset():
     np.testing.assert_allclose(slope, (after - before) / (2 * step_s), atol=1e-6)
     np.testing.assert_allclose(curvature, (after - 2 * here + before) / step_s**2, atol=1e-4)
     assert (steep >= 0).all()
+
+
+def test_tracks_are_compared_where_the_one_that_shows_little_shows_somebody():
+    whole = smooth_tracks.Track(0.0, 0.05, np.zeros((1, 1000, 2, 2)))
+    glance = smooth_tracks.Track(0.0, 0.05, np.full((1, 1000, 2, 2), np.nan))
+    glance.values[0, 300:360] = 0.0
+    at, of_second = smooth_tracks.compared(whole, glance, 20)
+    assert of_second and at.tolist() == list(range(300, 360, 3))
+    at, of_second = smooth_tracks.compared(glance, whole, 20)
+    assert not of_second and at.tolist() == list(range(300, 360, 3))
+    glance.values[0, :600] = 0.0  # enough: as if nothing were missing
+    at, of_second = smooth_tracks.compared(whole, glance, 20)
+    assert not of_second and at.tolist() == list(range(0, 1000, 50))

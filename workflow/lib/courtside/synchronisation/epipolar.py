@@ -47,10 +47,11 @@ class Epipolar:
         self.matches: dict[tuple[int, int], list[tuple[int, int]]] = {}
 
     def scan(self, a: int, b: int, lags_s: NDArray) -> NDArray:
-        """Return the loss (N, L) of camera b against a, at N times of a, by the offset of b."""
+        """Return the loss (N, L) of camera b against a, at N times of one, by the offset of b."""
+        at, swapped = smooth_tracks.compared(self.tracks[a], self.tracks[b], SCAN_TIMES)
+        a, b, lags_s = (b, a, -lags_s) if swapped else (a, b, lags_s)
         track_a, track_b = self.tracks[a], self.tracks[b]
-        every = max(1, track_a.values.shape[1] // SCAN_TIMES)
-        at = np.arange(0, track_a.values.shape[1], every)
+        every = at[1] - at[0] if len(at) > 1 else 1
         lines = epipolar.lines(self.matrix[a, b], track_a.values[:, at]).astype(np.float32)
         index, inside = smooth_tracks.counterparts(track_a, at, track_b, lags_s)
         index = np.where(inside, index, 0)

@@ -12,6 +12,7 @@ from courtside.geometry import interpolation
 LONGEST_GAP = 3  # ASSUME: missing frames that are bridged, 0.1 s at 30 Hz
 REACH = 3.0  # standard deviations at which the kernel is cut off: 0.3 % of its weight is beyond
 LONGEST_STEP = 1.5  # in frames: further apart, a frame is missing
+GLANCE = 0.5  # ASSUME: share of another camera's time from which a camera sees enough
 ROUNDING = 1e-6  # of the time between two frames: times that differ by less are one
 
 
@@ -119,6 +120,22 @@ def counterparts(
     own_s = first.start_s + first.step_s * at[:, None] + lags_s
     index = np.rint((own_s - second.start_s) / second.step_s).astype(int)
     return index, (index >= 0) & (index < second.values.shape[1])
+
+
+def compared(first: Track, second: Track, most: int) -> tuple[NDArray, bool]:
+    """Return the values (N,) at which two tracks are compared, and whether they are the second's.
+
+    They are about `most` of the first one. If one of the two shows somebody for less than `GLANCE`
+    of the time of the other, they are within that time: few of the whole take would be.
+    """
+    count = first.values.shape[1]
+    shown = [np.flatnonzero(np.isfinite(one.values).any(axis=(0, 2, 3))) for one in (first, second)]
+    long_s = [len(at) * one.step_s for at, one in zip(shown, (first, second), strict=True)]
+    if not 0 < min(long_s) < GLANCE * max(long_s):
+        return np.arange(0, count, max(1, count // most)), False
+    shorter = int(np.argmin(long_s))
+    start, stop = shown[shorter][0], shown[shorter][-1] + 1
+    return np.arange(start, stop, max(1, (stop - start) // most)), shorter == 1
 
 
 def product_terms(first: Sequence[NDArray], second: Sequence[NDArray]) -> tuple[NDArray, ...]:

@@ -27,10 +27,11 @@ class Speeds:
         self.pairs: list[tuple[int, int]] = []
 
     def scan(self, a: int, b: int, lags_s: NDArray) -> NDArray:
-        """Return the loss (N, L) of camera b against a, at N times of a, by the offset of b."""
+        """Return the loss (N, L) of camera b against a, at N times of one, by the offset of b."""
+        at, swapped = smooth_tracks.compared(self.tracks[a], self.tracks[b], SCAN_TIMES)
+        a, b, lags_s = (b, a, -lags_s) if swapped else (a, b, lags_s)
         track_a, track_b = self.tracks[a], self.tracks[b]
         first = track_a.values[0].reshape(track_a.values.shape[1], -1)
-        at = np.arange(0, len(first), max(1, len(first) // SCAN_TIMES))
         index, inside = smooth_tracks.counterparts(track_a, at, track_b, lags_s)
         second = track_b.values[0].reshape(track_b.values.shape[1], -1)
         seen_a = np.isfinite(first).any(axis=1)[at]
