@@ -160,7 +160,8 @@ def _jumps(points: Keypoints3D) -> NDArray:
     """Return the distance (P, T, J) m of joints from the median of their path."""
     reach = _frames(JUMP_S, points)
     found = np.empty(points.xyz.shape[:-1])
-    for person, joint in np.ndindex(found.shape[0], found.shape[2]):  # all at once need much memory
+    # All joints at once need much memory.
+    for person, joint in np.ndindex(len(points.xyz), len(points.joints)):
         path = points.xyz[person, :, joint]
         padded = np.pad(path, ((reach, reach), (0, 0)), constant_values=np.nan)
         windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0)
