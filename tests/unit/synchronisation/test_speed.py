@@ -34,6 +34,13 @@ def test_the_scan_is_lowest_at_the_truth_at_any_size(person, zoom):
     assert abs(lags_s[np.argmin(loss)] - 0.7) <= 1.5 / 30
 
 
+def test_the_scan_of_a_camera_that_shows_little_is_lowest_at_the_truth_too(person):
+    found, lags_s = evidence([person]), np.arange(-90, 91) / 30
+    found.tracks[1].values[:, : found.tracks[1].values.shape[1] * 2 // 3] = np.nan
+    loss = np.nanmean(found.scan(0, 1, lags_s), axis=0)
+    assert abs(lags_s[np.argmin(loss)] - 0.7) <= 1.5 / 30
+
+
 def test_nothing_is_compared_where_a_camera_did_not_run(person):
     loss = evidence([person]).scan(0, 1, np.array([0.0, 5.0, 30.0]))
     known = np.isfinite(loss).mean(axis=0)
