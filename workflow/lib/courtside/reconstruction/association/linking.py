@@ -18,10 +18,8 @@ PLACE_M = 0.07  # standard deviation of a body about its prediction one instant 
 ACCELERATION_MS2 = 6.0  # of a player, for predictions over gaps
 LARGEST_M = 4.0  # limit of the prediction's standard deviation, for persons lost for long
 COAST_S = 0.3  # a lost person is expected to keep the velocity for this long
-BIRTH = 20.0  # cost of a new person: more than that of finding a lost one again,
-SHORT = (
-    2.0  # but at most this much for each instant: nobody would be born in a take of half a second
-)
+BIRTH = 20.0  # cost of a new person: more than that of finding a lost one again
+SHORT = 2.0  # and at most this much an instant, or takes of half a second would have no people
 # Cost of an instant without a candidate, for a person seen within this time.
 MISSED, MISSED_S = 2.0, 1.0
 SHARED = 0.7  # cost of a row that shows somebody else, who may hide this person
