@@ -95,8 +95,7 @@ def main():
     cameras = {camera.name: camera for camera in camera_models.read_toml(of_base / "cameras.toml")}
     cameras = [cameras[name] for name in names]
     known = covariance.read(of_base / "covariance.npz").of(names)
-    clicked = adjustment.court_clicks(court, marked, cameras, **WEIGHTS)
-    measure(given.base, 0, cameras, known, Points(court=clicked))
+    measure(given.base, 0, cameras, known, Points())
     drawn = {"n_draws": given.seeds, "seed": 0, "session": given.session}
     drawn["preset"] = session["virtual"]["preset"]
     persons = clicking.clicks_of_persons(real.cameras, court, real.court_xyz, **drawn)

@@ -181,8 +181,7 @@ def calibrate(one, way, seed, clicked, lines, ties):
         marked = adjustment.court_clicks(one.court, clicked, cameras, **WEIGHTS)
         points = Points(court=marked, fitted=True) if way == "file-clicks" else Points()
         return Calibrated(cameras, prior.stated(cameras, **STATED), points)
-    marked = adjustment.court_clicks(one.court, clicked, solved.cameras, **WEIGHTS)
-    return Calibrated(*of_network(one.names, solved), Points(court=marked))
+    return Calibrated(*of_network(one.names, solved))
 
 
 def of_board(one, seed):

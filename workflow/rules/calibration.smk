@@ -282,7 +282,7 @@ rule refine_cameras:
         cameras=of_job(calibration.of_base, paths.CAMERAS),
         covariance=of_job(calibration.base_covariance),
         calibration=of_job(calibration.base_file),
-        clicks=lambda w: session_of(w).placed and [] or session_of(w).court_points or [],
+        clicks=of_job(calibration.unused_clicks),
         court=of_job(Job.court_file),
         static=lambda w: session_of(w).static_points or [],
         skeleton=of_job(calibration.first_skeleton),

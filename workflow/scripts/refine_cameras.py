@@ -83,7 +83,7 @@ def in_file(path, names, override, unit):
 
 
 def points(paths, base, weights):
-    """Return points at rest and the court's clicks; the clicks are fitted if the base is a file."""
+    """Return points at rest, and clicks that the base did not use; fitted if it is a file."""
     names, static, court = [camera.name for camera in base], None, None
     if paths.static:
         _, by_camera = clicks.read_static(paths.static, names)

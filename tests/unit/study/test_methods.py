@@ -62,6 +62,12 @@ def test_a_name_of_no_calibration_is_an_error_with_examples(name):
         Calibration.parse(name)
 
 
+def test_a_file_a_board_and_people_alone_do_not_rest_on_clicks():
+    names = ["file", "board", "people", "wand", "known18", "known", "dlt18", "sfm-n40", "paper-n5"]
+    found = [name for name in names if Calibration.parse(name).of_clicks]
+    assert found == names[3:]
+
+
 def test_adjusting_all_cameras_together_gives_a_covariance():
     names = [
         "file",

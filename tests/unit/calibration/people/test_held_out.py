@@ -67,6 +67,13 @@ def test_residuals_are_per_axis_and_court_points_are_at_their_places(scores):
     assert (scores["true"].accepted_percent() > 99).all()
 
 
+def test_few_court_points_say_nothing():
+    seen = walkers.seen(TRUE, walkers.joints(64))
+    few = court().of(np.arange(9) < 5)
+    found = held_out.score(lambda *_: TRUE, seen, Points(court=few), LIMITS)
+    assert np.isnan(found.rms_px("court"))
+
+
 def test_half_of_all_blocks_and_court_points_are_held_out_in_turn():
     seen, given = walkers.seen(TRUE, walkers.joints(64)), []
 

@@ -32,6 +32,7 @@ def test_disturbed_cameras_are_refined():
     assert moved["base"] == 0 and 0 < moved["refined"] < 20 and moved["sigma"] > 0
     assert found.covariance.covariance.shape == KNOWN.covariance.shape
     assert np.trace(found.covariance.covariance) < np.trace(KNOWN.covariance)
+    assert found.line.endswith("; no court points were held out")
 
 
 def test_good_cameras_are_kept_as_they_are():

@@ -218,6 +218,14 @@ def test_cameras_refined_by_people_rest_on_their_base_and_its_people(job, study)
     assert takes == {"shot", "rally"}
 
 
+@pytest.mark.parametrize(
+    ("base", "judge"), [("file", True), ("board", True), ("wand", False), ("known", False)]
+)
+def test_clicks_that_a_base_was_fitted_to_do_not_judge_its_refinement(job, base, judge):
+    one = job(session="players-tiny", calibration=f"{base}-people")
+    assert calibration.unused_clicks(one) == (one.session.court_points if judge else [])
+
+
 def test_maps_of_refined_cameras_show_their_base_too(job):
     one = job(session="walk-4cams-tiny", calibration="file-people")
     stated = {"rotation_deg": 0.3, "position_m": 0.03, "focal_percent": 0.5}

@@ -122,6 +122,11 @@ class Calibration:
         return cls(name, found["kind"], variant, lines=bool(found["lines"]))
 
     @property
+    def of_clicks(self) -> bool:
+        """Whether it is fitted to clicked points, where there are any."""
+        return self.kind not in ("file", "board", "people", ALONE)
+
+    @property
     def has_covariance(self) -> bool:
         """Whether the covariance of the cameras is known."""
         return self.kind in ("sfm", "people", ALONE) or self.name in ("known", "board", "wand")

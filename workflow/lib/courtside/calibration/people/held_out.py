@@ -28,7 +28,7 @@ class Points:
     """Points that tell of cameras what people do not."""
 
     static: NDArray | None = None  # (C, P, 2) px: of points at rest, never fitted
-    court: Clicks | None = None
+    court: Clicks | None = None  # that the cameras' calibration was not fitted to
     fitted: bool = False  # whether the court's clicks are part of the fit; folds leave half out
 
 
@@ -60,6 +60,7 @@ def score(fit: Fit, seen: Seen, points: Points, limits: Limits) -> Score:
     A `fit` that returns the same cameras every time is only judged.
     """
     found, block = Score(), seen.blocks(BLOCKS)
+    fewest = FEWEST["court"] / (2 if points.fitted else 1)
     for odd in (0, 1):
         held, clicks = block % 2 != odd, points.court if points.fitted else None
         left = None if points.court is None else points.court.clicked.any(axis=0)
@@ -72,7 +73,7 @@ def score(fit: Fit, seen: Seen, points: Points, limits: Limits) -> Score:
             found.squares.setdefault("static", []).append(
                 _known(residuals.Rays(points.static).residuals(cameras) ** 2)
             )
-        if points.court is not None and left is not None and left.sum() >= FEWEST["court"] / 2:
+        if points.court is not None and left is not None and left.sum() >= fewest:
             there = np.stack([project(camera, points.court.xyz) for camera in cameras])
             off = (there - points.court.xy)[:, left]
             found.squares.setdefault("court", []).append(_known(off**2))

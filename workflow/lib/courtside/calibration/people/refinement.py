@@ -133,7 +133,7 @@ def _mended(cameras, calibrated, seen: Seen, found_again) -> tuple[list[str], li
 def _alone(seen: Seen, alike: float, gain: float) -> dict[str, str]:
     """Return why joints alone say too little: the network's own errors last through all blocks."""
     n_rows = min(len(seen.track), views.MOST_ROWS) / len(np.unique(seen.track))
-    advice, found = "click points at rest or of the court", {}
+    advice, found = "click points at rest", {}
     if n_rows < FEWEST_DIFFERENT * alike:
         found["variety of what people do"] = f"not better ({advice})"
     if gain < LEAST_ALONE:
@@ -149,6 +149,8 @@ def _line(taken: str, verdicts: dict[str, dict[str, str]]) -> str:
         for way, found in verdicts.items()
     )
     kept = {"base": "kept as before", "mended": "mended, not adjusted", "refined": "refined"}
+    if not any("court" in found for found in verdicts.values()):
+        said += "; no court points were held out"
     return f"cameras {kept[taken]}: held out, {said}"
 
 

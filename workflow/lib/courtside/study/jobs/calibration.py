@@ -155,6 +155,13 @@ def stated(job: Job) -> dict[str, float]:
     return {key: value for key, value in job.step("refine_cameras").items() if key != "takes"}
 
 
+def unused_clicks(job: Job) -> str | list:
+    """Return the court's clicks where the calibration that people refine does not rest on them."""
+    base = _way(job).base
+    unused = base is not None and not Calibration.parse(base).of_clicks
+    return (not job.session.placed and unused and job.session.court_points) or []
+
+
 def base_file(job: Job) -> str | list:
     """Return the file that it was read from, where it was."""
     return job.session.calibration_file or [] if _way(job).base == "file" else []
