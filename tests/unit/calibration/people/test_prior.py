@@ -3,7 +3,10 @@
 import numpy as np
 import pytest
 
-from courtside.calibration.people import prior
+from courtside.calibration.bundle import selection
+from courtside.calibration.people import prior, world_frame
+from courtside.calibration.records import covariance
+from courtside.geometry.similarity import Sim3
 from fixtures.cameras import corner_cameras
 
 CAMERAS = corner_cameras.four_cameras()
@@ -39,6 +42,19 @@ def test_knowledge_is_the_inverse_of_what_is_not_fixed():
     assert not quadratic.gradient.any()
     free_lens = np.isinf(prior.lens_sigma(quadratic))
     assert free_lens.tolist() == [[True, False, True, True, True, False, False, False]] * 4
+
+
+def test_a_datum_that_does_not_vary_is_known():
+    known = prior.stated(CAMERAS, **STATED)
+    places = np.random.default_rng(0).uniform([-3, -3, 0], [3, 3, 2], (200, 3))
+    shape = world_frame.of_shape(CAMERAS, known.of_columns(), places, None)
+    given = covariance.of_network(known.cameras, shape)
+    quadratic = prior.knowledge(CAMERAS, given)
+    network = selection.of_cameras(CAMERAS)
+    shift = Sim3(1.0, np.eye(3), np.array([0.03, 0.0, 0.0]))
+    moved = selection.of_cameras([shift.camera(camera) for camera in CAMERAS]).difference(network)
+    sigmas = np.sqrt(moved @ quadratic.information @ moved)
+    assert sigmas > 100
 
 
 def test_cameras_are_taken_by_name():

@@ -10,6 +10,9 @@ from courtside.calibration.bundle.problem import LENS, POSE
 from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance
 from courtside.geometry.camera import Camera
 
+ROUNDING = 1e-10  # of the largest variance: a smaller one is 0
+KNOWN = 1e-6  # likewise, in place of 0: the adjustment solves stiffer priors less exactly
+
 
 def stated(
     cameras: Sequence[Camera],
@@ -36,13 +39,19 @@ def stated(
 
 
 def knowledge(cameras: Sequence[Camera], known: CameraCovariance) -> solver.Quadratic:
-    """Return what a covariance says of cameras, about them; numbers without variance are fixed."""
+    """Return what a covariance says of cameras, about them; numbers without variance are fixed.
+
+    The covariance of cameras that define the world frame (a wand without clicks) is singular. Their
+    common movement, which it excludes, is known as well.
+    """
     covariance = known.of([camera.name for camera in cameras]).of_columns()
     free = np.diag(covariance) > 0
     scale = np.sqrt(np.diag(covariance)[free])
     correlation = covariance[np.ix_(free, free)] / np.outer(scale, scale)
     information = np.zeros_like(covariance)
-    inverse = np.linalg.pinv(correlation, rcond=1e-10, hermitian=True)
+    extent, axes = np.linalg.eigh(correlation)
+    varies = extent > ROUNDING * extent[-1]
+    inverse = (axes / np.where(varies, extent, KNOWN * extent[-1])) @ axes.T
     information[np.ix_(free, free)] = inverse / np.outer(scale, scale)
     network = selection.of_cameras(cameras)
     return solver.Quadratic(network, information, np.zeros(len(covariance)))
