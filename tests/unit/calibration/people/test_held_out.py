@@ -1,5 +1,7 @@
 """Verdicts by what a fit did not see: better, worse, and no difference where there is none."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -72,6 +74,17 @@ def test_few_court_points_say_nothing():
     few = court().of(np.arange(9) < 5)
     found = held_out.score(lambda *_: TRUE, seen, Points(court=few), LIMITS)
     assert np.isnan(found.rms_px("court"))
+
+
+def test_views_of_joints_that_no_other_camera_shows_are_not_judged():
+    seen, cameras = walkers.seen(TRUE[:3], walkers.joints(200)), TRUE[:3]
+    gone = np.arange(200) % 10 >= 4
+    score = seen.score.copy()
+    score[1:, gone] = np.nan
+    xy = np.where(np.isfinite(score)[..., None], seen.xy, np.nan)
+    alone = replace(seen, xy=xy, score=score)
+    found = held_out.score(lambda *_: cameras, alone, Points(), LIMITS)
+    assert (found.accepted_percent() > 99).all()
 
 
 def test_half_of_all_blocks_and_court_points_are_held_out_in_turn():

@@ -37,7 +37,7 @@ class Score:
     """How cameras do where they were not fitted; filled block by block, fold by fold."""
 
     share: dict[int, float] = field(default_factory=dict)  # by block: heights, per axis, median
-    accepted: list[NDArray] = field(default_factory=list)  # (C, N) 0, 1; NaN where unseen
+    accepted: list[NDArray] = field(default_factory=list)  # (C, N) 0, 1; NaN where not shared
     squares: dict[str, list[NDArray]] = field(default_factory=dict)  # px^2 per axis, by kind
 
     def typical(self) -> float:
@@ -50,7 +50,7 @@ class Score:
         return float(np.sqrt(found.mean())) if len(found) else float("nan")
 
     def accepted_percent(self) -> NDArray:
-        """Return the accepted share of each camera's views (C,), percent."""
+        """Return the accepted share of each camera's shared views (C,), percent."""
         return 100 * np.nanmean(np.concatenate(self.accepted, axis=1), axis=1)
 
 
@@ -91,7 +91,9 @@ def _people(found: Score, cameras, seen: Seen, block: NDArray, limits: Limits) -
     for one in np.unique(block):
         found.share[int(one)] = residuals.typical_px(shares[:, of_point == one])
     accepted = placed(cameras, seen, limits.score, limits.limit, limits.fade).accepted
-    found.accepted.append(np.where(np.nan_to_num(score) >= limits.score, accepted, np.nan))
+    usable = np.nan_to_num(score) >= limits.score
+    shared = usable & (usable.sum(axis=0) >= 2)  # no other view can agree with a single one
+    found.accepted.append(np.where(shared, accepted, np.nan))
 
 
 def change(before: Score, after: Score) -> tuple[float, float]:
