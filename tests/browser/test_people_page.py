@@ -113,6 +113,12 @@ def test_names_given_before_and_those_of_other_takes_are_kept(opened, tmp_path):
     assert page.input_value("article[data-person=person-1] select") == "b"
 
 
+def test_a_part_that_nobody_named_stays_unnamed(opened, tmp_path):
+    page = opened(named=[{"person": 0, "subject": "a", "time_s": 3.0, "from_s": 2.0, "to_s": 4.0}])
+    _, found = saved(page, tmp_path)
+    assert [(one.subject, one.from_s, one.to_s) for one in found] == [("a", 2.5, 4.5)] * 2
+
+
 def test_a_file_of_other_takes_can_be_loaded(opened, tmp_path):
     page = opened()
     path = tmp_path / "loaded.csv"

@@ -6,9 +6,11 @@ from types import SimpleNamespace
 
 import cv2
 import numpy as np
+import pytest
 
 from courtside.pages.people import page
 from courtside.pages.people.strips import Shot
+from fixtures import scripts
 from fixtures.people import named_takes
 
 WORDS = {"session": "hall", "take": "<walk>", "subjects": ["p1"], "target": "data/people.csv"}
@@ -60,3 +62,25 @@ def test_names_of_takes_are_text():
     html = built()
     assert "<walk>" not in html.replace("&lt;walk&gt;", "")
     assert "hall, &lt;walk&gt;" in html
+
+
+def mark(subject, time_s, from_s=None, to_s=None):
+    return {"subject": subject, "time_s": time_s, "from_s": from_s, "to_s": to_s}
+
+
+@pytest.mark.parametrize(
+    ("named", "parts"),
+    [
+        ([], [(0, "")]),
+        ([mark("a", 3), mark("a", 9)], [(0, "a")]),
+        ([mark("a", 3), mark("b", 9)], [(0, "a"), (6, "b")]),
+        ([mark("a", 12, 10, 20), mark("a", 17, 10, 20)], [(0, ""), (10, "a"), (20, "")]),
+        ([mark("a", 2, 0, 10), mark("a", 22, 20, 30)], [(0, "a"), (10, ""), (20, "a")]),
+        ([mark("a", 2, 0.0004, 10), mark("b", 22, 10.0004, 29.9996)], [(0, "a"), (10.0004, "b")]),
+        ([mark("a", 2, None, 8), mark("b", 22, None, None)], [(0, "a"), (8, "b")]),
+    ],
+)
+def test_names_given_before_keep_the_parts_that_nobody_named(named, parts):
+    call = f"peopleTable.parts({json.dumps(named)}, {{start_s: 0, stop_s: 30}})"
+    found = scripts.call("people_table.js", call)
+    assert [(one["from"], one["subject"]) for one in found] == parts

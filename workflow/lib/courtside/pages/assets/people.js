@@ -15,19 +15,8 @@
   let parts = first();
 
   function first() {
-    return Object.fromEntries(given.persons.map((person) => [person.index, earlier(person.index)]));
-  }
-
-  // Parts of a person by the names given before.
-  function earlier(index) {
-    const names = given.named.filter((one) => one.person === index).sort((a, b) => a.time_s - b.time_s);
-    const found = [{ from: given.start_s, subject: names.length ? names[0].subject : "" }];
-    for (const [at, one] of names.entries()) {
-      const last = found[found.length - 1];
-      if (one.subject === last.subject) continue;
-      found.push({ from: one.from_s ?? (names[at - 1].time_s + one.time_s) / 2, subject: one.subject });
-    }
-    return found;
+    const named = (person) => given.named.filter((one) => one.person === person.index);
+    return Object.fromEntries(given.persons.map((person) => [person.index, peopleTable.parts(named(person), given)]));
   }
 
   // ---- names ----
