@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from courtside.calibration.court import court as court_files
+from courtside.geometry import camera as cameras
 from courtside.pages.clicking import page
 from courtside.study.errors import InputError
+from fixtures import scripts
 
 COURT = Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml"
 
@@ -98,3 +100,23 @@ def test_pictures_are_of_different_cameras(court, picture, names):
     frames = [page.frame(name, picture[0]) for name in names]
     with pytest.raises(ValueError, match="expected pictures of different cameras"):
         page.build("hall", court, frames, targets={})
+
+
+@pytest.mark.parametrize(("place", "aim"), [((3, -6, 3), (3, 8, 0)), ((-1, 5, 2.5), (4, 10, 0))])
+def test_the_page_fits_a_camera_with_the_origin_before_or_behind_it(court, place, aim):
+    ahead = np.subtract(aim, place) / np.linalg.norm(np.subtract(aim, place))
+    right = np.cross(ahead, [0, 0, 1.0])
+    right /= np.linalg.norm(right)
+    turn = np.stack([right, np.cross(ahead, right), ahead])
+    matrix = np.array([[900, 0, 959.5], [0, 900, 539.5], [0, 0, 1]])
+    pose = np.column_stack([turn, -turn @ place])
+    camera = cameras.Camera("left", (1920, 1080), matrix, np.zeros(5), pose)
+    floor = court.xyz[court.xyz[:, 2] == 0]
+    xy = cameras.project(camera, floor)
+    shown = cameras.in_picture(camera, xy)
+    points = [
+        {"name": str(at), "xyz": floor[at].tolist(), "xy": xy[at].tolist()}
+        for at in np.flatnonzero(shown)
+    ]
+    found = scripts.call("clicking_fit.js", f"clickFit.fit({json.dumps(points)}, [1920, 1080])")
+    assert found["kind"] == "camera" and found["rms"] < 1.0

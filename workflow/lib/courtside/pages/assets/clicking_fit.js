@@ -137,8 +137,8 @@ const clickFit = (() => {
   function posed(plane, f, c) {
     const columns = plane.columns().map((col) => [(col[0] - c[0] * col[2]) / f, (col[1] - c[1] * col[2]) / f, col[2]]);
     const scale = Math.sqrt(Math.sqrt(dot(columns[0], columns[0]) * dot(columns[1], columns[1])));
-    const sign = columns[2][2] < 0 ? -1 : 1;
-    let [a, b, t] = columns.map((col) => col.map((value) => sign * value / scale));
+    // Depths of the points are positive; that of the court's origin need not be.
+    let [a, b, t] = columns.map((col) => col.map((value) => value / scale));
     const unit = (v) => { const n = Math.hypot(...v); return v.map((value) => value / n); };
     a = unit(a);
     b = unit(b.map((value, at) => value - dot(a, b) * a[at]));
