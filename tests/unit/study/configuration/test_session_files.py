@@ -211,7 +211,8 @@ def test_court_points_that_nobody_has_clicked_are_waited_for(tmp_path):
 def test_ways_that_need_more_points_than_the_court_has_are_left_out(tmp_path):
     (tmp_path / "p.csv").touch()
     ways = {"calibrations": ["known", "known18", "known8", "dlt20", "known10"]}
-    content = {"description": "d", "cameras": {"a": None, "b": None}, "court_points": "p.csv"}
+    cameras = {name: {"static": f"{name}.png"} for name in "ab"}
+    content = {"description": "d", "cameras": cameras, "court_points": "p.csv"}
     file = schemas.SCHEMAS.parents[1] / "config" / "sessions" / "s.yaml"
     for court, found in (
         ("badminton", ["known", "known18", "known8"]),

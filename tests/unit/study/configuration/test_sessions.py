@@ -69,7 +69,7 @@ def session(**changes):
         "views": {},
         "halfbody": None,
     }
-    fields |= {"cameras": {"a": sessions.FixedCamera(), "b": sessions.FixedCamera()}}
+    fields |= {"cameras": {name: sessions.FixedCamera(static=f"{name}.png") for name in "ab"}}
     return sessions.Session(**{**fields, "parameters": {"calibrations": WAYS}, **changes})
 
 
@@ -110,6 +110,11 @@ def test_each_session_has_the_calibrations_that_its_recordings_allow(recordings,
     assert session(**recordings).calibrations() == ways
 
 
+def test_cameras_are_resected_one_by_one_in_pictures_of_the_empty_hall_only():
+    cameras = {"a": sessions.FixedCamera(static="a.png"), "b": sessions.FixedCamera()}
+    assert session(court_points="p.csv", cameras=cameras).calibrations() == ["known"]
+
+
 def test_lines_are_adjusted_with_the_clicks_of_a_walk():
     ways = {"parameters": {"calibrations": ["sfm-n40", "sfm-n40-lines"]}, "walks": {"w": "w.mp4"}}
     cameras = {"cameras": {"a": sessions.FixedCamera()}}
@@ -119,8 +124,8 @@ def test_lines_are_adjusted_with_the_clicks_of_a_walk():
 
 
 def test_calibration_with_boards_needs_those_of_every_camera():
-    every = {name: sessions.FixedCamera(chessboard=BOARD) for name in "ab"}
-    one = {**every, "b": sessions.FixedCamera()}
+    every = {name: sessions.FixedCamera(static=f"{name}.png", chessboard=BOARD) for name in "ab"}
+    one = {**every, "b": sessions.FixedCamera(static="b.png")}
     made = {"court_points": "p.csv", "cameras": every}
     assert session(**made).calibrations()[-1] == "known18-board"
     assert "known18-board" not in session(**{**made, "cameras": one}).calibrations()
@@ -141,7 +146,7 @@ def test_the_sweep_has_offsets_for_few_images_only():
 
 def test_only_virtual_sessions_film_boards():
     assert session(walks={"w": "w.mp4"}).filmed() == ["a", "b", "w"]
-    assert session(walks={"w": "w.mp4"}).recorded_empty() == ["w"]
+    assert session(walks={"w": "w.mp4"}).recorded_empty() == ["a", "b", "w"]
     assert session(virtual={"boards": True}).films_boards()
     assert not session(virtual={"boards": False}).films_boards()
     assert not session(virtual={}).films_boards()

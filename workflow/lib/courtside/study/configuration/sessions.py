@@ -140,6 +140,7 @@ class Session:
         others = walked or self.calibration_file or self.board or self.wand
         alone = clicked and (self.also_known or not others)
         clicked = clicked and not self.placed
+        pictured = clicked and all(camera.static for camera in self.cameras.values())
         boards = clicked and all(camera.chessboard for camera in self.cameras.values())
         filmed = any(take.cameras for take in self.takes.values())
         possible = {
@@ -147,8 +148,8 @@ class Session:
             "board": self.board is not None,
             "wand": self.wand is not None,
             ALONE: filmed and self.court is None,  # whose world it would not be
-            "known": clicked,
-            "dlt": clicked,
+            "known": pictured,
+            "dlt": pictured,
             "sfm": walked and bool(self.cameras) and not self.unclicked,
             "sim3": walked and clicked,
             "paper": walked and clicked,
