@@ -443,3 +443,21 @@ def test_a_calibration_that_is_none_is_named(folder, name):
 def test_a_fault_of_a_virtual_session_names_key_and_value(folder, changes, parts):
     found = faults(folder, VIRTUAL | changes)
     assert any(all(part in line for part in ["hall.yaml: ", *parts]) for line in found), found
+
+
+@pytest.mark.parametrize(
+    ("override", "parts"),
+    [
+        ({"take_calibrations": ["file-peolpe"]}, ["take_calibrations", "['file']", "peolpe"]),
+        ({"take_calibrations": ["file-people"]}, ["take_calibrations", "in both lists"]),
+        ({"fusions": ["three-robust"]}, ["fusions", "three-robust", "`views`"]),
+    ],
+)
+def test_takes_that_nothing_measures_are_a_fault(folder, override, parts):
+    (found,) = faults(folder, SESSION | {"override": override})
+    assert all(part in found for part in ["hall.yaml: ", *parts])
+
+
+def test_a_session_may_say_that_its_takes_are_not_measured(folder):
+    study = load(folder, SESSION | {"override": {"take_calibrations": []}})
+    assert study.sessions["hall"].take_calibrations() == []

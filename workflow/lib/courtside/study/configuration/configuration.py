@@ -116,7 +116,10 @@ def _models(models: Content, detectors: Content, found: dict[str, tuple]) -> dic
 
 
 def _sessions(config: Content, found: dict[str, tuple], root: StrPath) -> dict[str, Session]:
-    """Return the sessions of the files, and the variations that conditions make of them."""
+    """Return the sessions of the files, and the variations that conditions make of them.
+
+    An `InputError` names those of whose takes nothing is measured.
+    """
     made = {
         name: session_files.session(name, file, content, config, root)
         for name, (file, content) in found.items()
@@ -124,6 +127,8 @@ def _sessions(config: Content, found: dict[str, tuple], root: StrPath) -> dict[s
     for name in config["variations"]:
         condition = config["conditions"][name]
         made |= session_files.variations(made[condition["session"]], name, condition)
+    if faults := [line for one in made.values() for line in session_faults.unmeasured(one)]:
+        raise InputError(*dict.fromkeys(faults))
     return made
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from courtside.study.configuration import consent, sighting_faults, take_faults
 from courtside.study.configuration.session_files import has_places, is_there, of_configuration
+from courtside.study.configuration.sessions import Session
 from courtside.study.configuration.yaml_files import Content
 from courtside.study.execution.artefacts import Artefact
 from courtside.study.paths import CAMERAS, EXTERNAL, VIRTUAL
@@ -54,6 +55,22 @@ def find(
     yield from take_faults.of_other_programs(folder, file, content)
     for where, path in paths.items():
         yield from _path_faults(f"{file}: {where}", path, known, root)
+
+
+def unmeasured(session: Session) -> Iterator[str]:
+    """Yield why nothing of a session's takes is measured, unless its lists are empty for that."""
+    takes, where = [take for take in session.takes.values() if len(take.cameras) > 1], session.file
+    ways, wanted = session.calibrations(), session.parameters["take_calibrations"]
+    if takes and ways and wanted and not session.take_calibrations():
+        yield (
+            f"{where}: take_calibrations: expected one of the session's calibrations {ways}, by "
+            f"which its takes are measured, found {wanted}; name one in both lists, or none here"
+        )
+    if takes and ways and wanted and not any(map(session.fusions_of, takes)):
+        yield (
+            f"{where}: fusions: expected one whose cameras film a take, found "
+            f"{session.parameters['fusions']}; add all-robust, or its set of cameras to `views`"
+        )
 
 
 def _asks_people(content: Content) -> bool:
