@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from courtside.calibration.file_check import faults
-from courtside.calibration.people import prior, refinement, resection
+from courtside.calibration.people import prior, refinement, resection, views
 from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.held_out import Points
 from courtside.study.errors import InputError
@@ -69,6 +69,14 @@ def test_joints_that_err_alike_all_the_time_are_no_proof_by_themselves():
     found = refinement.refine(base, KNOWN, biased, LIMITS, Points())
     assert found.taken == "base" and found.verdicts["refined"]["joints"] == "better"
     assert "click points at rest" in found.line
+
+
+def test_persons_whom_no_two_cameras_see_take_nobodys_place():
+    stays = walkers.seen(TRUE, walkers.joints(320))
+    unseen = replace(stays, score=np.full_like(stays.score, np.nan))
+    both = views.joined([stays, *[unseen] * 15])
+    assert (both.thinned().track == 0).sum() == views.MOST_ROWS
+    assert refinement._alone(both, alike=30.0, gain=0.5) == {}
 
 
 def test_a_small_gain_of_joints_alone_is_how_the_network_errs():

@@ -26,6 +26,16 @@ def test_many_rows_are_thinned_evenly():
     np.testing.assert_array_equal(thin.xy[:, [0, -1]], seen.xy[:, [0, -1]])
 
 
+def test_rows_that_one_camera_sees_are_left_out():
+    seen = walkers.seen(CAMERAS, walkers.joints(views.MOST_ROWS * 3))
+    score = seen.score.copy()
+    score[1:, views.MOST_ROWS :] = np.nan
+    thin = replace(seen, score=score).thinned()
+    np.testing.assert_array_equal(thin.time_s, seen.time_s[: views.MOST_ROWS])
+    score[1:] = np.nan
+    assert len(replace(seen, score=score).thinned().track) == views.MOST_ROWS
+
+
 def test_somebody_who_walks_is_good_input():
     seen = walkers.seen(CAMERAS, walkers.joints(60))
     assert views.check(CAMERAS, seen, 0.05) is None

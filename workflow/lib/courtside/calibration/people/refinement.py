@@ -132,7 +132,8 @@ def _mended(cameras, calibrated, seen: Seen, found_again) -> tuple[list[str], li
 
 def _alone(seen: Seen, alike: float, gain: float) -> dict[str, str]:
     """Return why joints alone say too little: the network's own errors last through all blocks."""
-    n_rows = min(len(seen.track), views.MOST_ROWS) / len(np.unique(seen.track))
+    track = seen.thinned().track
+    n_rows = len(track) / len(np.unique(track))
     advice, found = "click points at rest", {}
     if n_rows < FEWEST_DIFFERENT * alike:
         found["variety of what people do"] = f"not better ({advice})"

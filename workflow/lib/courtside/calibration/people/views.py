@@ -35,10 +35,11 @@ class Seen:
         return Seen(*per_view, self.track[rows], self.time_s[rows])
 
     def thinned(self, most: int = MOST_ROWS) -> "Seen":
-        """Return at most so many rows, evenly spaced."""
-        n_rows = len(self.track)
-        steps = np.linspace(0, n_rows - 1, min(n_rows, most))
-        return self.of(np.round(steps).astype(int))
+        """Return at most so many of the rows that two cameras see, or of all if none; evenly."""
+        shared = np.isfinite(self.score).any(axis=2).sum(axis=0) >= 2
+        rows = np.flatnonzero(shared | ~shared.any())
+        steps = np.linspace(0, len(rows) - 1, min(len(rows), most))
+        return self.of(rows[np.round(steps).astype(int)])
 
     def blocks(self, count: int) -> NDArray:
         """Return the block (T,) int of each row: each track's rows in so many parts of its time."""
