@@ -413,6 +413,14 @@ def test_keypoints_need_no_videos(root):
     assert unfilmed(root, subjects=seen) == []
 
 
+def test_clicks_of_pictures_whose_size_nothing_tells_are_named_beside_a_file_too(root):
+    clicked = {"court_points": "placed.csv"}
+    assert unfilmed(root, **clicked) == []
+    asked = {"models": ["body25b"], "calibrations": ["file", "known"]}
+    found = unfilmed(root, **clicked, override=asked)
+    assert len(found) == 2 and all("which tell the size of its picture" in line for line in found)
+
+
 @pytest.mark.parametrize(
     ("changes", "message"),
     [

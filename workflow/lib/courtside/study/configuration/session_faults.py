@@ -300,7 +300,8 @@ def _point_faults(file: Path, content: Content, root: Path) -> Iterator[str]:
             "found places x_m, y_m, z_m; name the points, or remove the walks"
         )
     there = clicked and is_there(root / content["court_points"])
-    if there and not walks and "calibration" not in content:
+    known = "known" in content.get("override", {}).get("calibrations", [])
+    if there and not walks and (known or "calibration" not in content):
         yield from _unsized(file, content)
     if content["court"] != "none" and walks and cameras and not clicked:
         yield (
