@@ -2,8 +2,6 @@
 
 from pathlib import Path
 
-import pandas as pd
-
 from courtside.sfm import grid, mapping
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json
@@ -24,8 +22,7 @@ def main(
     **options,
 ):
     frames = grid.read(dict(zip(walks, frames_csv, strict=True)))
-    images = pd.read_csv(features_csv)
-    fixed = images["name"][~images["source"].isin(walks)].tolist()
+    fixed = grid.fixed(features_csv, walks)
     chosen = frames.choose(int(n_images), int(offset), rule)
     folder = Path(summary_json).parent
     summary = mapping.map_images(matches_db, fixed + chosen, folder, mapper=mapper, **options)

@@ -13,8 +13,7 @@ from courtside.study.execution.script import run
 
 def main(features_db, features_csv, frames_csv, matches_db, table_csv, *, walks, **options):
     frames = grid.read(dict(zip(walks, frames_csv, strict=True)))
-    images = pd.read_csv(features_csv)
-    fixed = images["name"][~images["source"].isin(walks)].tolist()
+    fixed = grid.fixed(features_csv, walks)
     found = matching.match(features_db, matches_db, frames.pairs(fixed), **options)
     table = pd.DataFrame(
         [(*pair, n) for pair, n in found.items()], columns=["name_a", "name_b", "n_matches"]

@@ -101,3 +101,17 @@ def test_a_missing_or_broken_table_is_named(tmp_path):
             path.write_text(content)
         with pytest.raises(InputError, match=r"walk\.csv: expected a frame table"):
             grid.read({"walk": path})
+
+
+@pytest.mark.parametrize("walk", ["walk", "3", "null"])
+def test_fixed_images_are_those_of_no_walk_whatever_its_name(tmp_path, walk):
+    path = tmp_path / "features.csv"
+    path.write_text(f"source,name,n_features\n1,static/1.png,5\n{walk},frames/0.png,5\n")
+    assert grid.fixed(path, [walk]) == ["static/1.png"]
+
+
+def test_a_table_of_features_without_names_is_refused(tmp_path):
+    path = tmp_path / "features.csv"
+    path.write_text("source\n1\n")
+    with pytest.raises(InputError, match="expected a table of features, found no column name"):
+        grid.fixed(path, [])

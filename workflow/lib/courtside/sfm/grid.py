@@ -1,12 +1,13 @@
 """The grid of a session's walks: all frames that may bridge, in order, by their image names."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from courtside.records import tables as records
 from courtside.records.cameras import frame_table, image_names
 from courtside.sfm import bridging, pairs
 from courtside.study.errors import StrPath
@@ -63,3 +64,18 @@ def read(tables: Mapping[str, StrPath]) -> Grid:
         whole["kept"].to_numpy(bool),
         whole["sharpness"].to_numpy(float),
     )
+
+
+def fixed(path: StrPath, walks: Collection[str]) -> list[str]:
+    """Return the images of a table that `extract_features` wrote which are of no walk.
+
+    Names of walks are texts: a walk may be called 3, or null.
+    """
+    table = records.read(
+        path,
+        "a table of features",
+        lambda table: records.column_fault(table, ["source", "name"], []),
+        dtype=str,
+        keep_default_na=False,
+    )
+    return table["name"][~table["source"].isin(walks)].tolist()
