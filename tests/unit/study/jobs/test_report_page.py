@@ -108,6 +108,29 @@ def test_the_number_of_images_is_that_of_the_calibration(study, rules):
     assert [s["n_images"] for s in found["sessions"]] == [40]
 
 
+@pytest.mark.parametrize(
+    ("ways", "model"),
+    [
+        (["sfm-n40-o1"], "global-n40-o1"),
+        (["known18", "sim3-n12-o2"], "global-n12-o2"),
+        (["sfm-n40-o1-people"], "global-n40-o1"),
+        (["paper-n40"], None),
+        (["known18"], None),
+    ],
+)
+def test_the_structure_from_motion_is_the_one_that_the_calibration_rests_on(study, ways, model):
+    session = study.sessions["plain-tiny"]
+    sweep = {**session.parameters["sweep"], "n_images": []}
+    own = {"calibrations": ways, "take_calibrations": ways, "sweep": sweep}
+    players = study.sessions["players-tiny"]
+    filmed = {"takes": players.takes, "subjects": players.subjects}
+    other = replace(session, parameters={**session.parameters, **own}, **filmed)
+    found = report_page._session(study, other)
+    summary = model and f"results/plain-tiny/sfm/{model}/summary.json"
+    assert found["files"].get("model") == summary
+    assert found["mapper"] == (model and "global")
+
+
 def test_photos_alone_are_told_with_their_model(study, rules):
     session = study.sessions["plain-tiny"]
     sweep = {**session.parameters["sweep"], "n_images": [7], "mappers": ["incremental"]}

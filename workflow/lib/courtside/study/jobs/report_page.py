@@ -135,20 +135,14 @@ def _session(study: Study, session: Session) -> dict[str, Any]:
     """Return what the report says of a session."""
     ways = [Calibration.parse(name) for name in session.calibrations()]
     way = next(iter(session.take_calibrations()), ways[0].name if ways else None)
-    photos = bool(session.walks) and not session.cameras
-    mapped = photos or (bool(session.walks) and any(one.kind in ("sfm", "sim3") for one in ways))
-    # The reported structure from motion: global, with as many images as the calibration; of photos
-    # alone the first.
-    mapped_by = Calibration.parse(way).variant if way else None
-    first = session.variants()[0]
-    variant = first if photos else Variant("global", (mapped_by or first).n_images)
-    known = {"session": session.name, **vars(variant)}
+    variant = _reported_variant(session, way)
+    known = {"session": session.name}
     shown = dict.fromkeys(name for one in ways for name in (one.base, one.name) if name)
     quality = {name: paths.CALIBRATION_QUALITY.format(**known, calibration=name) for name in shown}
-    model = {
-        "model": paths.SFM_SUMMARY.format(**known),
-        "static": [paths.STATIC_CHECK.format(**known, camera=camera) for camera in session.cameras],
-    }
+    model: dict[str, Any] = {}
+    if variant:
+        model = {"model": paths.SFM_SUMMARY.format(**known, **vars(variant))}
+        model["static"] = [paths.STATIC_CHECK.format(**known, camera=c) for c in session.cameras]
     checks = {"checks": checked} if (checked := calibration.file_checks(session)) else {}
     limits = session.parameters["extract_static"]
     return {
@@ -156,17 +150,29 @@ def _session(study: Study, session: Session) -> dict[str, Any]:
         "description": session.description,
         "virtual": bool(session.virtual),
         "calibration": way,
-        "mapper": variant.mapper if mapped else None,
-        "n_images": variant.n_images,
+        "mapper": variant and variant.mapper,
+        "n_images": variant and variant.n_images,
         "fusion": next(iter(session.fusions()), None),
         "model": session.parameters["models"][0],
         "overrides": _overrides(study, session),
         "withheld": consent.left_out(session),
         "limits": {key: limits[key] for key in ("max_shift_px", "max_zoom_percent")},
-        "files": {"quality": quality, **checks, **(model if mapped else {})},
+        "files": {"quality": quality, **checks, **model},
         "links": [(_link(path), VERDICTS) for path in pages.quality_pages(session)],
         "takes": [_take(study, session, take) for take in session.takes.values()],
     }
+
+
+def _reported_variant(session: Session, way: str | None) -> Variant | None:
+    """Return the structure from motion that the report describes: of photos alone the first.
+
+    Otherwise the global one that the calibration `way` rests on, or else the first of the session.
+    """
+    if session.walks and not session.cameras:
+        return next(iter(session.variants()), None)
+    names = [way] if way else []
+    every = [Calibration.parse(name).variant for name in [*names, *session.calibrations()]]
+    return next((one for one in every if one and one.mapper == "global"), None)
 
 
 def _overrides(study: Study, session: Session) -> dict[str, dict]:
