@@ -413,6 +413,19 @@ def test_keypoints_need_no_videos(root):
     assert unfilmed(root, subjects=seen) == []
 
 
+@pytest.mark.parametrize(
+    ("changes", "key"),
+    [
+        ({"cameras": RECORDED["cameras"] | {"all": {"static": "a.mp4"}}}, "cameras.all"),
+        ({"subjects": {"all": None}}, "subjects.all"),
+        ({"views": {"all": ["a", "b"]}}, "views.all"),
+    ],
+)
+def test_nothing_is_called_all(root, changes, key):
+    (line,) = find(root, RECORDED | changes)
+    assert f"{key}: expected another name, found 'all'" in line
+
+
 def test_clicks_of_pictures_whose_size_nothing_tells_are_named_beside_a_file_too(root):
     clicked = {"court_points": "placed.csv"}
     assert unfilmed(root, **clicked) == []

@@ -15,6 +15,7 @@ from courtside.study.paths import CAMERAS, EXTERNAL, VIRTUAL
 # Cameras that the workflow finds in another session.
 CALIBRATED = CAMERAS.replace(".", r"\.").format(session="[^/]+", calibration="[^/]+")
 SIMULATED = VIRTUAL.format(session="")
+ALL = "all"  # of cameras in fusions, of cameras and persons in tables
 # What else to do where nobody has clicked the points of a court yet.
 BY_CLICKS = ", or give every camera `static`, and the study makes a page to click them on"
 
@@ -32,8 +33,7 @@ def find(
     if court != "none" and not (folder / "courts" / f"{court}.yaml").is_file():
         known_courts = sorted(path.stem for path in (folder / "courts").glob("*.yaml"))
         yield f"{file}: court: expected 'none' or one of {known_courts}, found {court!r}"
-    for name in sorted(set(cameras) & set(content.get("walks", {}))):
-        yield f"{file}: walks.{name}: expected a name that no camera has, found {name!r}; rename it"
+    yield from _name_faults(file, content)
     yield from _virtual_faults(file, content) if virtual else _recorded_faults(file, content, root)
     yield from _override_faults(file, content)
     yield from _people_faults(file, content)
@@ -55,6 +55,18 @@ def find(
     yield from take_faults.of_other_programs(folder, file, content)
     for where, path in paths.items():
         yield from _path_faults(f"{file}: {where}", path, known, root)
+
+
+def _name_faults(file: Path, content: Content) -> Iterator[str]:
+    """Yield the names that mean something else."""
+    for key in ("cameras", "subjects", "views"):
+        if ALL in content.get(key, {}):
+            yield (
+                f"{file}: {key}.{ALL}: expected another name, found {ALL!r}, which means all of "
+                "them in fusions and tables; rename it"
+            )
+    for name in sorted(set(content["cameras"]) & set(content.get("walks", {}))):
+        yield f"{file}: walks.{name}: expected a name that no camera has, found {name!r}; rename it"
 
 
 def unmeasured(session: Session) -> Iterator[str]:
