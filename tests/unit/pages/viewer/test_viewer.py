@@ -14,6 +14,7 @@ from courtside.figures.style import style
 from courtside.pages import page
 from courtside.pages.viewer import layers as viewer_layers
 from courtside.pages.viewer import viewer
+from courtside.records.keypoints import missing_reason
 from fixtures.cameras import scene
 from fixtures.people import walker
 
@@ -126,3 +127,10 @@ def test_the_page_is_written_whole(tmp_path):
 def test_layers_need_names_that_differ(layers):
     with pytest.raises(ValueError, match="differ"):
         viewer.build("t", layers)
+
+
+def test_every_reason_for_a_missing_joint_has_words():
+    script = (page.ASSETS / "viewer_panel.js").read_text()
+    words = script.split("const WHY = {")[1].split("}")[0]
+    told = {int(code) for code in re.findall(r"(\d+):", words)}
+    assert set(missing_reason.WORDS) - {missing_reason.OK} <= told

@@ -4,7 +4,7 @@
 
 const WHY = {
   1: "not seen", 2: "score too low", 3: "too few views", 4: "views disagree", 5: "interpolated",
-  6: "outside the picture", 7: "no depth there", 255: "missing",
+  6: "outside the picture", 7: "no depth there", 8: "too uncertain", 255: "missing",
 };
 const MEASURES = {
   sigma: { words: "expected error σ", unit: "mm", of: (layer, ...where) => layer.sigmaMm(...where) },
