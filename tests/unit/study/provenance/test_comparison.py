@@ -203,3 +203,11 @@ def test_every_kind_of_result_has_a_tolerance():
     assert comparison.stated("external/x.npz")[1:3] == (0.0, 0.0)
     assert comparison.stated("gym/takes/t/pose3d_filtered/a/b.npz")[1:3] == (0.0, 2e-3)
     assert comparison.stated("provenance-free.csv")[1:3] == (1e-4, 1e-4)
+
+
+def test_what_rests_on_keypoints_may_differ_as_they_do():
+    take = "gym/takes/t"
+    rest = ("sync/known/cameras.m.json", "people/known/m.npz", "body/cameras.m.npz")
+    rest += ("motion/known/all/m.angles.csv", "motion/known/all/m.npz", "views/known.m.csv")
+    for name in ["figures/study.csv", *(f"{take}/{name}" for name in rest)]:
+        assert max(comparison.stated(name)[1:3]) >= 2e-3
