@@ -106,10 +106,11 @@ def test_options_reach_the_mapper(synthetic, tmp_path):
     assert summary["n_registered"] == 0
 
 
-def test_an_unknown_option_is_refused(synthetic, tmp_path):
-    with pytest.raises(ValueError, match=r"no option mapper\.speed"):
+@pytest.mark.parametrize("name", ["mapper.speed", "maper.init_min_num_inliers", "speed"])
+def test_an_unknown_option_is_refused(synthetic, tmp_path, name):
+    with pytest.raises(InputError, match=rf"map_images\.colmap\.incremental: .* found '{name}'"):
         mapping.map_images(
-            synthetic[0], [], tmp_path, mapper="incremental", seed=0, options={"mapper.speed": 1}
+            synthetic[0], [], tmp_path, mapper="incremental", seed=0, options={name: 1}
         )
 
 

@@ -277,9 +277,13 @@ def _options(mapper: str, images: Sequence[str], seed: int, changes: Mapping[str
         *parents, last = name.split(".")
         owner = pipeline
         for parent in parents:
-            owner = getattr(owner, parent)
+            owner = getattr(owner, parent, None)
         if not hasattr(owner, last):
-            raise ValueError(f"COLMAP's {mapper} mapping has no option {name}")
+            raise InputError(
+                f"map_images.colmap.{mapper}: expected options of COLMAP's {mapper} mapping, such "
+                f"as mapper.{sorted(pipeline.mapper.todict(recursive=False))[0]}, found {name!r}; "
+                "correct the name"
+            )
         setattr(owner, last, value)
     return pipeline
 
