@@ -379,6 +379,8 @@ def test_every_number_of_the_calibration_has_its_limits(folder, step, key, value
         "sfm",
         "sfm-40",
         "sfm-n0",
+        "sfm-n1",
+        "paper-n1",
         "known-board",
         "dlt-n8",
         "paper-global",
