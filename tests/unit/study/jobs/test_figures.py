@@ -27,6 +27,13 @@ def test_axes_of_a_condition_are_its_settings_with_several_values(job, studies):
     assert errors[0] == "results/wide-0/evaluation/global-n12-o0.csv"
 
 
+def test_a_condition_of_one_value_is_drawn_over_it(job, studies):
+    vary = {"seed": [1, 2], "baseline_deg": [30], "size_px": [[640, 360]]}
+    conditions = {"one": {"session": "plain-tiny", "vary": vary}}
+    study = studies(variations=["one"], conditions=conditions)
+    assert figures.condition_axes(job(study, condition="one"))["x"] == "baseline_deg"
+
+
 def test_times_are_those_of_every_step_of_structure_from_motion(job):
     folder = "results/plain-tiny/benchmarks"
     assert figures.timings(job(session="plain-tiny")) == [

@@ -29,7 +29,8 @@ def condition_axes(job: Job) -> dict[str, Any]:
     """Return the axes of a condition's figure: settings with several values, number of images."""
     name = drawn_conditions(job.study)[job["condition"]]
     vary = job.study.parameters["conditions"][name]["vary"]
-    keys = [key for key, values in vary.items() if len(values) > 1 and not key.endswith("seed")]
+    keys = [key for key in vary if not key.endswith("seed")]
+    keys = [key for key in keys if len(vary[key]) > 1] or keys[:1]
     keys = ["width_px" if key == "size_px" else key for key in keys]
     sweeps = [session.parameters["sweep"]["n_images"] for session in varied(job.study, name)]
     counts = {count for sweep in sweeps for count in sweep}
