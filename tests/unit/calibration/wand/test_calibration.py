@@ -132,6 +132,18 @@ def test_clicked_points_give_the_world():
     assert np.mean(square < point_covariance.ellipsoid(0.9)) > 0.7
 
 
+def test_clicks_have_the_variances_of_the_cameras_where_they_stand():
+    points, centres = floor_points(), []
+
+    def clicks(rig):
+        centres.append([camera.centre_in_world for camera in rig])
+        return points(rig)
+
+    calibrate(seen(swung()), clicks=clicks)
+    true = [camera.centre_in_world for camera in RIG]
+    assert np.linalg.norm(np.subtract(centres[-1], true), axis=1).max() < 0.1
+
+
 def test_clicked_points_show_that_y_of_the_markers_runs_up():
     xyz = swung()
     upside = seen(xyz)

@@ -88,6 +88,7 @@ def calibrate(
         named = dict(zip(seen.cameras, marked.xy, strict=True))
         moved = world.of_clicks(cameras, marked.xyz, named)
         cameras = [moved.camera(camera) for camera in cameras]
+        marked = clicks(cameras)  # their variances depend on where the cameras are
         state = _with_clicks(_state(wand, seen, cameras, lenses), cameras, lenses, marked)
         found = _adjust(state, cameras, lenses)
         cameras, text = _cameras(found, cameras, lenses), "clicked points"
