@@ -25,8 +25,8 @@ def summary(found: Found, wand: Wand, seen: Seen, known: set[str]) -> dict[str, 
     By camera: number of frames, `rms_px` per axis without wrong markers, the share of these
     (`wrong_percent`) of the markers that another camera sees, standard deviations of the position
     (mm) and of an estimated lens, and the delay in frames (`late_frames`). `length_mm` is the error
-    of the wand's length where two cameras or more see both ends: median (`mean`), standard
-    deviation, number.
+    of the wand's length where two cameras or more see both ends: median (`mean`), 1.4826 times
+    the median absolute deviation (`standard_deviation`), number.
     """
     off = found.error_px
     fine = np.abs(off).max(axis=-1) < WRONG_SIGMAS * found.adjusted.sigma_px
