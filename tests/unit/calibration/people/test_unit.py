@@ -119,12 +119,17 @@ def clicked(noise_px=0.0, seed=0, length_m=2.0, cameras=(0, 1, 2, 3)):
     return found
 
 
+def by_length(cameras, known, shape=None):
+    """Return the unit from one known length."""
+    return unit.by_lengths(cameras, [known], shape)[0][0]
+
+
 @pytest.mark.parametrize("cameras", [(0, 1), (0, 1, 2, 3)])
 def test_a_known_length_gives_metres_as_uncertain_as_its_clicks(cameras):
-    assert unit.by_length(SMALL, clicked(cameras=cameras)).metres == pytest.approx(2.5)
+    assert by_length(SMALL, clicked(cameras=cameras)).metres == pytest.approx(2.5)
     noisy = [clicked(1.0, seed, cameras=cameras) for seed in range(N_DRAWS)]
     metres = 2.0 / lengths([one.xy for one in noisy])
-    one = unit.by_length(SMALL, noisy[0])
+    one = by_length(SMALL, noisy[0])
     assert one.metres == pytest.approx(metres[0])
     expected = np.linalg.norm([np.std(metres / 2.5), unit.KNOWN_SIGMA_M / 2.0, unit.BEND_SIGMA])
     assert one.sigma == pytest.approx(expected, rel=0.05)
@@ -195,8 +200,8 @@ def test_the_shape_of_cameras_makes_a_known_length_less_certain():
     loose = prior.stated(
         SMALL, rotation_deg=0.1, position_m=0.01, focal_percent=1, principal_point_percent=1, k1=0
     ).of_columns()
-    exact = unit.by_length(SMALL, clicked())
-    assert unit.by_length(SMALL, clicked(), loose).sigma > 1.5 * exact.sigma
+    exact = by_length(SMALL, clicked())
+    assert by_length(SMALL, clicked(), loose).sigma > 1.5 * exact.sigma
 
 
 def test_a_known_length_counts_more_than_heights_and_stands_for_them():
@@ -204,7 +209,7 @@ def test_a_known_length_counts_more_than_heights_and_stands_for_them():
     found = unit.find(SMALL, bodies, [[1.83, 1.63]], [clicked()])
     assert found.metres == pytest.approx(2.5, rel=0.006)  # heights alone: 1.8 % off
     assert found.by == "left to right, stated heights"
-    assert found.sigma < unit.by_length(SMALL, clicked()).sigma
+    assert found.sigma < by_length(SMALL, clicked()).sigma
     assert not found.warnings
     without = unit.find(SMALL, bodies, [[None, 1.6]], [clicked()])
     assert (without.metres, without.by) == (pytest.approx(2.5), "left to right")
@@ -220,7 +225,7 @@ def test_heights_of_persons_who_are_not_seen_are_not_needed_beside_a_known_lengt
 
 def test_a_known_length_without_clicks_is_named():
     with pytest.raises(InputError, match="known length left to right: expected both ends clicked"):
-        unit.by_length(SMALL, clicked(cameras=(1,)))
+        by_length(SMALL, clicked(cameras=(1,)))
     with pytest.raises(
         InputError, match=r"length a to b: expected clicks of both .* none of b, on"
     ):

@@ -172,11 +172,6 @@ def combined(each: Sequence[Unit], covariance: NDArray) -> Unit:
     return Unit(unit, float(np.sqrt(weight @ covariance @ weight)), by, tuple(warnings))
 
 
-def by_length(cameras: Sequence[Camera], known: KnownLength, shape: NDArray | None = None) -> Unit:
-    """Return the unit from one known length; arguments are as for `find`."""
-    return by_lengths(cameras, [known], shape)[0][0]
-
-
 def by_lengths(
     cameras: Sequence[Camera], known: Sequence[KnownLength], shape: NDArray | None = None
 ) -> tuple[list[Unit], NDArray]:
