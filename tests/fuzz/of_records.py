@@ -149,8 +149,8 @@ def contacts(folder):
 
 def stances(folder):
     """Write stances."""
-    rows = [("p1", "left", "stand", *[np.nan] * 2, 0.5, 0.01, 1.25, -2.5, 0.01, 0.95)]
-    rows += [("p1", "left", "lunge", 0.75, 0.02, *[np.nan] * 2, 1.5, -2.75, 0.01, 0.875)]
+    rows = [("p1", "left", "stand", *[np.nan] * 2, 0.5, 0.01, 0.0, 2.0, 1.25, -2.5, 0.01, 0.95)]
+    rows += [("p1", "left", "lunge", 0.75, 0.02, *[np.nan] * 2, 0.0, 2.0, 1.5, -2.75, 0.01, 0.875)]
     table = pd.DataFrame(rows, columns=list(footwork.STEP_COLUMNS))
     footwork.write_steps(folder / "steps.csv", table)
 

@@ -22,6 +22,16 @@ def test_a_split_step_of_the_virtual_gym_is_found_and_the_first_step_after_it():
     assert not stands[27].any()
 
 
+def test_a_heel_that_is_hidden_for_a_while_makes_no_lunges():
+    points, _ = walking_feet.record(walking_feet.gait(), 12.0)
+    xyz, heel = points.xyz.copy(), points.joints.tolist().index("left_heel")
+    xyz[0, (points.time_s >= 2.4) & (points.time_s < 2.9), heel] = np.nan
+    _, steps, events = feet.find(replace(points, xyz=xyz), walking_feet.CUTOFFS)
+    assert set(events.event) == {"step"}
+    cut = steps[steps.foot == "left"]
+    assert sorted(set(cut.seen_until_s)) == pytest.approx([2.4, 12.0], abs=0.06)
+
+
 def test_a_skeleton_without_heels_gives_no_contacts():
     points, _ = walking_feet.record(walking_feet.hop(), 3.0)
     joints = np.array([name.replace("heel", "sole") for name in points.joints.tolist()])

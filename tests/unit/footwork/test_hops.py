@@ -82,33 +82,41 @@ def test_a_gap_or_a_skeleton_without_heels_gives_no_hop():
 HOP = hops.Hop(1.0, 0.01, 1.15, 0.012)
 
 
-def stood(onset_s, end_s, first_s=NAN):
-    first_s = onset_s if np.isnan(first_s) else first_s
-    return Stance(onset_s, 0.02, end_s, 0.02, np.zeros(2), 0.01, 0.9, first_s)
+def stood(onset_s, end_s, seen_s=(0.0, 2.0)):
+    return Stance(onset_s, 0.02, end_s, 0.02, np.zeros(2), 0.01, 0.9, seen_s)
 
 
 def test_a_stance_that_saw_no_hop_becomes_two():
-    before, after = hops.cut([stood(NAN, 1.6, 0.0)], [HOP])
+    before, after = hops.cut([stood(NAN, 1.6)], [HOP])
     assert (before.end_s, after.onset_s, after.end_s) == (1.0, 1.15, 1.6)
     assert (before.end_sigma_s, after.onset_sigma_s) == (0.01, 0.012)
     assert np.isnan(before.onset_s)
 
 
 def test_an_end_and_an_onset_near_a_hop_are_moved_to_it():
-    before, after = hops.cut([stood(NAN, 0.95, 0.0), stood(1.22, NAN)], [HOP])
+    before, after = hops.cut([stood(NAN, 0.95), stood(1.22, NAN)], [HOP])
     assert (before.end_s, after.onset_s) == (1.0, 1.15)
 
 
 def test_a_foot_that_is_not_seen_to_land_keeps_its_stances():
-    seen = [stood(NAN, 0.95, 0.0), stood(1.6, NAN)]
+    seen = [stood(NAN, 0.95), stood(1.6, NAN)]
     assert hops.cut(seen, [HOP]) == seen
     assert hops.cut([], [HOP]) == []
+    cut_by_a_gap = [stood(NAN, NAN, (0.0, 0.5))]
+    assert hops.cut(cut_by_a_gap, [HOP]) == cut_by_a_gap
 
 
 def test_probabilities_follow_the_stances_near_a_hop_only():
     time_s = np.arange(60) / 30
     known = np.full((60, 3), 0.9)
-    made = hops.lifted(time_s, known, hops.cut([stood(NAN, NAN, 0.0)], [HOP]), [HOP])
+    made = hops.lifted(time_s, known, hops.cut([stood(NAN, NAN)], [HOP]), [HOP])
     flies = (time_s > 1.0) & (time_s < 1.15)
     np.testing.assert_allclose(made[flies], 0.1)
     np.testing.assert_array_equal(made[~flies], known[~flies])
+
+
+def test_a_stance_that_a_gap_cuts_stands_in_no_later_hop():
+    time_s, earlier = np.arange(60) / 30, stood(NAN, NAN, (0.0, 0.5))
+    stances = hops.cut([earlier, stood(NAN, NAN, (0.6, 2.0))], [HOP])
+    made = hops.lifted(time_s, np.full((60, 3), 0.9), stances, [HOP])
+    np.testing.assert_allclose(made[(time_s > 1.0) & (time_s < 1.15)], 0.1)

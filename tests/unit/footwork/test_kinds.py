@@ -1,5 +1,7 @@
 """What stances are: steps, lunges, split steps, jumps."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,7 +13,7 @@ NAN = float("nan")
 
 
 def stance(onset_s, end_s, x=0.0, y=0.0):
-    return Stance(onset_s, 0.01, end_s, 0.01, np.array([x, y]), 0.01, 0.95)
+    return Stance(onset_s, 0.01, end_s, 0.01, np.array([x, y]), 0.01, 0.95, (0.0, 5.0))
 
 
 def together(off_s, land_s, ahead=0.0, late=0.0):
@@ -79,13 +81,36 @@ def test_a_lunge_lands_far_from_the_other_foot_and_both_stand(apart, stays, leg_
 
 
 def test_a_first_landing_is_a_step_and_stances_that_a_gap_cuts_keep_their_place():
-    early = Stance(0.2, 0.01, NAN, NAN, np.zeros(2), 0.01, 0.9, first_s=0.2)
-    cut = Stance(NAN, NAN, NAN, NAN, np.zeros(2), 0.01, 0.9, first_s=1.0)
-    late = Stance(2.0, 0.01, 2.5, 0.01, np.zeros(2), 0.01, 0.9, first_s=2.0)
+    early = Stance(0.2, 0.01, NAN, NAN, np.zeros(2), 0.01, 0.9, (0.0, 0.8))
+    cut = Stance(NAN, NAN, NAN, NAN, np.zeros(2), 0.01, 0.9, (1.0, 1.5))
+    late = Stance(2.0, 0.01, 2.5, 0.01, np.zeros(2), 0.01, 0.9, (1.8, 2.7))
     steps, events = kinds.tables({"p1": ({"left": [early, cut, late], "right": []}, 0.9)})
     assert steps.kind.tolist() == ["step", "stand", "step"]
     assert steps.onset_s.tolist() == pytest.approx([0.2, NAN, 2.0], nan_ok=True)
     assert events.empty  # of neither is known when the foot left
+
+
+def test_a_stance_that_a_gap_cuts_is_no_lunge_of_the_other_foot():
+    left = [replace(stance(NAN, NAN), seen_s=seen_s) for seen_s in ((0.0, 1.1), (2.0, 2.5))]
+    right = [stance(NAN, 0.7), stance(1.0, 2.1, 0, 1.1)]
+    steps, _ = kinds.tables({"p1": ({"left": left, "right": right}, 0.9)})
+    assert "lunge" not in set(steps.kind)
+    assert steps.loc[steps.foot == "left", "seen_until_s"].tolist() == [1.1, 2.5]
+
+
+def test_no_swing_and_no_flight_goes_across_a_gap():
+    feet = together(1.0, 1.2)
+    feet["left"][1] = replace(feet["left"][1], seen_s=(1.1, 5.0))
+    _, events = kinds.tables({"p1": (feet, 0.9)})
+    assert events[["event", "foot"]].to_numpy().tolist() == [["step", "right"]]
+
+
+def test_a_split_step_lands_where_the_feet_stand_then():
+    feet = together(1.0, 1.2, ahead=0.5)
+    unseen = replace(stance(NAN, NAN, 3.0), seen_s=(0.0, 0.2))
+    feet["left"] = [unseen, replace(feet["left"][0], seen_s=(0.4, 5.0)), feet["left"][1]]
+    _, events = kinds.tables({"p1": (feet, 0.9)}, {"p1": [Hop(1.0, 0.01, 1.2, 0.01)]})
+    assert events.loc[events.event == "split_step", "y_m"].tolist() == [0.5]
 
 
 def test_nobody_has_no_steps():

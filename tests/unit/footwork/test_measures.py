@@ -1,5 +1,6 @@
 """Measures of footwork from stances."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,7 @@ def run(n=5, stride_m=1.2, x=3.0, y=1.0, late_s=0.0):
         onsets = [NAN, *(late_s + 0.85 + 0.6 * (k + phase) for k in range(n))]
         ends = [late_s + 0.5 + 0.6 * (k + phase) for k in range(n)] + [NAN]
         feet[side] = [
-            Stance(a, 0.01, b, 0.01, place, 0.02, 0.95)
+            Stance(a, 0.01, b, 0.01, place, 0.02, 0.95, (late_s, late_s + 5.0))
             for a, b, place in zip(onsets, ends, places, strict=True)
         ]
     return feet
@@ -40,6 +41,23 @@ def test_counts_and_times_of_a_run():
     assert found.loc["stance_time", "sigma"] == pytest.approx(0.01 * np.sqrt(2 / 8))
     assert found.loc["swing_time_left", "value"] == pytest.approx(0.35)
     assert found.loc["flight_time", "value"] == pytest.approx(0.05)
+
+
+def test_times_in_which_a_foot_is_not_seen_are_neither_swings_nor_flights():
+    first, second = run(), run(late_s=8.0)
+    # Both feet swing as they get out of sight, and as they come into it again.
+    both = {side: first[side][:-1] + second[side][1:] for side in first}
+    found = values(both)
+    assert found.loc["swing_time", ["value", "n"]].tolist() == pytest.approx([0.35, 16])
+    assert found.loc["flight_time", "value"] == pytest.approx(0.05)
+
+
+def test_a_foot_that_gets_out_of_sight_does_not_stand_for_ever():
+    first, second = run(), run(late_s=8.0)
+    first["left"][-1] = replace(first["left"][-1], end_s=NAN)
+    alone = values(second).loc["flight_time"]
+    found = values({side: first[side] + second[side] for side in first}).loc["flight_time"]
+    assert found["n"] == alone["n"] + values(first).loc["flight_time", "n"]
 
 
 def test_a_rally_has_time_distance_and_rate():
@@ -68,7 +86,7 @@ def test_corners_are_sixths_of_the_own_half_as_seen_facing_the_net():
 
 
 def test_one_landing_and_no_landing_have_measures():
-    feet = {"left": [Stance(NAN, NAN, NAN, NAN, np.zeros(2), 0.01, 1.0)], "right": []}
+    feet = {"left": [Stance(NAN, NAN, NAN, NAN, np.zeros(2), 0.01, 1.0, (0, 5))], "right": []}
     found = values(feet)
     assert found.loc["steps", "value"] == 0
     assert np.isnan(found.loc["stance_time", "value"])

@@ -9,8 +9,8 @@ from courtside.study.errors import InputError
 
 STEPS = pd.DataFrame(
     [
-        ("m1", "left", "stand", np.nan, np.nan, 0.52, 0.01, 0.1, -2.0, 0.01, 0.99),
-        ("m1", "right", "lunge", 0.8, 0.012, np.nan, np.nan, 0.9, -2.5, 0.02, 0.9),
+        ("m1", "left", "stand", np.nan, np.nan, 0.52, 0.01, 0.0, 2.0, 0.1, -2.0, 0.01, 0.99),
+        ("m1", "right", "lunge", 0.8, 0.012, np.nan, np.nan, 0.0, 2.0, 0.9, -2.5, 0.02, 0.9),
     ],
     columns=list(footwork.STEP_COLUMNS),
 )

@@ -25,13 +25,20 @@ def test_bars_and_marks_are_the_stances(found):
     plan, bars, chance = made.subfigs[0].axes
     widths = sorted(bar.get_width() for bar in bars.patches)
     start = steps.onset_s.fillna(contacts.time_s[0])
-    np.testing.assert_allclose(
-        widths, sorted(steps.end_s.fillna(contacts.time_s[-1]) - start)
-    )  # fmt: skip
+    stop = steps.end_s.fillna(contacts.time_s[-1])
+    np.testing.assert_allclose(widths, sorted(stop - start))
     assert [text.get_text() for text in bars.texts] == ["split step"]
     np.testing.assert_array_equal(chance.lines[0].get_ydata(), contacts.probability[0, :, 0])
     marked = [line for line in plan.lines if line.get_marker() == "v" and len(line.get_xdata())]
     assert len(marked) == 2
+
+
+def test_a_stance_that_a_gap_cuts_is_drawn_as_far_as_the_foot_is_seen(found):
+    contacts, steps, events = found
+    cut = steps.assign(end_s=np.nan, seen_until_s=2.5)
+    made = drawing.draw(contacts, cut, events, None)
+    bars = made.subfigs[0].axes[1].patches
+    assert [bar.get_x() + bar.get_width() for bar in bars] == pytest.approx([2.5] * len(steps))
 
 
 def test_no_court_and_no_step(found):

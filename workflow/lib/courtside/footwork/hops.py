@@ -130,21 +130,25 @@ def cut(stances: Sequence[Stance], hops: Sequence[Hop]) -> list[Stance]:
     """
     made = list(stances)
     for hop in hops:
-        starts = [each.first_s if np.isfinite(each.first_s) else each.onset_s for each in made]
+        starts = [each.since_s for each in made]
         at = int(np.searchsorted(starts, hop.off_s - AGAIN_S)) - 1
         if at < 0:
             continue
         own, later = made[at], made[at + 1] if at + 1 < len(made) else None
         before = replace(own, end_s=hop.off_s, end_sigma_s=hop.off_sigma_s)
-        if not own.end_s <= hop.land_s + AGAIN_S:
+        if own.until_s > hop.land_s + AGAIN_S:
             made[at : at + 1] = [before, _landed(own, hop)]
-        elif later and own.end_s >= hop.off_s - NEAR_S and later.onset_s <= hop.land_s + NEAR_S:
+        elif later and _are_of(own, later, hop):
             made[at : at + 2] = [before, _landed(later, hop)]
     return made
 
 
+def _are_of(own: Stance, later: Stance, hop: Hop) -> bool:
+    return own.end_s >= hop.off_s - NEAR_S and later.onset_s <= hop.land_s + NEAR_S
+
+
 def _landed(stance: Stance, hop: Hop) -> Stance:
-    return replace(stance, onset_s=hop.land_s, onset_sigma_s=hop.land_sigma_s, first_s=hop.land_s)
+    return replace(stance, onset_s=hop.land_s, onset_sigma_s=hop.land_sigma_s)
 
 
 def lifted(
@@ -154,8 +158,7 @@ def lifted(
     made = probability.copy()
     stands = np.zeros(len(time_s), bool)
     for each in stances:
-        first = each.onset_s if np.isfinite(each.onset_s) else each.first_s
-        stands |= (time_s >= first) & ~(time_s > each.end_s)
+        stands |= (time_s >= each.since_s) & (time_s <= each.until_s)
     for hop in hops:
         near = (time_s > hop.off_s - NEAR_S) & (time_s < hop.land_s + NEAR_S)
         flies = near & ~stands & (probability[:, 0] > 0.5)

@@ -55,8 +55,8 @@ def tables(
             for at, stance in enumerate(feet[side]):
                 kind = kinds.get((side, at), "step") if np.isfinite(stance.onset_s) else "stand"
                 kind = "lunge" if kind == "step" and _is_lunge(feet, side, at, leg_m) else kind
-                own.append((_since(stance), (person, side, kind, *_row(stance))))
-                if kind in ("step", "lunge") and at and np.isfinite(feet[side][at - 1].end_s):
+                own.append((stance.since_s, (person, side, kind, *_row(stance))))
+                if kind in ("step", "lunge") and _is_swing(feet[side], at):
                     events.append(_event(person, kind, side, [feet[side][at - 1]], [stance]))
         steps += [row for _, row in sorted(own, key=lambda each: each[0])]
         for left, right, kind in flights:
@@ -69,15 +69,14 @@ def tables(
     return pd.DataFrame(steps, columns=columns[0]), happened.reset_index(drop=True)
 
 
-def _since(stance: Stance) -> float:
-    """Return the time from which a stance is known, s."""
-    known = [each for each in (stance.first_s, stance.onset_s) if np.isfinite(each)]
-    return known[0] if known else -np.inf
+def _is_swing(stances: Sequence[Stance], at: int) -> bool:
+    """Return whether a foot is seen all the time from the stance before the `at`-th to this one."""
+    return at > 0 and stances[at - 1].seen_s == stances[at].seen_s
 
 
 def _row(stance: Stance) -> tuple:
     times = stance.onset_s, stance.onset_sigma_s, stance.end_s, stance.end_sigma_s
-    return *times, *map(float, stance.xy), stance.sigma_m, stance.quality
+    return *times, *stance.seen_s, *map(float, stance.xy), stance.sigma_m, stance.quality
 
 
 def _event(
@@ -99,9 +98,7 @@ def _is_of(feet: Feet, flight: tuple[int, int, str], hops: Sequence[Hop]) -> boo
 
 def _hop_event(person: str, hop: Hop, feet: Feet) -> tuple:
     """Return the row of a split step: it lands where the feet stand next."""
-    after = [
-        next((one for one in feet[side] if not one.end_s <= hop.land_s), None) for side in feet
-    ]
+    after = [next((one for one in feet[side] if one.until_s > hop.land_s), None) for side in feet]
     landing = [one for one in after if one]
     place = np.mean([one.xy for one in landing], axis=0) if landing else np.full(2, np.nan)
     times = hop.off_s, hop.off_sigma_s, hop.land_s, hop.land_sigma_s
@@ -114,7 +111,9 @@ def _flights(feet: Feet) -> list[tuple[int, int, str]]:
     found = []
     for left, landed in enumerate(feet["left"]):
         for right, other in enumerate(feet["right"]):
-            if not (left and right) or not abs(landed.onset_s - other.onset_s) <= TOGETHER_S:
+            if not abs(landed.onset_s - other.onset_s) <= TOGETHER_S:
+                continue
+            if not (_is_swing(feet["left"], left) and _is_swing(feet["right"], right)):
                 continue
             before = feet["left"][left - 1], feet["right"][right - 1]
             if not abs(before[0].end_s - before[1].end_s) <= TOGETHER_S:
@@ -132,8 +131,7 @@ def _is_lunge(feet: Feet, side: str, at: int, leg_m: float) -> bool:
     """Return whether a foot lands far from the other, and both then stand."""
     own = feet[side][at]
     for other in feet["right" if side == "left" else "left"]:
-        start = max(own.onset_s, np.nan_to_num(other.onset_s, nan=-np.inf))
-        stop = min(np.nan_to_num(one.end_s, nan=np.inf) for one in (own, other))
+        start, stop = max(own.onset_s, other.since_s), min(own.until_s, other.until_s)
         first = not other.onset_s > own.onset_s
         apart = float(np.linalg.norm(own.xy - other.xy))
         if first and stop - start > LUNGE_S and apart > LUNGE_LEGS * leg_m:

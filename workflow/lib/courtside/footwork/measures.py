@@ -47,11 +47,16 @@ def _times(steps: pd.DataFrame) -> Iterator[Row]:
         stood = pd.concat(own).dropna(subset=["onset_s", "end_s"])
         yield _mean(f"stance_time{name}", stood.onset_s, stood.end_s, *_sigmas(stood))
     for name, own in sets.items():
-        left = pd.concat([o[["end_s", "end_sigma_s"]].shift(1) for o in own])
-        landed = pd.concat([o[["onset_s", "onset_sigma_s"]] for o in own])
-        both = pd.concat([left, landed], axis=1).dropna()
+        both = pd.concat([_swings(each) for each in own])
         yield _mean(f"swing_time{name}", both.end_s, both.onset_s, *_sigmas(both))
     yield _flights(steps)
+
+
+def _swings(foot: pd.DataFrame) -> pd.DataFrame:
+    """Return the swings of one foot that are seen whole, as `end_s` to `onset_s`, with sigmas."""
+    left, landed = foot[["end_s", "end_sigma_s"]].shift(1), foot[["onset_s", "onset_sigma_s"]]
+    seen = foot.seen_from_s == foot.seen_from_s.shift(1)
+    return pd.concat([left, landed], axis=1)[seen].dropna()
 
 
 def _sigmas(rows: pd.DataFrame) -> tuple[pd.Series, pd.Series]:
@@ -65,14 +70,22 @@ def _mean(name: str, start: pd.Series, stop: pd.Series, *sigmas: pd.Series) -> R
 
 
 def _flights(steps: pd.DataFrame) -> Row:
-    """Return the mean time in which neither foot stands, from the last end to the next landing."""
+    """Return the mean time in which neither foot stands, from the last end to the next landing.
+
+    Both feet are seen all this time.
+    """
     lasts, variances = [], []
+    since_s, until_s = (
+        steps[f"{known}_s"].fillna(steps[f"seen_{cut}_s"])
+        for known, cut in (("onset", "from"), ("end", "until"))
+    )
     for row in steps.dropna(subset=["onset_s"]).itertuples():
-        others = steps[(steps.end_s <= row.onset_s)]
-        stands = (steps.onset_s.fillna(-np.inf) < row.onset_s) & ~(steps.end_s <= row.onset_s)
-        if stands.any() or others.empty or others.foot.nunique() < len(footwork.FEET):
+        stands = (since_s < row.onset_s) & (until_s > row.onset_s)
+        before = steps[until_s <= row.onset_s].groupby("foot").tail(1)  # in order of time
+        seen = before.end_s.notna() & (before.seen_until_s >= row.onset_s)
+        if stands.any() or seen.sum() < len(footwork.FEET):
             continue
-        last = others.loc[others.end_s.idxmax()]
+        last = before.loc[before.end_s.idxmax()]
         if row.onset_s - last.end_s >= LEAST_FLIGHT_S:
             lasts.append(row.onset_s - last.end_s)
             variances.append(row.onset_sigma_s**2 + last.end_sigma_s**2)

@@ -21,7 +21,7 @@ SIGMA = {"onset": (0.005, 0.02, 0.6), "end": (0.005, 0.02, 0.8)}
 
 @dataclass(frozen=True, eq=False)
 class Stance:
-    """One time in which a foot stands; NaN where its run of known frames begins or ends first."""
+    """One time in which a foot stands; NaN where the foot is not seen to land or to leave."""
 
     onset_s: float
     onset_sigma_s: float
@@ -30,7 +30,17 @@ class Stance:
     xy: NDArray  # (2,): mean of the middle of heel and toe, m
     sigma_m: float  # standard deviation of `xy` per axis, from the keypoints
     quality: float  # mean probability of contact in between
-    first_s: float = float("nan")  # from when on it is known, that stances may be put in order
+    seen_s: tuple[float, float]  # from when until when the foot is seen without a gap
+
+    @property
+    def since_s(self) -> float:
+        """The time from which the foot is known to stand, s."""
+        return self.onset_s if np.isfinite(self.onset_s) else self.seen_s[0]
+
+    @property
+    def until_s(self) -> float:
+        """The time until which the foot is known to stand, s."""
+        return self.end_s if np.isfinite(self.end_s) else self.seen_s[1]
 
 
 def of_tracks(tracks: Sequence[Track], n_frames: int) -> tuple[list[Stance], NDArray]:
@@ -110,7 +120,7 @@ def _stance(
         xy=weight @ track.place[inside][..., :2].mean(axis=1),
         sigma_m=float(np.sqrt(weight @ variance)),
         quality=float(probability[inside].mean()),
-        first_s=float(edges_s[k]),
+        seen_s=(float(np.fmin(edges_s[0], bounds[1])), float(np.fmax(edges_s[-1], bounds[-2]))),
     )
 
 

@@ -16,11 +16,12 @@ KINDS = ("stand", "step", "lunge", "split_step", "jump")
 EVENTS = KINDS[1:]
 
 # One row per stance, in order of person and time. Times on the reference clock; a time is empty
-# where the take or a gap cuts the stance. Sigma is a standard deviation: 90 % of errors should be
-# within 1.645 of it.
+# where the take or a gap cuts the stance: then the foot stands from `seen_from_s`, or until
+# `seen_until_s`. Between these two it is seen without a gap. Sigma is a standard deviation: 90 % of
+# errors should be within 1.645 of it.
 STEP_COLUMNS = (
-    "person", "foot", "kind", "onset_s", "onset_sigma_s", "end_s", "end_sigma_s", "x_m", "y_m",
-    "sigma_m", "quality",
+    "person", "foot", "kind", "onset_s", "onset_sigma_s", "end_s", "end_sigma_s", "seen_from_s",
+    "seen_until_s", "x_m", "y_m", "sigma_m", "quality",
 )  # fmt: skip
 # One row per event: the flight that ends in it. A split step and a jump are of both feet (`both`):
 # from when the last leaves the floor to when the first lands; the others from when the foot

@@ -3,7 +3,6 @@
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from courtside.calibration import point_covariance
 from courtside.calibration.court.court import Court
@@ -14,12 +13,13 @@ ROW_MM = 105
 ROOM_M = 0.5  # around the feet
 COLOURS = {"left": style.LEFT, "right": style.RIGHT}
 MARKS = {"stand": ".", "step": "o", "lunge": "D", "split_step": "v", "jump": "^"}
-DRAWN = ["person", "foot", "kind", "onset_s", "onset_sigma_s", "end_s", "end_sigma_s"]
+TIMES = ["onset_s", "onset_sigma_s", "end_s", "end_sigma_s", "seen_from_s", "seen_until_s"]
+DRAWN = ["person", "foot", "kind", *TIMES, "x_m", "y_m", "sigma_m"]
 
 
 def table(steps: pd.DataFrame) -> pd.DataFrame:
     """Return the numbers drawn: the stances."""
-    return steps[[*DRAWN, "x_m", "y_m", "sigma_m"]]
+    return steps[DRAWN]
 
 
 def draw(
@@ -34,7 +34,7 @@ def draw(
         happened = events[events.person == people[row]]
         _draw_places(part.add_subplot(grid[:, 0]), own, court, people[row])
         stances = part.add_subplot(grid[0, 1])
-        _draw_stances(stances, own, happened, contacts.time_s)
+        _draw_stances(stances, own, happened)
         _draw_contact(part.add_subplot(grid[1, 1], sharex=stances), contacts, row)
     return drawing
 
@@ -42,8 +42,7 @@ def draw(
 def _draw_places(axis: Axes, own: pd.DataFrame, court: Court | None, person: str) -> None:
     if court is not None:
         court_plan.draw(axis, court)
-    path = own.sort_values("onset_s", na_position="first")
-    axis.plot(path.x_m, path.y_m, color="0.6", linewidth=0.5, zorder=2)
+    axis.plot(own.x_m, own.y_m, color="0.6", linewidth=0.5, zorder=2)  # in order of time
     for kind, mark in MARKS.items():
         at = own[own.kind == kind]
         if len(at):
@@ -63,11 +62,11 @@ def _draw_places(axis: Axes, own: pd.DataFrame, court: Court | None, person: str
         axis.set_ylim(min(0, own.y_m.min()) - ROOM_M, own.y_m.max() + 2 * ROOM_M)
 
 
-def _draw_stances(axis: Axes, own: pd.DataFrame, events: pd.DataFrame, time_s: NDArray) -> None:
-    """Draw bars of both feet; one that the take cuts reaches to its end."""
+def _draw_stances(axis: Axes, own: pd.DataFrame, events: pd.DataFrame) -> None:
+    """Draw bars of both feet; one that the take or a gap cuts reaches as far as it is seen."""
     for row, foot in enumerate(reversed(FEET)):
         mine = own[own.foot == foot]
-        start, stop = mine.onset_s.fillna(time_s[0]), mine.end_s.fillna(time_s[-1])
+        start, stop = mine.onset_s.fillna(mine.seen_from_s), mine.end_s.fillna(mine.seen_until_s)
         axis.barh(row, stop - start, left=start, height=0.6, color=COLOURS[foot], alpha=0.7)
         for what, above in (("onset", -0.1), ("end", 0.1)):
             at = mine[f"{what}_s"]
