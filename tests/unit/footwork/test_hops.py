@@ -1,5 +1,6 @@
 """Low hops of both feet: found with their times, cut into stances, and nothing else is one."""
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -104,6 +105,14 @@ def test_a_foot_that_is_not_seen_to_land_keeps_its_stances():
     assert hops.cut([], [HOP]) == []
     cut_by_a_gap = [stood(NAN, NAN, (0.0, 0.5))]
     assert hops.cut(cut_by_a_gap, [HOP]) == cut_by_a_gap
+
+
+@pytest.mark.parametrize("short", [(1.02, 1.5), (1.0, 1.1), (0.98, 1.05)])
+def test_no_stance_near_a_hop_ends_before_it_begins(short):
+    made = hops.cut([stood(0.1, 0.6), stood(0.7, 0.95), stood(*short), stood(1.7, NAN)], [HOP])
+    assert all(each.since_s < each.until_s for each in made)
+    between = [b.since_s - a.until_s for a, b in itertools.pairwise(made)]
+    assert min(between) > 0
 
 
 def test_probabilities_follow_the_stances_near_a_hop_only():

@@ -138,7 +138,7 @@ def cut(stances: Sequence[Stance], hops: Sequence[Hop]) -> list[Stance]:
         before = replace(own, end_s=hop.off_s, end_sigma_s=hop.off_sigma_s)
         if own.until_s > hop.land_s + AGAIN_S:
             made[at : at + 1] = [before, _landed(own, hop)]
-        elif later and _are_of(own, later, hop):
+        elif later and later.until_s > hop.land_s and _are_of(own, later, hop):
             made[at : at + 2] = [before, _landed(later, hop)]
     return made
 
