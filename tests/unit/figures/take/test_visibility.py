@@ -1,5 +1,8 @@
 """Scores and counts drawn are the record's."""
 
+import tracemalloc
+from dataclasses import replace
+
 import numpy as np
 
 from courtside.figures.take import visibility
@@ -17,6 +20,19 @@ def test_the_table_holds_the_records_scores_and_views():
     assert np.isnan(at.score_c1)
     assert at.score_c0 == 0.75
     np.testing.assert_array_equal(rows.n_views, record.n_views.ravel())
+
+
+def test_a_long_take_needs_memory_for_its_rows_alone():
+    record = walker.points(n_frames=4000)
+    record = replace(record, joints=record.joints[:1], n_views=record.n_views[..., :1])
+    (view, *_) = walker.views(walker.points(n_frames=4000), scene.ring(1))
+    view = replace(view, score=view.score[..., :1])
+    tracemalloc.start()
+    rows = visibility.table(record, [view])
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert len(rows) == 4000
+    assert peak < 10e6  # bytes; a matrix of all pairs of frames has 128 million
 
 
 def test_the_picture_shows_the_fewest_views():

@@ -10,7 +10,10 @@ from courtside.records.keypoints.skeleton import Skeleton
 
 
 def table(points: Keypoints3D, views: list[Keypoints2D]) -> pd.DataFrame:
-    """Return scores and numbers of views over time; empty if a camera saw nothing."""
+    """Return scores and numbers of views over time; empty if a camera saw nothing.
+
+    `views` are at the times of the points (`resampling.nearest`).
+    """
     n_persons, n_frames, n_joints = points.n_views.shape
     columns = {
         "time_s": np.tile(np.repeat(points.time_s, n_joints), n_persons),
@@ -19,8 +22,7 @@ def table(points: Keypoints3D, views: list[Keypoints2D]) -> pd.DataFrame:
         "n_views": points.n_views.ravel(),
     }
     for view in views:
-        at = np.abs(view.time_s[:, None] - points.time_s).argmin(axis=0)
-        columns[f"score_{view.camera}"] = view.score[:, at].ravel()
+        columns[f"score_{view.camera}"] = view.score.ravel()
     return pd.DataFrame(columns)
 
 
