@@ -41,3 +41,13 @@ def test_the_picture_shows_the_fewest_views():
     drawing = visibility.draw(rows, walker.SKELETON)
     shown = np.asarray(drawing.axes[1].images[0].get_array())
     np.testing.assert_array_equal(shown, record.n_views[0].T)
+
+
+def test_the_least_views_of_several_persons_are_named_so():
+    record = walker.points(n_persons=2)
+    record.n_views[0, 2], record.n_views[1, 6] = 1, 0
+    rows = visibility.table(record, walker.views(record, scene.ring(3)))
+    (_, lower, *_) = visibility.draw(rows, walker.SKELETON).axes
+    shown = np.asarray(lower.images[0].get_array())
+    np.testing.assert_array_equal(shown, record.n_views.min(axis=0).T)
+    assert "least of all persons" in lower.get_title()

@@ -47,6 +47,7 @@ def draw(rows: pd.DataFrame, skeleton: Skeleton) -> Figure:
     image = lower.imshow(counts, extent=extent, vmin=0, vmax=len(names), **look)
     lower.set(yticks=range(len(joints)), yticklabels=[joint.replace("_", " ") for joint in joints])
     lower.tick_params(axis="y", labelsize=6)
-    lower.set(xlabel="time (s)", title="Views that each joint rests on (0: missing)")
+    least = "" if rows.person.nunique() < 2 else ", least of all persons"
+    lower.set(xlabel="time (s)", title=f"Views that each joint rests on (0: missing){least}")
     drawing.colorbar(image, ax=lower, ticks=range(len(names) + 1), label="views", pad=0.01)
     return drawing
