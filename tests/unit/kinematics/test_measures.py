@@ -55,6 +55,16 @@ def test_a_circle_has_its_speed_acceleration_and_length():
         assert point.ground_distance.corrected_m == pytest.approx(speed * 12, rel=2e-3)
 
 
+def test_one_frame_has_places_and_neither_speeds_nor_distances():
+    person = measured(walker.points().frames(slice(10, 11)))
+    for point in person.points.values():
+        assert np.isfinite(point.position).all()
+        assert np.isfinite(point.covariance[0]).all()
+        assert np.isnan(point.velocity).all() and np.isnan(point.covariance[1]).all()
+        assert np.isnan(point.distance.corrected_m)
+        assert point.distance.seconds == 0
+
+
 def test_points_are_where_they_are_defined():
     time_s, xyz = circling(seconds=2)
     record = footwork.record(xyz, time_s, TINY_M, 0.0, np.random.default_rng(0))

@@ -33,6 +33,14 @@ def test_every_hit_is_found_within_two_frames_and_nothing_else(compared):
     assert counted.within_90_percent.mean() >= 0.75
 
 
+@pytest.mark.parametrize("n_frames", [1, 3])
+def test_a_take_of_few_frames_has_no_strokes(n_frames):
+    points, _ = strokes_made.take(seed=1)
+    found = detect.table(points.frames(slice(n_frames)), {"p1": "right"})
+    assert found.empty
+    assert list(found.columns) == detect.COLUMNS
+
+
 def test_the_playing_hand_is_found(compared):
     found = compared[compared.result == "found"]
     assert (found.hand == found.true_hand).all()

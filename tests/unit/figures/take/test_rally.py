@@ -1,5 +1,6 @@
 """The timeline of a rally draws the strokes of the table, also where there are none."""
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -41,6 +42,13 @@ def test_steps_and_split_steps_are_marked_where_they_land_and_listed(made):
         "step": 1,
     }
     assert rows.time_s.is_monotonic_increasing
+
+
+def test_a_take_of_one_frame_is_drawn(made):
+    points, strokes, events = made
+    drawing = rally.draw(strokes[:0], events[:0], points.frames(slice(1)))
+    drawing.draw_without_rendering()
+    assert np.isnan(drawing.axes[0].lines[0].get_ydata()).all()
 
 
 def test_a_player_without_strokes_is_drawn_with_the_trunk_alone(made):

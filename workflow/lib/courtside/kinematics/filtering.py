@@ -111,13 +111,13 @@ def zero_lag(lines: NDArray, rate_hz: float, cutoff_hz: float, order: int) -> ND
     effective order: twice that of each pass. Each end of a run is extended by its odd reflection
     over one period of the cut-off.
     """
-    sections = _one_pass(float(cutoff_hz), float(rate_hz), order // 2)
-    pad = round(PAD_PERIODS * rate_hz / cutoff_hz)
     filtered = np.full(np.shape(lines), np.nan)
     for start, stop in runs(np.isfinite(lines).all(axis=1)):
         run = filtered[start:stop] = lines[start:stop]
         if stop - start > 2:
+            sections = _one_pass(float(cutoff_hz), float(rate_hz), order // 2)
+            pad = min(round(PAD_PERIODS * rate_hz / cutoff_hz), len(run) - 1)
             filtered[start:stop] = scipy.signal.sosfiltfilt(
-                sections, run, axis=0, padtype="odd", padlen=min(pad, len(run) - 1)
+                sections, run, axis=0, padtype="odd", padlen=pad
             )
     return filtered

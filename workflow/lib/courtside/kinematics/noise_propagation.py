@@ -70,6 +70,8 @@ def _operator(
 
 def _block(n_frames: int, rate_hz: float, cutoff_hz: float) -> int:
     """Return the length of a run whose ends do not affect its middle frame, at most `n_frames`."""
+    if n_frames < 2:  # of a take of one frame no rate is known
+        return n_frames
     return min(n_frames, 2 * int(np.ceil(EDGE_PERIODS * rate_hz / cutoff_hz)) + 1)
 
 
@@ -213,10 +215,10 @@ def estimate(xyz: NDArray, covariance: NDArray, rate_hz: float) -> Noise:
     to common times lost part of their fast noise: the memory is then too long. Motion in these
     bands, as at a hit, counts as noise; single changes are cut to 4 standard deviations.
     """
-    white, slow = _band_gains(float(rate_hz))
     power = _band_powers(xyz, covariance, rate_hz)
     if power is None:
         return Noise(0.0)
+    white, slow = _band_gains(float(rate_hz))
     # One share for each memory, by least squares of the bands' ratios to what is found.
     a, b = (white - slow) / power, 1 - slow / power
     share = np.clip(np.sum(a * b, axis=1) / np.sum(a * a, axis=1), 0.0, 1.0)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from courtside.records import tables
 from courtside.records.keypoints.keypoints import Keypoints3D
-from courtside.strokes import signals
+from courtside.strokes import local_fit, signals
 from courtside.strokes.signals import HANDS, Arm, Signals
 from courtside.study.errors import StrPath
 
@@ -172,8 +172,9 @@ def table(points: Keypoints3D, hand_of: Mapping[str, str | None]) -> pd.DataFram
     `hand_of` is the stated playing hand by person, "left", "right" or None: then it is found.
     Positions are in the world: of the trunk on the floor (x, y), of the wrist over it (height).
     """
-    rows = []
-    for at, person in enumerate(map(str, points.person_id)):
+    rows: list[dict[str, object]] = []
+    people = points.person_id.tolist() if len(points.time_s) >= local_fit.FEWEST else []
+    for at, person in enumerate(people):
         found = signals.of_person(points, at)
         stated = hand_of.get(person)
         hand = stated or playing_hand(found)

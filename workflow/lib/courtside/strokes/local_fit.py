@@ -31,6 +31,9 @@ class Fit:
 
 def fit(path: NDArray, rate_hz: float, half_s: float) -> Fit:
     """Fit a parabola to the frames within `half_s` of each frame of a path (T, n)."""
+    if len(path) < FEWEST:
+        nothing = np.full(path.shape, np.nan)
+        return Fit(nothing, nothing, nothing, nothing[:, 0])
     half = max(round(half_s * rate_hz), 2)
     lags = np.arange(-half, half + 1) / rate_hz
     rows = np.stack([np.ones_like(lags), lags, lags**2 / 2], axis=1)

@@ -75,7 +75,8 @@ def _draw_person(axis: Axes, own: pd.DataFrame, found: signals.Signals) -> None:
             fontsize=6,
             color=colour,
         )
-    axis.set(ylabel="speed (m/s)", xlim=tuple(np.asarray(found.time_s)[[0, -1]]))
+    first_s, last_s = found.time_s[[0, -1]]
+    axis.set(ylabel="speed (m/s)", xlim=(first_s, last_s) if last_s > first_s else None)
     axis.set_ylim(bottom=0)
 
 
