@@ -179,6 +179,7 @@ rule compare_sessions:
                 {**row.labels, "fusion": row.fusion}
                 for row in targets.together.archived_takes(STUDY)
             ],
+            "networks": STUDY.parameters["compare_networks"]["networks"],
             **{
                 key: STUDY.parameters["compare_sessions"][key]
                 for key in ("subject", "measures", "allow_mixed")

@@ -5,15 +5,19 @@ import pandas as pd
 from courtside.figures.comparison import archive
 from courtside.figures.style import style
 from courtside.records import study_table
-from courtside.statistics import longitudinal
+from courtside.statistics import agreement, longitudinal
 from courtside.study.execution import log
 from courtside.study.execution.script import run
 
 
-def main(study_csv, agreement_csv, pdf, png, csv, *, ways, subject, measures, allow_mixed):
+def main(
+    study_csv, agreement_csv, pdf, png, csv, *, ways, networks, subject, measures, allow_mixed
+):
     rows = longitudinal.of_study(study_table.read(study_csv), ways)
     rows = longitudinal.of_subject(rows, subject, measures, allow_mixed=allow_mixed)
-    known = pd.read_csv(agreement_csv) if agreement_csv else None
+    (model,) = rows["model"].unique()
+    table = pd.read_csv(agreement_csv) if agreement_csv else None
+    known = None if table is None else agreement.detectable_of(table, networks, model)
     values = longitudinal.over_sessions(rows)
     changes = longitudinal.changes(values, longitudinal.errors_of_measurement(rows, known))
     log.logger.info("%s: %s", subject, changes["verdict"].value_counts().to_dict())

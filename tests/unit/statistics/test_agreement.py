@@ -187,3 +187,14 @@ def test_nothing_is_said_of_one_subject_or_without_repeats():
     for subject in ([1, 1, 1], [1, 2, 3]):
         with pytest.raises(ValueError, match="two subjects at least"):
             agreement.limits(subject, [0.1, 0.2, 0.3])
+
+
+def test_the_smallest_detectable_change_is_that_of_the_network_that_was_used():
+    rows = values({"noisy": (1.0, 0.0, 3.0)})
+    table = agreement.compare(agreement.pair(rows, NETWORKS), NETWORKS)
+    found = {name: agreement.detectable_of(table, NETWORKS, name) for name in (*NETWORKS, "other")}
+    assert found["other"] is None
+    for name, spread in (("old", 1.0), ("new", np.hypot(1.0, 3.0))):
+        (row,) = found[name].to_dict("records")
+        assert row["detectable"] == pytest.approx(1.96 * np.sqrt(2) * spread, rel=0.2)
+        assert (row["measure"], row["n"], row["n_subjects"]) == ("noisy", 72, 12)

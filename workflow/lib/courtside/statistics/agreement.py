@@ -97,6 +97,18 @@ def _row(
     return row | verdict(row, networks)
 
 
+def detectable_of(
+    table: pd.DataFrame, networks: tuple[str, str], model: str
+) -> pd.DataFrame | None:
+    """Return the smallest detectable changes of one network from the `table` of `compare`.
+
+    Columns measure, detectable, n and n_subjects; None of a network that is not compared.
+    """
+    own = dict(zip(networks, ("detectable", "detectable_second"), strict=True)).get(model)
+    counts = table[["measure", "n", "n_subjects"]]
+    return counts.assign(detectable=table[own]) if own in table else None
+
+
 def _with_interval(name: str, value: float, ends: tuple[float, float]) -> dict[str, float]:
     return {name: value, f"{name}_from": ends[0], f"{name}_to": ends[1]}
 
