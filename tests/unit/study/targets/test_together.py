@@ -73,6 +73,14 @@ def test_networks_are_compared_take_by_take(study, studies):
     assert [row.labels["model"] for row in found] == ["blazepose-full", "blazepose-static"]
 
 
+def test_a_take_with_two_calibrations_is_one_repeat(study, studies):
+    step = {**study.parameters["compare_networks"], "sessions": ["players-tiny"]}
+    both = studies(take_calibrations=["known18", "known"], compare_networks=step)
+    assert both.sessions["players-tiny"].take_calibrations() == ["known18", "known"]
+    for found in (together.compared_takes(both), together.archived_takes(both)):
+        assert {row.labels["calibration"] for row in found} == {"known18"}
+
+
 def test_networks_are_evaluated_with_the_truth_or_with_imported_keypoints(study, studies):
     (one,) = together.evaluated_takes(study)
     assert one.errors == ("results/players-tiny/evaluation/takes/shot/detection/blazepose-full.csv")

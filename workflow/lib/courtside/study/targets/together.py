@@ -77,13 +77,14 @@ def fig05_layouts(study: Study) -> dict[str, list]:
 def measured_takes(
     study: Study, sessions: Iterable[str], models: Iterable[str]
 ) -> list[MeasuredTake]:
-    """Return every take of some sessions, with every calibration and each of some networks.
+    """Return every take of some sessions, with its first calibration and each of some networks.
 
-    Takes whose views are not fused are left out.
+    A take that is measured with two calibrations is one repeat. Takes whose views are not fused are
+    left out.
     """
     found, models = [], list(models)
     for session in (study.sessions[name] for name in sessions if name in study.sessions):
-        for take, way, model in product(session.takes, session.take_calibrations(), models):
+        for take, way, model in product(session.takes, session.take_calibrations()[:1], models):
             labels = {"session": session.name, "take": take, "calibration": way, "model": model}
             for fusion in session.fusions_of(session.takes[take])[:1]:
                 known = {**labels, "fusion": fusion}
