@@ -113,6 +113,7 @@ def test_all_faults_of_all_files_come_at_once(folder):
         ({"draw_overlay": {"n_frame": 3}}, ["draw_overlay", "did you mean 'n_frames'?"]),
         ({"draw_overlay": {"n_frames": 0}}, ["draw_overlay.n_frames", "at least 1", "found 0"]),
         ({"draw_overlay": {"n_frames": "x"}}, ["draw_overlay.n_frames", "a whole number", "'x'"]),
+        ({"compare_networks": {"min_subjects": 1}}, ["min_subjects", "at least 2", "found 1"]),
         ({"sessions": ["../hall"]}, ["sessions.0", "'../hall'"]),
         ({"sessions": ["hall; ls"]}, ["sessions.0"]),
         ({"sessions": ["hall\n"]}, ["sessions.0"]),
