@@ -74,6 +74,13 @@ def test_nothing_but_noise_gets_the_lowest_and_too_little_is_refused():
         cutoffs.choose_cutoff(noise[:80].reshape(20, 4, 3), 30.0)  # of four joints
 
 
+def test_a_take_too_slow_for_any_cutoff_is_refused():
+    noise = np.random.default_rng(0).normal(0, 0.01, (600, 3))
+    assert cutoffs.choose_cutoff(noise, 2.3).cutoff_hz == 1.0
+    with pytest.raises(InputError, match=r"expected 2\.22 frames.*found 2; state a number of Hz"):
+        cutoffs.choose_cutoff(noise, 2.0)
+
+
 def test_a_group_is_chosen_for_or_has_its_number():
     time_s, neck = footwork.neck(30, 10)
     record = footwork.record(

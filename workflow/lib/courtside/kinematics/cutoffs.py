@@ -50,9 +50,10 @@ def choose_cutoff(
     """Choose by residual analysis the lowest cut-off that removes no more motion than noise passes.
 
     `xyz` (T, ..., 3) are raw paths of one group of joints, short gaps filled, NaN in gaps; with
-    fewer than 30 known frames, an `InputError`. `candidates_hz` (N,) rise, below half the frame
-    rate; the lowest or highest is the result where none fits. `order` is the effective order of the
-    filter, `place` what the error names: file and key.
+    fewer than 30 known frames, or at a rate that allows no candidate, an `InputError`.
+    `candidates_hz` (N,) rise, below half the frame rate; the lowest or highest is the result where
+    none fits. `order` is the effective order of the filter, `place` what the error names: file and
+    key.
 
     Winter 2009, sec. 2.2.4.3 fits a straight line to the tail of the residual over the cut-off and
     takes the cut-off whose residual equals the line's value at 0 Hz, the noise. That tail is
@@ -73,6 +74,12 @@ def choose_cutoff(
         raise InputError(
             f"{place}: expected {MIN_FRAMES} known frames or more to choose a cut-off from, found "
             f"{n_known}; state a number of Hz in config.yaml, or in `override` of the session"
+        )
+    if not len(candidates_hz):
+        raise InputError(
+            f"{place}: expected {1 / HIGHEST:.3g} frames per second or more to choose a cut-off "
+            f"from, found {rate_hz:.3g}; state a number of Hz in config.yaml, or in `override` of "
+            "the session"
         )
     residual = np.array([_residual(lines, rate_hz, cutoff, order) for cutoff in candidates_hz])
     shares = [_shares(rate_hz, float(cutoff), order) for cutoff in candidates_hz]
