@@ -61,6 +61,28 @@ def test_missing_joints_stay_missing_and_frames_without_a_person_are_not_made():
     assert motion.angle_sigma_deg[0, 15, at] > 3 * motion.angle_sigma_deg[0, 40, at]
 
 
+def test_a_joint_that_is_seen_only_outside_of_the_fitted_frames_leaves_its_person_out(caplog):
+    both = moving_model.points(moving_model.moving(20))
+    names, xyz = both.joints.tolist(), np.concatenate([both.xyz] * 2)
+    limbs = [names.index(name) for name in skeleton.JOINTS]
+    wrist = names.index("left_wrist")
+    xyz[0, 5:, wrist] = np.nan
+    xyz[0, :5, [at for at in limbs if at != wrist]] = np.nan
+    others = {
+        key: np.concatenate([getattr(both, key)] * 2)
+        for key in ("covariance_2d", "covariance_network", "reason")
+    }
+    both = replace(both, person_id=np.array(["m1", "f1"]), xyz=xyz, **others)
+    assert list(take.people(both, HZ, {})) == [1]
+    assert (
+        "m1: the skeletal model cannot be fitted: never seen while 6 limb joints are: left_wrist"
+        in caplog.text
+    )
+    xyz[0, 5:, limbs[5:]] = np.nan
+    assert list(take.people(both, HZ, {})) == [1]
+    assert "6 limb joints are seen together in fewer than two frames" in caplog.text
+
+
 def test_the_motion_has_the_joints_by_forward_kinematics():
     points = moving_model.points(moving_model.moving(), noise_m=0.005)
     fits = fitted(points)

@@ -71,12 +71,9 @@ def person(
     `contacts`, of the same persons and frames, hold heels and toes where they stand: in the last
     round alone, for held earlier they cost time and change nothing.
     """
-    names, limbs = points.joints.tolist(), list(skeleton.JOINTS)
-    limb = points.xyz[at][:, [names.index(joint) for joint in limbs]]
-    seen = np.flatnonzero(np.isfinite(limb).all(axis=2).sum(axis=1) >= LEAST)
-    if len(seen) < 2 or not np.isfinite(limb).all(axis=2).sum(axis=0).all():
+    names, frames = points.joints.tolist(), _frames(points, at)
+    if _unseen(points, at, frames):
         return None
-    frames = slice(int(seen[0]), int(seen[-1]) + 1)
     covariance, noise = (one[frames] for one in errors(points, at))
     xyz = points.xyz[at][frames]
     place = {joint: xyz[:, k] for k, joint in enumerate(names)}
@@ -85,7 +82,7 @@ def person(
     model = segments.model()
     body = shape.of_lengths(model, shape.lengths(place, spread, height_m), names)
     body = shape.with_feet(body, place)
-    filled = {joint: _filled(place[joint]) for joint in limbs}
+    filled = {joint: _filled(place[joint]) for joint in skeleton.JOINTS}
     found = start.pose(model, filled)
     known = np.isfinite(xyz[:, body.index]).all(axis=2)
     information = np.where(known[..., None, None], np.linalg.inv(covariance[:, body.index]), 0.0)
@@ -106,6 +103,20 @@ def person(
     return Fitted(frames, body, found, fit.spread(model, body, data, found))
 
 
+def _frames(points: Keypoints3D, at: int) -> slice:
+    """Return a person's frames from the first to the last with `LEAST` limb joints; may be none."""
+    limbs = np.isin(points.joints, skeleton.JOINTS)
+    known = np.isfinite(points.xyz[at][:, limbs]).all(axis=2)
+    seen = np.flatnonzero(known.sum(axis=1) >= LEAST)
+    return slice(int(seen[0]), int(seen[-1]) + 1) if len(seen) > 1 else slice(0)
+
+
+def _unseen(points: Keypoints3D, at: int, frames: slice) -> list[str]:
+    """Return the limb joints that one person shows in none of these frames."""
+    seen = np.isfinite(points.xyz[at][frames]).all(axis=2).any(axis=0)
+    return sorted(set(skeleton.JOINTS) - set(points.joints[seen].tolist()))
+
+
 def people(
     points: Keypoints3D,
     cutoff_hz: Mapping[str, float],
@@ -122,9 +133,10 @@ def people(
         if found is not None:
             fits[at] = found
             continue
-        seen = np.isfinite(points.xyz[at]).all(axis=2).any(axis=0)
-        lost = sorted(set(skeleton.JOINTS) - set(points.joints[seen].tolist()))
-        why = f"never seen: {', '.join(lost)}" if lost else "seen in fewer than two frames"
+        frames = _frames(points, at)
+        few = f"{LEAST} limb joints are seen together in fewer than two frames"
+        lost = f"never seen while {LEAST} limb joints are: {', '.join(_unseen(points, at, frames))}"
+        why = lost if frames.stop else few
         log.logger.warning("%s: the skeletal model cannot be fitted: %s", name, why)
     log.logger.info("persons fitted: %d of %d", len(fits), len(points.person_id))
     return fits
