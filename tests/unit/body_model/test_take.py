@@ -55,6 +55,8 @@ def test_missing_joints_stay_missing_and_frames_without_a_person_are_not_made():
     assert (found.reason[0, 10:20, wrist] == missing_reason.REJECTED).all()
     assert np.isnan(found.xyz[0, :5]).all()
     assert found.reason[0, 4, 0] == missing_reason.UNCERTAIN
+    assert found.n_views[0, 4, 0] == 0 and not found.accepted[0, 4, 0].any()
+    np.testing.assert_array_equal(found.n_views[0, 5:], points.n_views[0, 5:])
     motion = take.motion(points, fits)
     at = motion.angles.tolist().index("left_elbow_flexion")
     assert np.isnan(motion.angle_deg[0, :5]).all()

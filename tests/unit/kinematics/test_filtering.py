@@ -30,6 +30,9 @@ def test_frames_that_are_known_far_worse_than_the_rest_are_left_out():
     assert np.isnan(found.xyz[0, :5]).all()
     assert np.isfinite(found.xyz[0, 5:]).all()
     assert (found.reason[0, :2] == missing_reason.UNCERTAIN).all()
+    assert not found.n_views[0, :2].any() and not found.accepted[0, :2].any()
+    assert np.isnan(found.reproj_error_px[0, :2]).all()
+    np.testing.assert_array_equal(found.n_views[0, 5:], points.n_views[0, 5:])
     assert found.reason[0, 2, 1] == points.reason[0, 2, 1]  # missing for a reason of its own
     unknown = replace(points, covariance_2d=np.full_like(points.covariance_2d, np.nan))
     np.testing.assert_array_equal(filtering.leave_out_uncertain(unknown).xyz, points.xyz)

@@ -11,7 +11,7 @@ from courtside.body_model.fit import Spread
 from courtside.body_model.pose import Pose
 from courtside.body_model.shape import Shape
 from courtside.records.footwork import Contacts
-from courtside.records.keypoints import missing_reason, skeleton
+from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.keypoints.skeletal_motion import SkeletalMotion
 from courtside.study.execution import log
@@ -169,9 +169,8 @@ def joints(points: Keypoints3D, fits: Mapping[int, Fitted]) -> Keypoints3D:
         noise[at][rows] = np.where(known[..., None, None], own, np.nan)
         shift = _shifts(points, at)[one.shape.index][:, None, None] * np.eye(3)
         rest[at][rows] = np.where(known[..., None, None], total - own + shift, np.nan)
-    lost = np.isfinite(points.xyz[..., 0]) & ~kept
-    reason = np.where(lost, missing_reason.UNCERTAIN, points.reason).astype(points.reason.dtype)
-    return replace(points, xyz=xyz, covariance_2d=noise, covariance_network=rest, reason=reason)
+    found = points.without(np.isfinite(points.xyz[..., 0]) & ~kept)
+    return replace(found, xyz=xyz, covariance_2d=noise, covariance_network=rest)
 
 
 def _shifts(points: Keypoints3D, person: int) -> NDArray:

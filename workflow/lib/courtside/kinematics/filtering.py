@@ -48,13 +48,7 @@ def leave_out_uncertain(points: Keypoints3D, times: float = UNCERTAIN_TIMES) -> 
     stated = np.ma.masked_invalid(sigma)
     ratio = np.ma.median(stated / np.ma.median(stated, axis=1, keepdims=True), axis=2)
     dropped = (ratio.filled(0.0) > times)[..., None] & np.isfinite(points.xyz[..., 0])
-    return replace(
-        points,
-        xyz=np.where(dropped[..., None], np.nan, points.xyz),
-        reason=np.where(dropped, missing_reason.UNCERTAIN, points.reason).astype(
-            points.reason.dtype
-        ),
-    )
+    return points.without(dropped)
 
 
 def _short_gaps(missing: NDArray, most: int) -> NDArray:

@@ -140,16 +140,8 @@ def _without_open(points: Keypoints3D) -> Keypoints3D:
     """Leave out joints whose views leave them open: the standard deviation exceeds `OPEN_M`."""
     variance = np.trace(points.covariance_2d, axis1=-2, axis2=-1)
     is_open = np.isfinite(points.xyz[..., 0]) & ~(np.abs(variance) <= OPEN_M**2)
-    nothing = is_open[..., None]
-    return replace(
-        points,
-        xyz=np.where(nothing, np.nan, points.xyz),
-        covariance_2d=np.where(nothing[..., None], np.nan, points.covariance_2d),
-        n_views=np.where(is_open, 0, points.n_views),
-        reproj_error_px=np.where(nothing, np.nan, points.reproj_error_px),
-        accepted=points.accepted & ~nothing,
-        reason=np.where(is_open, missing_reason.UNCERTAIN, points.reason).astype(np.uint8),
-    )
+    covariance = np.where(is_open[..., None, None], np.nan, points.covariance_2d)
+    return replace(points.without(is_open), covariance_2d=covariance)
 
 
 def why_missing(score: NDArray, xyz: NDArray, min_score: float, min_views: int) -> NDArray:

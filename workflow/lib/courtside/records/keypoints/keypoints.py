@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.records import npz
+from courtside.records.keypoints import missing_reason
 from courtside.study.errors import StrPath
 
 FORM_2D = "courtside keypoints2d 2"
@@ -92,6 +93,18 @@ class Keypoints3D:
         per_frame = [key for key, (_, shape) in spec.items() if shape[:2] == ("P", "T")]
         cut = {key: getattr(self, key)[:, at] for key in per_frame}
         return replace(self, time_s=self.time_s[at], **cut)
+
+    def without(self, lost: NDArray) -> "Keypoints3D":
+        """Return the record without some points, by a mask (P, T, J): they are too uncertain."""
+        nothing = lost[..., None]
+        return replace(
+            self,
+            xyz=np.where(nothing, np.nan, self.xyz),
+            n_views=np.where(lost, 0, self.n_views),
+            reproj_error_px=np.where(nothing, np.nan, self.reproj_error_px),
+            accepted=self.accepted & ~nothing,
+            reason=np.where(lost, missing_reason.UNCERTAIN, self.reason).astype(np.uint8),
+        )
 
     def some_joints(self, at: Sequence[int]) -> "Keypoints3D":
         """Return some joints, by their indices."""
