@@ -94,6 +94,21 @@ def test_the_sigma_is_the_scatter_of_the_length():
     assert np.mean(own) == pytest.approx(scatter, rel=0.3)
 
 
+def test_gaps_do_not_join_the_noise_on_both_sides_of_them():
+    rate_hz, sigma_m, noise = 30.0, 0.02, Noise(0.0)
+    path = np.outer(np.arange(900) / rate_hz, [1.5, 0.0, 0.0])
+    path[np.arange(900) % 36 < 12] = np.nan  # 25 gaps
+    found = [
+        measure(
+            path + np.random.default_rng(seed).normal(0, sigma_m, path.shape),
+            covariance(len(path), sigma_m), rate_hz, noise, 6.0, 4,
+        )
+        for seed in range(60)
+    ]  # fmt: skip
+    own = [np.sqrt(f.sigma_m**2 - f.bias_sigma_m**2) for f in found]
+    assert np.mean(own) == pytest.approx(np.std([f.measured_m for f in found], ddof=1), rel=0.25)
+
+
 def test_a_person_at_rest_goes_nearly_nowhere():
     sigma_m = 0.02
     noisy = np.random.default_rng(0).normal(0, sigma_m, (900, 3))

@@ -114,7 +114,7 @@ def measure(
     true = true_velocity(slow[used][:, axes], _filled(slow_spread[used][:, axes, axes]))
     bias, bias_sigma = float(_lengthening(true, spread) @ weight_s) * np.array(model_bias)
     of_noise = _Filters(_shares(spreads), *filters)
-    scatter = variance(true, spread, weight_s, of_noise.correlation(len(true), noise))
+    scatter = variance(true, spread, weight_s, of_noise.correlation(len(known), noise), used)
     scatter += _scatter_of_others(others, true, known, used, weight_s, axes, filters)
     most = spread * of_noise.largest_variance_ratio(noise)
     return Distance(
@@ -146,8 +146,8 @@ def _scatter_of_others(others, true, known, used, weight_s, axes, filters) -> fl
     spreads = _velocity_spreads(others.parts, known, others.noise, *filters)
     spreads = {at: np.nan_to_num(spread[used]) for at, spread in spreads.items()}
     spread = np.sum(list(spreads.values()), axis=0)[:, axes, axes]
-    along_time = _Filters(_shares(spreads), *filters).correlation(len(true), others.noise)
-    return variance(true, spread, weight_s, along_time)
+    along_time = _Filters(_shares(spreads), *filters).correlation(len(known), others.noise)
+    return variance(true, spread, weight_s, along_time, used)
 
 
 def _camera_sigma(others, velocity, weight_s, used, axes) -> float:
@@ -249,12 +249,14 @@ def true_velocity(velocity: NDArray, spread: NDArray) -> NDArray:
     return velocity * np.sqrt(share)[:, None]
 
 
-def variance(velocity: NDArray, spread: NDArray, weight_s: NDArray, correlation: NDArray) -> float:
+def variance(
+    velocity: NDArray, spread: NDArray, weight_s: NDArray, correlation: NDArray, used: NDArray
+) -> float:
     """Return the variance, m2, of the length of a path.
 
     `velocity` (N, d) is without noise, `spread` (N, d, d) the covariance of its noise, `weight_s`
     (N,) the time that each velocity stands for, and `correlation` (L,) that of the noise at 0, 1,
-    ... L - 1 frames; 1 first.
+    ... L - 1 frames; 1 first. `used` (T,) says which of the take's frames these N are.
 
     Noise along the path changes its length linearly; on a straight path these changes cancel except
     at both ends. Noise across it changes the length by its square, whose correlation is the square
@@ -271,11 +273,14 @@ def variance(velocity: NDArray, spread: NDArray, weight_s: NDArray, correlation:
     square = across**2 / (4 * np.maximum(size**2, across))
     exact = np.maximum(size**2 + whole - mean_norm(velocity, spread) ** 2, 0.0)
     share = exact / np.where(along + square > 0, along + square, 1.0)
-    square = np.sqrt(share * square) * weight_s
-    signed = direction * (np.sqrt(share * along) * weight_s)[:, None]
+    squares, signed = np.zeros(len(used)), np.zeros((len(used), velocity.shape[1]))
+    squares[used] = np.sqrt(share * square) * weight_s
+    signed[used] = direction * (np.sqrt(share * along) * weight_s)[:, None]
     total = 0.0
-    for lag, value in enumerate(correlation[: len(velocity)]):
-        end = len(velocity) - lag
-        pair = value * np.sum(signed[:end] * signed[lag:]) + value**2 * square[:end] @ square[lag:]
+    for lag, value in enumerate(correlation):
+        end = len(used) - lag
+        pair = (
+            value * np.sum(signed[:end] * signed[lag:]) + value**2 * squares[:end] @ squares[lag:]
+        )
         total += pair if lag == 0 else 2 * pair
     return max(float(total), 0.0)
