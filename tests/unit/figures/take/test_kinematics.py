@@ -49,6 +49,14 @@ def test_the_lines_show_the_tables_values(tables):
     assert f"{value:.2f}" in plan.get_title()
 
 
+def test_the_limits_of_the_distance_include_the_cameras_error(tables):
+    frames, summary = tables
+    known = {"value": 12.0, "sigma": 0.3, "sigma_camera": 0.4}
+    for camera, reach in ((0.4, 1.645 * 0.5), (np.nan, 1.645 * 0.3)):
+        drawing = speeds.draw(frames, summary.assign(**known | {"sigma_camera": camera}), None)
+        assert f"12.00 ± {reach:.2f} m" in drawing.subfigs[0].axes[0].get_title()
+
+
 def test_each_person_has_a_row_and_a_court_is_not_needed(tables):
     frames, summary = (twice(rows) for rows in tables)
     drawing = speeds.draw(frames, summary, None)

@@ -31,8 +31,8 @@ def table(frames: pd.DataFrame) -> pd.DataFrame:
 def draw(frames: pd.DataFrame, summary: pd.DataFrame, court: Court | None) -> Figure:
     """Draw each person in a row: the neck's path from above, speeds and angles over time.
 
-    `frames` and `summary` are of `courtside.exports.measures`. Bands are 90 % intervals from the
-    keypoints' noise alone.
+    `frames` and `summary` are of `courtside.exports.measures`. Bands, and the limits of the
+    distance, are 90 % intervals from keypoints, network and, where known, cameras.
     """
     people = list(dict.fromkeys(frames.person))
     drawing = style.figure(ROW_MM * max(len(people), 1))
@@ -60,7 +60,8 @@ def _draw_path(
     ):
         axis.plot(x[at], y[at], mark, color=SPEEDS["neck"], markersize=4, zorder=4, label=word)
     found = measured.loc["neck_ground_distance"]
-    reach = point_covariance.WITHIN_90 * found.sigma
+    cameras = 0.0 if np.isnan(found.sigma_camera) else found.sigma_camera
+    reach = point_covariance.WITHIN_90 * np.hypot(found.sigma, cameras)
     axis.set_title(
         f"{person}: neck from above\n{found.value:.2f} ± {reach:.2f} m on the ground (90 %)"
     )
