@@ -19,6 +19,12 @@ WILDCARDS = {
 }
 
 
+@pytest.mark.parametrize("kind", ["draw", "evaluate", "compare"])
+def test_persons_and_sources_called_by_digits_keep_their_names(kind):
+    names = [path for path in SCRIPTS if path.stem.startswith(kind)]
+    assert [path.name for path in names if "read_csv(" in path.read_text()] == []  # `tables.read`
+
+
 def rules_of(script):
     """Return {part: names} of each rule that runs a script."""
     found = []

@@ -1,10 +1,8 @@
 """Compare the sessions of one subject: table of the study -> values, changes, figure."""
 
-import pandas as pd
-
 from courtside.figures.comparison import archive
 from courtside.figures.style import style
-from courtside.records import study_table
+from courtside.records import study_table, tables
 from courtside.statistics import agreement, longitudinal
 from courtside.study.execution import log
 from courtside.study.execution.script import run
@@ -16,7 +14,7 @@ def main(
     rows = longitudinal.of_study(study_table.read(study_csv), ways)
     rows = longitudinal.of_subject(rows, subject, measures, allow_mixed=allow_mixed)
     (model,) = rows["model"].unique()
-    table = pd.read_csv(agreement_csv) if agreement_csv else None
+    table = tables.read(agreement_csv, "a table of agreement") if agreement_csv else None
     known = None if table is None else agreement.detectable_of(table, networks, model)
     values = longitudinal.over_sessions(rows)
     changes = longitudinal.changes(values, longitudinal.errors_of_measurement(rows, known))

@@ -4,13 +4,14 @@ import pandas as pd
 
 from courtside.figures.badminton import fig05
 from courtside.figures.style import picture_crops, style
+from courtside.records import tables
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution.script import run
 
 
 def main(paths, pdf, png, csv, *, layouts, sources, blur_faces):
     joints = skeleton.read(paths.skeleton)
-    rows = pd.concat([pd.read_csv(path, dtype={"person": str}) for path in paths.errors])
+    rows = pd.concat([tables.read(path, "a table of errors") for path in paths.errors])
     files = {
         tuple(source): pair
         for source, *pair in zip(sources, paths.pose2d, paths.videos, strict=True)

@@ -1,12 +1,11 @@
 """Draw the chain from pictures to measures: 2D, 3D keypoints, videos, measures -> figure, CSV."""
 
-import pandas as pd
-
 from courtside.calibration.court import court as court_files
 from courtside.evaluation import round_trip
 from courtside.figures.badminton import fig09
 from courtside.figures.style import picture_crops, stick_figure, style
 from courtside.reconstruction import camera_shake
+from courtside.records import tables
 from courtside.records.keypoints import derived_joints, keypoints, skeleton
 from courtside.study.execution.script import run
 
@@ -31,7 +30,7 @@ def main(paths, pdf, png, csv, *, n_frames, start_s, blur_faces):
     }
     court = court_files.read(paths.court) if paths.get("court") else None
     rows, cameras = fig09.table(points, seen, frame, figure), [one.camera for one in seen]
-    measured = pd.read_csv(paths.measures)
+    measured = tables.read(paths.measures, "a table of measures")
     drawing = fig09.draw(rows, images, points, cameras, figure, measured, court)
     style.save(drawing, rows, pdf, png, csv)
 

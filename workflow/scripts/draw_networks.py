@@ -1,14 +1,13 @@
 """Draw networks on the same frames: table of their measures -> figure, CSV."""
 
-import pandas as pd
-
 from courtside.figures.comparison import networks
 from courtside.figures.style import style
+from courtside.records import tables
 from courtside.study.execution.script import run
 
 
 def main(table_csv, pdf, png, csv):
-    numbers = networks.table(pd.read_csv(table_csv))
+    numbers = networks.table(tables.read(table_csv, "a table of networks"))
     style.save(networks.draw(numbers), numbers, pdf, png, csv)
 
 

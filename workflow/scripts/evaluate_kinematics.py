@@ -1,7 +1,5 @@
 """Evaluate the kinematics of a take against its truth: measures, truth -> errors per point."""
 
-import pandas as pd
-
 from courtside.evaluation import kinematics
 from courtside.records import tables
 from courtside.records.keypoints import derived_joints
@@ -10,7 +8,8 @@ from courtside.study.execution.script import run
 
 
 def main(paths, errors_csv, *, labels, sex_of):
-    frames, summary = pd.read_csv(paths.frames), pd.read_csv(paths.summary)
+    frames = tables.read(paths.frames, "a table of frames")
+    summary = tables.read(paths.summary, "a table of measures")
     truth, derived = take_truth.read(paths.truth), derived_joints.read(paths.derived)
     rows = kinematics.table(frames, summary, truth, derived, sex_of)
     tables.write(errors_csv, rows, labels)

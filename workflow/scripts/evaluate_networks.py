@@ -3,8 +3,6 @@
 Reads errors in the pictures, and of virtual takes raw 3D keypoints and truth; writes a table.
 """
 
-import pandas as pd
-
 from courtside.evaluation.tables import networks as compared
 from courtside.records import tables
 from courtside.records.keypoints import keypoints
@@ -17,7 +15,7 @@ def main(errors_csv, table_csv, *, labels, skeleton_labels, networks, pose3d_npz
     takes, points, truths = {}, {}, {}
     for path, label in zip(errors_csv, labels, strict=True):
         key = label["session"], label["take"], label["against"]
-        rows = pd.read_csv(path, dtype={"person": str})
+        rows = tables.read(path, "a table of errors")
         takes.setdefault(key, {})[label["model"]] = rows
     for path, truth, label in zip(pose3d_npz, truth_npz, skeleton_labels, strict=True):
         key = label["session"], label["take"], label["against"]

@@ -18,7 +18,8 @@ def main(paths, counts_csv, *, labels, sex_of):
         parts.append(reliability.counts(points, truth.joints.tolist(), true).assign(**about))
         measured = {"angle": kinematics.all_angles(points, truth)}
         if about is labels[-1]:
-            frames, summary = pd.read_csv(paths.frames), pd.read_csv(paths.summary)
+            frames = tables.read(paths.frames, "a table of frames")
+            summary = tables.read(paths.summary, "a table of measures")
             given = truth, derived, sex_of
             measured["speed"] = kinematics.speeds(frames, *given)
             measured["distance"] = kinematics.distances(kinematics.table(frames, summary, *given))

@@ -121,6 +121,13 @@ def test_reading_keeps_text_and_empty_reasons(tmp_path):
     assert len(distances) == len(wrists(TWO))
 
 
+def test_sources_called_by_digits_keep_their_names(tmp_path):
+    for name, rows in (("w", wrists({"01": 0.0})), ("e", pd.DataFrame([event("01", "clap", 1.0)]))):
+        rows.to_csv(tmp_path / f"{name}.csv", index=False)
+    for rows in wrist_distance.read(tmp_path / "w.csv", tmp_path / "e.csv"):
+        assert set(rows["source"]) == {"01"}
+
+
 def test_many_candidates_do_not_crowd_out_a_late_clap():
     events = [event("mocopi", "none", 0.5 + 0.6 * at, why="the arms are bent") for at in range(30)]
     events = pd.DataFrame([*events, event("mocopi", "clap", 30.0, 1)])

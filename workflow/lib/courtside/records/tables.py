@@ -49,14 +49,17 @@ def write(
 
 
 def read(
-    path: StrPath, what: str, fault_of: Callable[[pd.DataFrame], str], **options: Any
+    path: StrPath,
+    what: str,
+    fault_of: Callable[[pd.DataFrame], str] = lambda table: "",
+    **options: Any,
 ) -> pd.DataFrame:
     """Read a CSV table that another rule wrote, with options of `pandas.read_csv`.
 
     `what` names the table with its article: "a frame table". `fault_of` takes the table and returns
-    in a few words what is wrong with it, empty if nothing is. Columns of `LABELS` are texts, NaN
-    where empty, unless a `dtype` is among the options. An `InputError` if the file is missing or no
-    such table.
+    in a few words what is wrong with it, empty if nothing is; without it, all is well. Columns of
+    `LABELS` are texts, NaN where empty, unless a `dtype` is among the options. An `InputError` if
+    the file is missing or no such table.
     """
     options.setdefault("dtype", dict.fromkeys(LABELS, str))
     with reading(path, what, REMAKE):

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from courtside.evaluation.tables import players
+from courtside.records import tables
 from courtside.study.errors import StrPath
 
 ROW = [*players.KEY, "stage", "angle"]
@@ -14,7 +15,7 @@ MEASURES = ["bias_deg", "rmse_deg", "p95_deg", "sigma_deg", "within_90_percent"]
 
 def read(paths: Sequence[StrPath]) -> pd.DataFrame:
     """Read tables of `evaluate_angles` into one."""
-    return pd.concat([pd.read_csv(path) for path in paths], ignore_index=True)
+    return pd.concat([tables.read(path, "a table of errors") for path in paths], ignore_index=True)
 
 
 def table(rows: pd.DataFrame) -> pd.DataFrame:

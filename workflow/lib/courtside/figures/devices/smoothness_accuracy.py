@@ -7,6 +7,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from courtside.figures.style import bars, source_styles, style
+from courtside.records import tables
 from courtside.study.errors import StrPath
 
 TAKE = ["session", "take"]
@@ -58,13 +59,14 @@ def read(
     `labels` are session and take of each take; the other files have both as columns.
     """
     pairs = zip(distortion_csv, labels, strict=True)
-    distortion = pd.concat([pd.read_csv(path).assign(**label) for path, label in pairs])
+    distortion = pd.concat(
+        [tables.read(path, "a table of distortion").assign(**label) for path, label in pairs]
+    )
     return table(distortion, _read(errors_csv), _read(truth_csv))
 
 
 def _read(paths: Sequence[StrPath]) -> pd.DataFrame | None:
-    text = dict.fromkeys(TAKE, str)
-    found = [pd.read_csv(path, dtype=text) for path in paths]
+    found = [tables.read(path, "a table of errors") for path in paths]
     return pd.concat(found, ignore_index=True) if found else None
 
 

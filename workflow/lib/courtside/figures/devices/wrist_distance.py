@@ -13,6 +13,7 @@ from matplotlib.patches import Patch
 from courtside.calibration import point_covariance
 from courtside.events.claps import HELD_S
 from courtside.figures.style import bars, source_styles, style
+from courtside.records import tables
 from courtside.study.errors import StrPath
 
 ROW_MM, TICKS_MM, ZOOM_MM, LINE_MM = 19, 4, 48, 3.4
@@ -27,9 +28,9 @@ MS = 1000
 
 def read(wrists_csv: StrPath, events_csv: StrPath) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Read wrists and events as `courtside.events.detect` has them."""
-    events = pd.read_csv(events_csv)
+    events = tables.read(events_csv, "a table of events")
     why = events["why"].astype(object).where(events["why"].notna(), "").astype(str)
-    return pd.read_csv(wrists_csv), events.assign(why=why)
+    return tables.read(wrists_csv, "a table of wrists"), events.assign(why=why)
 
 
 def table(wrists: pd.DataFrame, events: pd.DataFrame, *, aligned: bool = True) -> pd.DataFrame:
