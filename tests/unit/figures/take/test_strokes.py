@@ -1,6 +1,7 @@
 """Strokes over one another: lines are the signals around each stroke, bands need three."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from courtside.figures.take import strokes as phases
@@ -34,6 +35,14 @@ def test_each_kind_has_its_column_and_a_band_from_three_strokes_on(made):
         assert axis.get_title(loc="left").endswith(f"n = {n_strokes}")
         assert len(axis.collections) == (n_strokes >= phases.FEWEST)
         assert len(axis.lines) == 1 + n_strokes + (n_strokes > 0)
+
+
+def test_the_legend_names_every_person_of_either_kind(made):
+    *_, rows = made
+    low = rows[~rows.overhead].assign(person="p2")
+    drawing = phases.draw(pd.concat([rows[rows.overhead], low], ignore_index=True))
+    words = [text.get_text() for text in drawing.legends[0].get_texts()]
+    assert words == ["p1: mean", "p2: mean"]
 
 
 def test_without_strokes_the_axes_are_empty(made):

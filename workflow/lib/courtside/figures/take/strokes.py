@@ -61,10 +61,12 @@ def draw(rows: pd.DataFrame) -> Figure:
     for axis, words in zip(axes[:, 0], LINES.values(), strict=True):
         axis.set_ylabel(words)
         axis.set_ylim(bottom=0)
-    handles, labels = axes[0, 0].get_legend_handles_labels()
-    if not handles:
-        handles, labels = axes[0, 1].get_legend_handles_labels()
-    drawing.legend(handles, labels, loc="outside upper right", ncols=max(len(labels), 1))
+    named = {
+        label: handle
+        for axis in axes[0]
+        for handle, label in zip(*axis.get_legend_handles_labels(), strict=True)
+    }
+    drawing.legend(named.values(), named, loc="outside upper right", ncols=max(len(named), 1))
     return drawing
 
 
