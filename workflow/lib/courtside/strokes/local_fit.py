@@ -44,10 +44,10 @@ def fit(path: NDArray, rate_hz: float, half_s: float) -> Fit:
     nearness = known * (1 - (np.abs(lags) / (lags[-1] + 1 / rate_hz)) ** 3) ** 3
     weights = nearness
     for _ in range(ROUNDS + 1):
-        normal = np.einsum("tk,ki,kj->tij", weights, rows, rows) + 1e-12 * np.eye(3)
-        inverse = np.linalg.inv(normal)
-        found = np.einsum("tij,kj,tk,tkn->tin", inverse, rows, weights, near)
-        off = np.linalg.norm(near - np.einsum("ki,tin->tkn", rows, found), axis=2)
+        weighted = weights[:, :, None] * rows
+        inverse = np.linalg.inv(rows.T @ weighted + 1e-12 * np.eye(3))
+        found = inverse @ (weighted.swapaxes(1, 2) @ near)
+        off = np.linalg.norm(near - rows @ found, axis=2)
         median = np.ma.median(np.ma.masked_array(off, ~known), axis=1).filled(0.0)
         scale = np.maximum(median, LEAST_M)[:, None]
         weights = nearness * np.clip(1 - (off / (CUT * scale)) ** 2, 0, 1) ** 2
