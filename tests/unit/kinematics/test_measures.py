@@ -257,6 +257,17 @@ def test_a_known_offset_counts_where_it_was_not_taken_away():
     np.testing.assert_allclose(stated.sigma_deg, abs(moved.degrees - none.degrees), atol=0.5)
 
 
+def test_a_known_offset_of_frames_that_are_left_out_does_not_count_beside_them():
+    time_s, xyz = circling(seconds=2)
+    xyz[50:70] = np.nan
+    record = footwork.record(xyz, time_s, 0.01, 0.0, np.random.default_rng(0))
+    offset = np.zeros_like(record.xyz)
+    offset[:, 50:70] = [0.0, 0.0, 0.05]  # of the raw joints, which were not corrected there
+    stated, none = (measured(one).points for one in (replace(record, offset=offset), record))
+    for name, point in stated.items():
+        np.testing.assert_array_equal(point.covariance[1], none[name].covariance[1])
+
+
 def test_a_take_of_a_few_frames_and_one_without_anybody():
     time_s, xyz = circling(seconds=0.15)
     record = footwork.record(xyz, time_s, 0.01, 0.0, np.random.default_rng(0))

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from courtside.kinematics import (
     centre_of_mass,
-    filtering,
     joint_angles,
     noise_propagation,
     path_length,
@@ -49,7 +48,7 @@ class Point:
     position: NDArray
     velocity: NDArray
     acceleration: NDArray
-    # Of these three, (T, 3, 3), from keypoints, network and known offset; NaN in filled gaps.
+    # Of these three, (T, 3, 3), from keypoints and network; NaN in filled gaps.
     covariance: tuple[NDArray, ...]
     # Of the same, from the cameras; 0 where nothing is known of them.
     camera_covariance: tuple[NDArray, ...]
@@ -141,13 +140,12 @@ def measure(
     "f" or None for persons, `field` the errors of the cameras, where known.
 
     Nothing is filtered again. Points are means of the skeletons' joints, speeds and accelerations
-    the derivatives of their cubic splines, distances the integrals of the speeds. Four errors are
+    the derivatives of their cubic splines, distances the integrals of the speeds. Three errors are
     stated. The noise of keypoints is that of the raw joints after the filter, independent between
     joints. The network's errors are correlated between neighbouring joints and last for some
-    frames. A known offset that was not subtracted contributes the square of its derivative. The
-    cameras' errors are one field in space for the whole take (`shared_errors`) and do not affect
-    the speed of a point at rest. Motion that the filter removes is not part of any stated
-    uncertainty.
+    frames. The cameras' errors are one field in space for the whole take (`shared_errors`) and do
+    not affect the speed of a point at rest. Motion that the filter removes is not part of any
+    stated uncertainty.
     """
     made = []
     for at, person in enumerate(skeletons.person_id):
@@ -172,7 +170,7 @@ def _point(take: _Take, weights: NDArray, words: str) -> Point:
             noise_propagation.summed_covariance(of, known, by, rate_hz, order, at)
             for of, by in ((parts, noise), (network, shared_errors.NETWORK))
         )
-        spreads.append(own + np.nan_to_num(slow) + _of_offset(take, weights, at))
+        spreads.append(own + np.nan_to_num(slow))
     others = Others(network, shared_errors.NETWORK, cameras[1])
     distances = [
         path_length.measure(position, parts, rate_hz, noise, order, axes, MODEL_BIAS, others)
@@ -231,18 +229,6 @@ def _network_parts(take: _Take, weights: NDArray) -> dict[float, NDArray]:
         * np.eye(3)
         for cutoff_hz in np.unique(cutoffs_hz[used])
     }
-
-
-def _of_offset(take: _Take, weights: NDArray, derivative: int) -> NDArray:
-    """Return the square (T, 3, 3) of the derivative of a mean's known offset, 0 where unknown."""
-    line = np.einsum("j,tjk->tk", weights, np.nan_to_num(take.of(take.skeletons, "offset")))
-    if not line.any():
-        return np.zeros((*line.shape, 3))
-    slowest_hz = float(np.min(np.asarray(take.how.cutoff_hz)[weights != 0]))
-    line = filtering.zero_lag(line, take.raw.rate_hz, slowest_hz, take.how.order)
-    for _ in range(derivative):
-        line = noise_propagation.differentiate(line, take.raw.rate_hz)
-    return np.nan_to_num(line[:, :, None] * line[:, None])
 
 
 def _combined(
