@@ -257,6 +257,19 @@ def test_a_known_offset_counts_where_it_was_not_taken_away():
     np.testing.assert_allclose(stated.sigma_deg, abs(moved.degrees - none.degrees), atol=0.5)
 
 
+def test_the_cameras_field_is_looked_up_once_per_point_and_limb_joint():
+    time_s, xyz = circling(seconds=2)
+    record = footwork.record(xyz, time_s, TINY_M, 0.0, np.random.default_rng(0))
+    places = []
+
+    def counted(xyz):
+        places.append(len(xyz))
+        return stretch(xyz)
+
+    with_field(record, counted)
+    assert sum(places) == (3 + 12) * len(time_s)
+
+
 def test_a_known_offset_of_frames_that_are_left_out_does_not_count_beside_them():
     time_s, xyz = circling(seconds=2)
     xyz[50:70] = np.nan

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from courtside.kinematics import shared_errors
+from courtside.records.keypoints import skeleton
 from fixtures.people import walker
 
 JOINTS = ["left_hip", "left_knee", "left_ankle", "right_knee"]
@@ -64,4 +65,6 @@ def test_a_record_gives_its_parts():
     assert not found.network[1].any()
     np.testing.assert_array_equal(found.covariance, record.covariance_2d[0])
     np.testing.assert_allclose(found.shared[..., 0], 0.02)
-    np.testing.assert_allclose(found.shared[..., 2], 2 * record.xyz[0])
+    limbs = np.isin(record.joints, skeleton.JOINTS)
+    np.testing.assert_allclose(found.shared[..., 2][:, limbs], 2 * record.xyz[0][:, limbs])
+    assert np.isnan(found.shared[..., 2][:, ~limbs]).all()

@@ -162,7 +162,7 @@ def _point(take: _Take, weights: NDArray, words: str) -> Point:
     noise, rate_hz, order = _noise(take, weights), take.raw.rate_hz, take.how.order
     parts, network = _parts(take, weights), _network_parts(take, weights)
     velocity = noise_propagation.differentiate(position, rate_hz)
-    cameras = [_camera_field(take, position, derivative) for derivative in range(3)]
+    cameras = _camera_fields(take, position)
     spreads = [_position_covariance(take, weights)]
     known = np.isfinite(position).all(axis=1)
     for at in (1, 2):
@@ -207,15 +207,15 @@ def _position_covariance(take: _Take, weights: NDArray) -> NDArray:
     return found
 
 
-def _camera_field(take: _Take, position: NDArray, derivative: int) -> NDArray:
-    """Return how the cameras' errors move a path (T, 3), or its derivative: (T, 3, R)."""
+def _camera_fields(take: _Take, position: NDArray) -> list[NDArray]:
+    """Return how the cameras' errors move a path (T, 3) and its derivatives: three (T, 3, R)."""
     if take.field is None:
-        return np.zeros((*position.shape, 0))
+        return [np.zeros((*position.shape, 0))] * 3
     found = shared_errors.over(take.field, position)
-    lines = found.reshape(len(found), -1)
-    for _ in range(derivative):
-        lines = noise_propagation.differentiate(lines, take.raw.rate_hz)
-    return lines.reshape(found.shape)
+    lines = [found.reshape(len(found), -1)]
+    lines += [noise_propagation.differentiate(lines[0], take.raw.rate_hz)]
+    lines += [noise_propagation.differentiate(lines[1], take.raw.rate_hz)]
+    return [each.reshape(found.shape) for each in lines]
 
 
 def _network_parts(take: _Take, weights: NDArray) -> dict[float, NDArray]:

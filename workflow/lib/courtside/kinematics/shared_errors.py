@@ -60,11 +60,16 @@ def independent(covariance: NDArray) -> Errors:
 
 
 def of_person(points: Keypoints3D, person: int, field: Field | None = None) -> Errors:
-    """Return the stated errors of one person of a record, by the person's index."""
+    """Return the stated errors of one person of a record, by the person's index.
+
+    Those of cameras are of limb joints alone, NaN elsewhere.
+    """
     network = NETWORK_SHARE * variances(points.covariance_network[person])
     shared = np.nan_to_num(points.offset[person])[..., None]
     if field is not None:
-        shared = np.concatenate([shared, over(field, points.xyz[person])], axis=-1)
+        limbs = np.isin(points.joints, skeleton.JOINTS)[:, None]
+        places = np.where(limbs, points.xyz[person], np.nan)
+        shared = np.concatenate([shared, over(field, places)], axis=-1)
     found = independent(points.covariance_2d[person])
     return replace(found, network=network, alike=alike(points.joints.tolist()), shared=shared)
 
