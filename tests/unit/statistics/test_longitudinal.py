@@ -9,14 +9,14 @@ from courtside.study.errors import InputError
 
 
 def rows(sessions, measure="neck_distance", subject="p1"):
-    """Return long rows; `sessions`: list of (name, date, values, other labels)."""
+    """Return long rows; `sessions`: list of (name, values, other labels)."""
     tables = []
-    for name, date, values, labels in sessions:
+    for name, values, labels in sessions:
         for at, value in enumerate(values):
             take = pd.DataFrame(
                 {"person": [subject], "measure": [measure], "value": [value], "unit": ["m"]}
             )
-            label = {"session": name, "date": date, "take": f"t{at}", "model": "net"}
+            label = {"session": name, "take": f"t{at}", "model": "net"}
             label |= {"calibration": "sfm-n40", **labels}
             tables.append(longitudinal.labelled(take, label))
     return pd.concat(tables, ignore_index=True)
@@ -29,33 +29,28 @@ def compared(table, detectable=None, **options):
     return values, longitudinal.changes(values, errors)
 
 
-def test_changes_are_of_means_in_the_order_of_dates():
+def test_changes_are_of_means_in_the_order_of_sessions():
     table = rows(
         [
-            ("later", "2025-03-01", [12.0, 14.0], {}),
-            ("first", "2024-03-01", [10.0, 11.0, 9.0], {}),
+            ("first", [10.0, 11.0, 9.0], {}),
+            ("b", [12.0, 14.0], {}),
         ]
     )
     values, changes = compared(table)
-    assert values["session"].tolist() == ["first", "later"]
+    assert values["session"].tolist() == ["first", "b"]
     assert values["value"].tolist() == [10.0, 13.0]
     assert values["n_takes"].tolist() == [3, 2]
     row = changes.iloc[0]
-    assert (row["session"], row["against"], row["change"]) == ("later", "first", 3.0)
+    assert (row["session"], row["against"], row["change"]) == ("b", "first", 3.0)
     sem = np.sqrt((2 * 1.0 + 1 * 2.0) / 3)  # pooled over both sessions
     assert row["freedom"] == 3
     assert row["detectable"] == pytest.approx(3.182446 * sem * np.sqrt(1 / 3 + 1 / 2))
     assert row["verdict"] == "within"
 
 
-def test_without_dates_sessions_stay_as_they_come():
-    table = rows([("b", "", [1.0, 2.0], {}), ("a", "", [1.0, 2.0], {})])
-    assert compared(table)[0]["session"].tolist() == ["b", "a"]
-
-
 def test_without_a_change_one_in_twenty_is_called_real():
     rng = np.random.default_rng(0)
-    table = rows([("a", "", np.zeros(3), {}), ("b", "", np.zeros(4), {})])
+    table = rows([("a", np.zeros(3), {}), ("b", np.zeros(4), {})])
     table = pd.concat([table.assign(measure=f"m{at}") for at in range(1500)], ignore_index=True)
     table["value"] = rng.normal(8.0, 0.3, len(table))
     alarms = compared(table)[1]["verdict"] == "real"
@@ -64,16 +59,16 @@ def test_without_a_change_one_in_twenty_is_called_real():
 
 
 def test_a_large_change_is_real_and_one_take_each_tells_nothing():
-    steady = [("a", "", [8.0, 8.1, 7.9], {}), ("b", "", [9.0, 9.1], {})]
+    steady = [("a", [8.0, 8.1, 7.9], {}), ("b", [9.0, 9.1], {})]
     assert compared(rows(steady))[1]["verdict"].tolist() == ["real"]
-    single = rows([("a", "", [8.0], {}), ("b", "", [9.0], {})])
+    single = rows([("a", [8.0], {}), ("b", [9.0], {})])
     row = compared(single)[1].iloc[0]
     assert row["verdict"] == "untold"
     assert np.isnan(row["detectable"])
 
 
 def test_a_study_of_repeats_stands_in_for_missing_ones():
-    single = rows([("a", "", [8.0], {}), ("b", "", [9.0], {})])
+    single = rows([("a", [8.0], {}), ("b", [9.0], {})])
     sem = 0.3
     known = pd.DataFrame(
         {
@@ -103,7 +98,7 @@ def test_a_study_of_repeats_stands_in_for_missing_ones():
     ],
 )
 def test_mixtures_are_refused_or_marked(label, found):
-    table = rows([("a", "", [8.0, 8.1, 7.9], {}), ("b", "", [9.0, 9.1], {})])
+    table = rows([("a", [8.0, 8.1, 7.9], {}), ("b", [9.0, 9.1], {})])
     for name, value in label.items():
         table.loc[table["session"] == "b", name] = value
     with pytest.raises(InputError, match=found):
@@ -114,7 +109,7 @@ def test_mixtures_are_refused_or_marked(label, found):
 
 
 def test_unknown_subjects_and_measures_are_named():
-    table = rows([("a", "", [8.0], {})])
+    table = rows([("a", [8.0], {})])
     with pytest.raises(InputError, match=r"subject p9: expected one of \['p1'\]"):
         longitudinal.of_subject(table, "p9")
     with pytest.raises(
@@ -144,11 +139,10 @@ def summary(path, value=2.0):
 
 def test_rows_carry_their_labels(tmp_path):
     paths = [summary(tmp_path / "a.csv"), summary(tmp_path / "b.csv", 3.0)]
-    labels = [LABEL, LABEL | {"take": "t2", "date": "2024-05-01"}]
+    labels = [LABEL, LABEL | {"take": "t2"}]
     rows = longitudinal.read(paths, labels)
     assert list(rows.columns) == longitudinal.COLUMNS
     assert rows["take"].tolist() == ["t1", "t1", "t2", "t2"]
-    assert rows["date"].tolist() == ["", "", "2024-05-01", "2024-05-01"]
     assert rows["value"].tolist() == [2.0, 90.0, 3.0, 90.0]
     assert rows["subject"].unique().tolist() == ["p1"]
     assert rows["definition"].tolist()[:2] == ["mid-shoulders", ""]

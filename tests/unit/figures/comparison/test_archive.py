@@ -9,10 +9,10 @@ from courtside.statistics import longitudinal
 
 VALUES = pd.DataFrame(
     [
-        ("speed", "m/s", "a", "", 0, "net", "file", "", 3, 2.0, 0.1),
-        ("speed", "m/s", "b", "", 1, "net", "file", "", 3, 2.5, 0.1),
-        ("speed", "m/s", "c", "", 2, "other", "file", "", 1, 2.4, np.nan),
-        ("knee", "degrees", "a", "", 0, "net", "file", "", 1, 90.0, np.nan),
+        ("speed", "m/s", "a", 0, "net", "file", "", 3, 2.0, 0.1),
+        ("speed", "m/s", "b", 1, "net", "file", "", 3, 2.5, 0.1),
+        ("speed", "m/s", "c", 2, "other", "file", "", 1, 2.4, np.nan),
+        ("knee", "degrees", "a", 0, "net", "file", "", 1, 90.0, np.nan),
     ],
     columns=longitudinal.VALUES,
 )

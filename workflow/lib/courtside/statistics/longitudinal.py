@@ -16,18 +16,18 @@ LEVEL = 0.95  # of detectable changes, as is usual
 FACTOR = scipy.special.ndtri(0.5 + LEVEL / 2)  # of the smallest detectable change of single takes
 REAL, WITHIN, UNTOLD, MIXED = "real", "within", "untold", "mixed"
 VALUES = [
-    "measure", "unit", "session", "date", "order", "model", "calibration", "definition", "n_takes",
-    "value", "sd_takes",
+    "measure", "unit", "session", "order", "model", "calibration", "definition", "n_takes", "value",
+    "sd_takes",
 ]  # fmt: skip
 CHANGES = [
-    "measure", "unit", "session", "date", "order", "against", "change", "detectable", "freedom",
-    "verdict", "mixed",
+    "measure", "unit", "session", "order", "against", "change", "detectable", "freedom", "verdict",
+    "mixed",
 ]  # fmt: skip
 NEEDED = ["person", "measure", "value", "unit"]
 KEY = ["session", "take", "model", "calibration", "subject", "measure"]
 COLUMNS = [
-    "session", "date", "take", "model", "calibration", "subject", "measure", "value", "sigma",
-    "unit", "definition",
+    "session", "take", "model", "calibration", "subject", "measure", "value", "sigma", "unit",
+    "definition",
 ]  # fmt: skip
 
 
@@ -86,14 +86,11 @@ def over_sessions(rows: pd.DataFrame) -> pd.DataFrame:
     """Average the takes of each session, from rows of `of_subject`.
 
     `VALUES`, one row per measure, session and way of measuring: mean over the takes and their
-    standard deviation. `order` counts sessions by date where all have one, and else as they come.
+    standard deviation. `order` counts sessions as they come.
     """
     rows = rows.dropna(subset=["value"])
-    sessions = rows[["session", "date"]].drop_duplicates()
-    if (sessions["date"] != "").all():
-        sessions = sessions.sort_values("date", kind="stable")
-    order = list(dict.fromkeys(sessions["session"]))
-    keys = ["measure", "unit", "session", "date", *CONDITIONS, "definition"]
+    order = list(dict.fromkeys(rows["session"]))
+    keys = ["measure", "unit", "session", *CONDITIONS, "definition"]
     groups = rows.groupby(keys, sort=False)["value"]
     found = groups.agg(n_takes="count", value="mean", sd_takes="std").reset_index()
     found["order"] = found["session"].map(order.index)
@@ -112,7 +109,7 @@ def errors_of_measurement(
     smallest detectable changes of single takes from a study of repeats, with n less n_subjects
     degrees of freedom.
     """
-    keys = ["measure", "session", "date", *CONDITIONS, "definition"]
+    keys = ["measure", "session", *CONDITIONS, "definition"]
     own = rows.dropna(subset=["value"]).groupby(keys, sort=False)["value"]
     spread = own.agg(["count", "var"]).reset_index()
     spread["squares"] = (spread["var"] * (spread["count"] - 1)).fillna(0.0)
@@ -155,7 +152,7 @@ def changes(values: pd.DataFrame, errors: pd.DataFrame) -> pd.DataFrame:
                 for name in (*CONDITIONS, "definition")
                 if first[name] != row[name]
             )
-            where = [measure, *row[["unit", "session", "date", "order"]], first["session"]]
+            where = [measure, *row[["unit", "session", "order"]], first["session"]]
             verdict = _verdict(change, detectable, mixed)
             rows.append((*where, change, detectable, int(freedom), verdict, mixed))
     return pd.DataFrame(rows, columns=CHANGES)
@@ -173,8 +170,8 @@ def read(paths: Sequence[StrPath], labels: Sequence[Mapping[str, str]]) -> pd.Da
     """Read the summaries of takes into one table of `COLUMNS`; `subject` is the person's pseudonym.
 
     Each path is a CSV with a row for each person and measure: person, measure, value, unit; sigma
-    and definition optional. Its labels: session, take, model, calibration; date (year-month-day)
-    where known. `InputError` if a column is missing or a value stands twice.
+    and definition optional. Its labels: session, take, model, calibration. `InputError` if a column
+    is missing or a value stands twice.
     """
     tables = []
     for path, label in zip(paths, labels, strict=True):
@@ -212,7 +209,7 @@ def labelled(table: pd.DataFrame, label: Mapping[str, str]) -> pd.DataFrame:
     rows = table.rename(columns={"person": "subject"}).assign(**label)
     rows = rows.reindex(columns=COLUMNS)
     rows["sigma"] = rows["sigma"].astype(float)
-    for name in ("date", "unit", "definition"):
+    for name in ("unit", "definition"):
         rows[name] = rows[name].astype(object).where(rows[name].notna(), "")
     return rows
 

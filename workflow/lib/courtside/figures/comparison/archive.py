@@ -42,13 +42,12 @@ def draw(rows: pd.DataFrame, subject: str) -> Figure:
     n_rows = -(-len(measures) // N_COLUMNS)
     drawing = style.figure(24 + 44 * n_rows)
     axes = drawing.subplots(n_rows, N_COLUMNS, squeeze=False).ravel()
-    sessions = rows[["order", "session", "date"]].drop_duplicates().sort_values("order")
-    names = (sessions["session"] + "\n" + sessions["date"]).str.strip()
+    sessions = rows[["order", "session"]].drop_duplicates().sort_values("order")
     for axis, measure in zip(axes, measures, strict=False):
         part = rows[rows["measure"] == measure]
         _panel(axis, part)
         axis.set_title(f"{measure.replace('_', ' ')} ({part['unit'].iloc[0] or '1'})")
-        axis.set_xticks(sessions["order"], names, fontsize=6.5)
+        axis.set_xticks(sessions["order"], sessions["session"], fontsize=6.5)
         axis.tick_params(axis="x", rotation=25 if len(sessions) > LEVEL else 0)
         axis.set_xlim(sessions["order"].min() - 0.4, sessions["order"].max() + 0.4)
     for axis in axes[len(measures) :]:
