@@ -250,7 +250,7 @@ def test_a_key_of_a_session_reruns_its_steps(kept):
     assert jobs == {rule: n for rule, n in REAL_FUSED.items() if rule not in before}
     with edited(session, "trim_s: [0.0, 0.4]", "trim_s: [0.0, 0.3]"):
         jobs = planned(root=kept)
-    shorter = {"estimate_background": 1, "check_videos": 1, "detect_pose": 4}
+    shorter = {"estimate_background": 1, "check_videos": 1, "detect_pose": 4, "check_movement": 3}
     assert jobs == together(shorter, REAL_FUSED)
 
 

@@ -75,7 +75,7 @@ def test_networks_are_compared_take_by_take(study, studies):
 
 def test_a_take_with_two_calibrations_is_one_repeat(study, studies):
     step = {**study.parameters["compare_networks"], "sessions": ["players-tiny"]}
-    both = studies(take_calibrations=["known18", "known"], compare_networks=step)
+    both = studies(take_calibrations=["known18", "known", "file"], compare_networks=step)
     assert both.sessions["players-tiny"].take_calibrations() == ["known18", "known"]
     for found in (together.compared_takes(both), together.archived_takes(both)):
         assert {row.labels["calibration"] for row in found} == {"known18"}
