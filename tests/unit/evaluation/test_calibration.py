@@ -82,6 +82,22 @@ def test_failures_and_missing_clicks_become_outcomes():
     assert "no place for p02" in found["paper", 3, True]["outcome"]
 
 
+def test_a_camera_that_nothing_ties_fails_its_trial_alone():
+    real = truth()
+    clicks, made = clicks_of(real), record()
+    clicks["side"][:] = np.nan
+    own = made.ties.knowledge
+    information = own.information.copy()
+    of_side = information.shape[0] // len(real)
+    information[:of_side] = information[:, :of_side] = 0
+    ties = replace(made.ties, knowledge=replace(own, information=information))
+    found = by_choice(
+        calibration.of_ties(replace(made, ties=ties), real, COURT, clicks, sets=SETS, **SETTINGS)
+    )
+    assert "camera side: expected matches" in found["sfm", 18, True]["outcome"]
+    assert len(found) == 5 + 5 + 1
+
+
 def test_known_cameras_have_no_error_and_fail_where_points_are_too_few():
     matrix = np.array([[1120.0, 0, 639.5], [0, 1120, 359.5], [0, 0, 1]])
     places = {"corner": (-11, -8, 5.0), "back": (3.05, -14.3, 2.1)}

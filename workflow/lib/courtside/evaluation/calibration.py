@@ -59,14 +59,16 @@ def of_ties(
     xyz_in_sfm = sfm_alignment.reconstruct(sfm, clicks)
     for n_clicks, in_sample, use in choices(court, sets):
         row = {"n_clicks": n_clicks, "in_sample": in_sample}
-        if record.fault or record.ties is None:
-            rows.append({"method": "sfm", **row, "outcome": record.fault})
-        else:
+        try:
+            if record.fault or record.ties is None:
+                raise InputError(str(record.fault))
             solved = joint_adjustment.solve_with_factors(
                 record.ties, clicks, court, points=use, **settings
             )
             errors = score(solved.cameras, truth, court, clicks, solved.point_covariance)
-            rows.append({"method": "sfm", **row, **errors})
+        except InputError as error:
+            errors = {"outcome": str(error)}
+        rows.append({"method": "sfm", **row, **errors})
         try:
             frame, _ = sfm_alignment.align(court, np.where(use[:, None], xyz_in_sfm, np.nan))
             errors = score([frame.camera(camera) for camera in sfm], truth, court, clicks)
