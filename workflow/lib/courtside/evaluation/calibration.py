@@ -59,15 +59,7 @@ def of_ties(
     xyz_in_sfm = sfm_alignment.reconstruct(sfm, clicks)
     for n_clicks, in_sample, use in choices(court, sets):
         row = {"n_clicks": n_clicks, "in_sample": in_sample}
-        try:
-            if record.fault or record.ties is None:
-                raise InputError(str(record.fault))
-            solved = joint_adjustment.solve_with_factors(
-                record.ties, clicks, court, points=use, **settings
-            )
-            errors = score(solved.cameras, truth, court, clicks, solved.point_covariance)
-        except InputError as error:
-            errors = {"outcome": str(error)}
+        errors = _of_sfm(record, truth, court, clicks, points=use, **settings)
         rows.append({"method": "sfm", **row, **errors})
         try:
             frame, _ = sfm_alignment.align(court, np.where(use[:, None], xyz_in_sfm, np.nan))
@@ -81,6 +73,19 @@ def of_ties(
     except InputError as error:
         errors = {"outcome": str(error)}
     return [*rows, {"method": "paper", "n_clicks": 3, "in_sample": True, **errors}]
+
+
+def _of_sfm(
+    record: Record, truth: list[Camera], court: Court, clicks: dict[str, NDArray], **how: Any
+) -> dict:
+    """Return the errors of the joint adjustment, or the outcome that says why it failed."""
+    if record.fault or record.ties is None:
+        return {"outcome": record.fault}
+    try:
+        solved = joint_adjustment.solve_with_factors(record.ties, clicks, court, **how)
+    except InputError as error:
+        return {"outcome": str(error)}
+    return score(solved.cameras, truth, court, clicks, solved.point_covariance)
 
 
 def of_known(
