@@ -54,6 +54,28 @@ def test_sensitivity_is_that_of_displaced_cameras():
         np.testing.assert_allclose(change, expected, atol=2e-3 * np.abs(expected).max() + 1e-9)
 
 
+def test_a_camera_before_which_a_place_does_not_lie_takes_no_part():
+    """Behind one of three cameras, or not seen by it, a place is that of the other two."""
+    network = selection.images_only(networks_made.make(3, 10), [0, 1, 2])
+    turned = network.cam_from_world.copy()
+    turned[2] = np.diag([-1.0, 1, -1]) @ turned[2]  # it looks the other way
+    whole = np.ones((len(XYZ), 3), dtype=bool)
+    hidden = whole & [True, True, False]
+    away = replace(network, cam_from_world=turned)
+    expected = point_covariance.sensitivity(pair(), XYZ)
+    columns = [*range(22), *range(33, 49)]  # of the first two images and lenses
+    for found in (
+        point_covariance.sensitivity(away, XYZ),
+        point_covariance.sensitivity(network, XYZ, hidden),
+    ):
+        np.testing.assert_allclose(found[:, :, columns], expected, rtol=1e-9, atol=1e-12)
+        others = np.setdiff1d(np.arange(found.shape[2]), columns)
+        assert not found[:, :, others].any()
+    assert point_covariance.sensitivity(network, XYZ, whole)[:, :, others].any()
+    alone = point_covariance.sensitivity(network, XYZ, whole & [True, False, False])
+    assert np.isnan(alone).all()
+
+
 def test_places_in_parts_and_no_place_at_all(monkeypatch):
     network = pair()
     covariance = np.diag(np.concatenate([SMALL, SMALL, SMALL_LENS, SMALL_LENS]) ** 2)

@@ -1,5 +1,7 @@
 """The unit of length by stated heights and known lengths: assignment, errors, warnings."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -134,6 +136,20 @@ def test_a_known_length_gives_metres_as_uncertain_as_its_clicks(cameras):
     expected = np.linalg.norm([np.std(metres / 2.5), unit.KNOWN_SIGMA_M / 2.0, unit.BEND_SIGMA])
     assert one.sigma == pytest.approx(expected, rel=0.05)
     assert one.by == "left to right"
+
+
+def test_a_length_that_two_of_four_cameras_show_errs_with_these_two():
+    rng = np.random.default_rng(5)
+    sizes = (
+        4 * np.r_[np.tile([1e-3] * 3 + [1e-2] * 3 + [0.0] * 5, 4), np.tile([2.0] + [0.0] * 7, 4)]
+    )
+    root = rng.normal(size=(len(sizes),) * 2) / np.sqrt(len(sizes)) * sizes[:, None]
+    shape = root @ root.T
+    known, pair = clicked(cameras=(0, 1)), [*range(22), *range(44, 60)]
+    alone = replace(known, xy=known.xy[:2])
+    expected = by_length(SMALL[:2], alone, shape[np.ix_(pair, pair)]).sigma
+    assert by_length(SMALL, known, shape).sigma == pytest.approx(expected, rel=1e-9)
+    assert expected > 1.5 * by_length(SMALL, known).sigma
 
 
 def lengths(clicks):

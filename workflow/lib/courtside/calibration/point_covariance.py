@@ -16,32 +16,39 @@ PLACES = 4096  # at once, for the memory that their derivatives need
 MEDIAN_2D = 1.177  # median length of a normal vector in two dimensions, sigma 1 per axis
 
 
-def sensitivity(network: Network, xyz: ArrayLike) -> NDArray:
+def sensitivity(network: Network, xyz: ArrayLike, seen: NDArray | None = None) -> NDArray:
     """Find how triangulated points move when image and lens parameters do, while pixels stay.
 
-    Every image of the network, whose own points do not matter, sees the places `xyz` (N, 3) m.
-    The result (N, 3, K) is metres per unit of each column of the network.
+    The images of the network, whose own points do not matter, see the places `xyz` (N, 3) m that
+    are before them, or those of them in `seen` (N, images) bool. The result (N, 3, K) is metres
+    per unit of each column of the network; NaN where fewer than two images see a place.
     """
     xyz = np.asarray(xyz, dtype=float)
     n_images, n_points = len(network.cam_from_world), len(xyz)
     image_idx = np.repeat(np.arange(n_images), n_points)
     point_idx = np.tile(np.arange(n_points), n_images)
     view = problem.with_points(network, xyz, image_idx, point_idx, np.zeros((len(image_idx), 2)))
-    _, by_camera, by_point = problem.linearised(view)
+    residual, by_camera, by_point = problem.linearised(view)
+    unseen = np.isnan(residual[:, 0])
+    if seen is not None:
+        unseen |= ~seen.T.ravel()
+    by_camera[unseen], by_point[unseen] = 0, 0
     full, by_point = (  # by image and point -> by point, all images together
         of_views.reshape(n_images, n_points, 2, of_views.shape[2])
         .transpose(1, 0, 2, 3)
         .reshape(n_points, 2 * n_images, of_views.shape[2])
         for of_views in (view.over_columns(by_camera), by_point)
     )
-    return -np.linalg.pinv(by_point) @ full
+    found = -np.linalg.pinv(by_point) @ full
+    found[(~unseen).reshape(n_images, n_points).sum(axis=0) < 2] = np.nan
+    return found
 
 
 def point_covariance(network: Network, covariance: NDArray, xyz: NDArray) -> NDArray:
     """Return the covariance (N, 3, 3) m2 of triangulated points due to that of the cameras.
 
     The covariance of the keypoints' noise must be added. `covariance` (K, K) is that of the columns
-    of the `network` of the fixed cameras, `xyz` (N, 3) are m.
+    of the `network` of the fixed cameras, `xyz` (N, 3) are m. NaN as for `sensitivity`.
     """
     found = (sensitivity(network, part) for part in _parts(xyz))
     return np.concatenate([by @ covariance @ by.transpose(0, 2, 1) for by in found])
@@ -81,9 +88,10 @@ def of_columns(normal: Normal) -> NDArray:
 
 
 def pseudo_inverse(information: NDArray, n_free: int = 7) -> NDArray:
-    """Return the covariance (K, K) of least trace of a network whose frame and scale are free.
+    """Return the covariance (K, K) of a network whose frame and scale are free.
 
-    The information (K, K) is zero for fixed columns. Nothing is known of `n_free` directions: those
+    Of all such covariances, it has the least trace in parameters of unit information. The
+    information (K, K) is zero for fixed columns. Nothing is known of `n_free` directions: those
     of least information are left out (7: rotation, translation and scale of the frame).
     """
     scale = np.where(np.diag(information) > 0, np.diag(information), np.inf) ** -0.5

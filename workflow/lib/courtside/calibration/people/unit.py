@@ -228,7 +228,8 @@ def _share(
     by_bias = (by_click.sum(axis=1) * bias).ravel()
     by_column = np.zeros(0)
     if shape is not None:
-        one, other = point_covariance.sensitivity(selection.of_cameras(cameras), ends)
+        clicked = np.isfinite(known.xy).all(axis=-1).T
+        one, other = point_covariance.sensitivity(selection.of_cameras(cameras), ends, clicked)
         by_column = along / own**2 @ (other - one)
     return own, variance, by_bias, by_column
 
