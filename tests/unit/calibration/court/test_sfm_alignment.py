@@ -8,6 +8,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from courtside.calibration.court import court, sfm_alignment
+from courtside.calibration.planning import cameras as planned
 from courtside.geometry import camera as cameras
 from courtside.geometry import similarity
 from courtside.study.errors import InputError
@@ -116,6 +117,38 @@ def test_the_papers_scale_is_that_of_both_sides_together():
     lengths = np.linalg.norm(frame.points(x_in_sfm[at[1:]]) - frame.points(x_in_sfm[at[0]]), axis=1)
     assert lengths.sum() == pytest.approx(19.5)
     assert lengths[0] / lengths[1] == pytest.approx(6.2 / 13.4)
+
+
+def test_the_papers_frame_begins_where_the_court_has_its_first_point():
+    """The first corner of the basketball court is 5 cm inside of the court's frame."""
+    basketball = court.read(FOLDER / "basketball.yaml")
+    x_in_sfm = SFM_FROM_WORLD.points(basketball.xyz)
+    frame = sfm_alignment.paper_frame(basketball, x_in_sfm)
+    assert np.abs(basketball.xyz[basketball.indices("three")][0]).max() > 0.01
+    for placed in (frame.points(x_in_sfm), frame.nearest.points(x_in_sfm)):
+        np.testing.assert_allclose(placed, basketball.xyz, atol=1e-9)
+
+
+@pytest.mark.parametrize("seed", [0, 33, 37, 38, 57])
+def test_one_point_beside_a_line_of_others_aligns_them_or_is_missed(seed):
+    """A side line and a post, clicked 3 px off by two cameras behind the line's end."""
+    use = np.isin(COURT.points, ["p01", "p04", "p10", "p06", "p03", "p17"])
+    fixed = [
+        planned.camera(name, at, (1, 8, 0), (1920, 1080), fov_deg=65)
+        for name, at in (("left", (-3, -4, 3)), ("right", (8, -4, 3)))
+    ]
+    rng = np.random.default_rng(seed)
+    clicks = {camera.name: opencv_projection(camera, COURT.xyz) for camera in fixed}
+    for name, xy in clicks.items():
+        clicks[name] = np.where(use[:, None], xy + 3 * rng.normal(size=xy.shape), np.nan)
+    xyz = sfm_alignment.reconstruct(fixed, clicks)
+    try:
+        found, accepted = sfm_alignment.align(COURT, xyz)
+    except InputError as error:
+        assert "found 6 of which those that agree are on one line" in str(error)
+        return
+    assert not similarity.is_collinear(COURT.xyz[accepted])
+    assert np.nanmedian(np.linalg.norm(found.points(xyz) - COURT.xyz, axis=1)) < 0.5
 
 
 def test_the_papers_frame_needs_its_three_points():

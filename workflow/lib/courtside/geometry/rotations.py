@@ -92,6 +92,6 @@ def left_jacobians(vectors: NDArray) -> NDArray:
 def interpolate(time_s: NDArray, rotations: NDArray, wanted_s: NDArray) -> NDArray:
     """Interpolate rotations (T, ..., 3, 3) at times (N,) by slerp; beyond the ends, the nearest."""
     before, share = interpolation.shares(time_s, wanted_s)
-    start, stop = rotations[before], rotations[np.minimum(before + 1, len(time_s) - 1)]
+    start, stop = rotations[before], rotations[before + 1]
     step = rodrigues_from_rotation(np.swapaxes(start, -1, -2) @ stop)
     return start @ rotation_from_rodrigues(step * share.reshape((-1,) + (1,) * (step.ndim - 1)))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
-from itertools import combinations
+from itertools import combinations, islice
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +17,7 @@ MOST_SUBSETS = 2000  # ASSUME: all subsets of up to 23 points, and an even choic
 MEDIAN = 1.538
 QUANTILE_99 = 3.368
 MIRRORED_RATIO = 4.0  # ASSUME: points are mirrored if their mirror image fits so much better
+LINE = 1e-3  # ASSUME: points narrower than this part of their extent lie on a line
 MAX_ROUNDS = 20  # ASSUME: the inliers settle in a few
 
 
@@ -87,14 +89,14 @@ def kabsch(products: NDArray) -> tuple[NDArray, NDArray]:
 
 def is_collinear(xyz: NDArray) -> bool:
     """Say whether points (N, 3) are fewer than three or on one line, to 0.1 % of their extent."""
-    return len(xyz) < 3 or flatness(xyz)[1] < 1e-3
+    return len(xyz) < 3 or bool(flatness(xyz)[1] < LINE)
 
 
 def flatness(xyz: NDArray) -> NDArray:
-    """Return the extents (3,) of points (N, 3) along their principal axes, over the first."""
-    extent = np.linalg.svd(xyz - np.mean(xyz, axis=0), compute_uv=False)
-    extent = np.pad(extent, (0, 3 - len(extent)))
-    return extent / max(extent[0], np.finfo(float).tiny)
+    """Return the extents (..., 3) of points (..., N, 3) along principal axes, over the first."""
+    extent = np.linalg.svd(xyz - np.mean(xyz, axis=-2, keepdims=True), compute_uv=False)
+    extent = np.concatenate([extent, np.zeros((*extent.shape[:-1], 3 - extent.shape[-1]))], axis=-1)
+    return extent / np.maximum(extent[..., :1], np.finfo(float).tiny)
 
 
 def robust_umeyama(x_in_a: ArrayLike, x_in_b: ArrayLike, sigma: ArrayLike) -> tuple[Sim3, NDArray]:
@@ -116,17 +118,22 @@ def robust_umeyama(x_in_a: ArrayLike, x_in_b: ArrayLike, sigma: ArrayLike) -> tu
     known = np.flatnonzero(finite)
     if is_collinear(x_in_a[known]) or is_collinear(x_in_b[known]):
         line = ", all on one line" if len(known) > 2 else ""
-        raise InputError(
-            "court points: expected three or more that are not on one line, found "
-            f"{len(known)} that two cameras see{line}; click more points, in two cameras or more "
-            "each"
-        )
+        raise _too_few(f"{len(known)} that two cameras see{line}")
     places = x_in_a[known], x_in_b[known], sigma[known]
     b_from_a, agree = _select(*places)
+    if not agree.any():
+        raise _too_few(f"{len(known)} of which those that agree are on one line")
     _refuse_mirrored(b_from_a, *places)
     accepted = np.zeros(len(x_in_a), dtype=bool)
     accepted[known[agree]] = True
     return b_from_a, accepted
+
+
+def _too_few(found: str) -> InputError:
+    return InputError(
+        f"court points: expected three or more that are not on one line, found {found}; click more "
+        "points, in two cameras or more each"
+    )
 
 
 def _refuse_mirrored(b_from_a: Sim3, x_in_a: NDArray, x_in_b: NDArray, sigma: NDArray) -> None:
@@ -145,29 +152,41 @@ def _refuse_mirrored(b_from_a: Sim3, x_in_a: NDArray, x_in_b: NDArray, sigma: ND
 
 
 def _select(x_in_a: NDArray, x_in_b: NDArray, sigma: NDArray) -> tuple[Sim3, NDArray]:
-    """Return the similarity that most points agree on, and the inliers (P,) bool."""
+    """Return the similarity that most points agree on, and the inliers (P,) bool.
+
+    There are no inliers where the points that agree are collinear in either frame.
+    """
     n_points = len(x_in_a)
-    subsets = np.array(list(combinations(range(n_points), 3)))
-    subsets = subsets[:: -(-len(subsets) // MOST_SUBSETS)]
+    subsets = triples(n_points, MOST_SUBSETS)
     weight = 1 / sigma**2
     scale, rotation, shift = _fit(x_in_a[subsets], x_in_b[subsets], weight[subsets])
     placed = scale[:, None, None] * (x_in_a @ rotation.transpose(0, 2, 1)) + shift[:, None]
     distance = np.sort(np.linalg.norm(placed - x_in_b, axis=-1) / sigma, axis=1)
     quorum = (n_points + 4) // 2 - 1
-    best = np.argmin(np.nan_to_num(distance[:, quorum], nan=np.inf))
+    # A rotation about the line of three collinear points is arbitrary.
+    usable = np.isfinite(distance[:, quorum])
+    for xyz in (x_in_a, x_in_b):
+        usable &= flatness(xyz[subsets])[:, 1] >= LINE
+    best = np.argmin(np.where(usable, distance[:, quorum], np.inf))
     fitted = Sim3(float(scale[best]), rotation[best], shift[best])
     found = _distance(fitted, x_in_a, x_in_b, sigma)
     # Three points fit themselves, which makes the scatter look small: start with a wide limit.
     now = found <= 2 * QUANTILE_99 * max(1, distance[best, quorum] / MEDIAN)
     agree = np.zeros(n_points, dtype=bool)
     for _ in range(MAX_ROUNDS):
-        if (now == agree).all() or is_collinear(x_in_a[now]):
+        if (now == agree).all() or is_collinear(x_in_a[now]) or is_collinear(x_in_b[now]):
             break
         agree = now
         fitted = umeyama(x_in_a[agree], x_in_b[agree], weight[agree])
         found = _distance(fitted, x_in_a, x_in_b, sigma)
         now = found <= QUANTILE_99 * max(1, np.sort(found)[quorum] / MEDIAN)
     return fitted, agree
+
+
+def triples(n: int, most: int) -> NDArray:
+    """Return (N, 3) index: all triples of n points, or about `most` of them, evenly chosen."""
+    step = -(-math.comb(n, 3) // most)
+    return np.array(list(islice(combinations(range(n), 3), 0, None, step)))
 
 
 def _distance(b_from_a: Sim3, x_in_a: NDArray, x_in_b: NDArray, sigma: NDArray) -> NDArray:

@@ -26,6 +26,7 @@ FITTING = 0.01  # ASSUME: of the court's length: points nearer than this fit
 MAX_BEND = 0.1
 # ASSUME: points must fit this many times better with the clicks of two cameras exchanged.
 EXCHANGE_GAIN = 5.0
+MOST_SUBSETS = 10000  # of three points each: all of 40 points
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,8 +66,9 @@ def paper_frame(court: Court, xyz_in_sfm: NDArray) -> PaperFrame:
     Raises `InputError` if the court has no set "three", or one of its points is missing.
 
     [Shishido2020, eq 2-5]: e_i = (S_i - S_o) / |S_i - S_o| are the rows of R, t = -R S_o,
-    D = [R t; 0 1]. They are called orthonormal there and never made so; D is used as it is for
-    points. A camera needs a rotation: the nearest one (polar factor of R).
+    D = [R t; 0 1]. They are called orthonormal there and never made so. A camera needs a rotation:
+    the nearest one (polar factor of R). Where the court's own origin is another point than S_o, t
+    moves S_o to its place.
 
     # ASSUME: S_z, a point on the z axis, is S_o + e_x x e_y: no court point lies above the origin,
     # and the paper does not say how it is found.
@@ -102,9 +104,9 @@ def paper_frame(court: Court, xyz_in_sfm: NDArray) -> PaperFrame:
     e_z = np.cross(e_x, e_y)
     rows = np.stack([e_x, e_y, e_z / np.linalg.norm(e_z)])
     matrix = np.eye(4)
-    matrix[:3, :3], matrix[:3, 3] = scale * rows, -scale * rows @ origin
+    matrix[:3, :3], matrix[:3, 3] = scale * rows, known[0] - scale * rows @ origin
     left, _, right = np.linalg.svd(rows)
-    nearest = Sim3(float(scale), left @ right, -scale * (left @ right) @ origin)
+    nearest = Sim3(float(scale), left @ right, known[0] - scale * (left @ right) @ origin)
     skew_deg = abs(90 - np.degrees(np.arccos(np.clip(e_x @ e_y, -1, 1))))
     return PaperFrame(matrix, nearest, float(skew_deg))
 
@@ -238,7 +240,7 @@ def stretch(
 
 def _affine_agree(design: NDArray, places: NDArray) -> NDArray:
     """Return which points (n,) bool agree with the affine map that fits most of them."""
-    subsets = np.array(list(combinations(range(len(design)), 3)))
+    subsets = similarity.triples(len(design), MOST_SUBSETS)
     spanned = np.abs(np.linalg.det(design[subsets]))
     subsets = subsets[spanned > 0.1 * spanned.max()]
     columns = np.linalg.solve(design[subsets], places[subsets])
