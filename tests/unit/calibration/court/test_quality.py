@@ -42,7 +42,6 @@ def test_exact_cameras_leave_nothing_to_say():
     found = of_court(clicks_of())
     assert found["warnings"] == []
     assert set(found["left_out"]) == set(COURT.points)
-    assert "expected_volume_rms_cm" not in found
     for row in found["left_out"].values():
         assert row["error_cm"] == pytest.approx(0, abs=1e-3)
         assert set(row["error_px"]) == {"side", "back"}
@@ -82,16 +81,6 @@ def test_too_few_points_to_leave_one_out_are_said():
     found = of_court(clicks)
     assert found["left_out"].startswith("court points: expected three or more")
     assert any("3 are seen by two cameras" in line for line in found["warnings"])
-
-
-def test_the_expected_error_is_that_of_the_covariance():
-    """Independent errors of 1, 2 and 2 cm along the axes: a root mean square length of 3 cm."""
-
-    def covariance(xyz):
-        return np.tile(np.diag([1e-4, 4e-4, 4e-4]), (len(xyz), 1, 1))
-
-    found = of_court(clicks_of(), point_covariance=covariance)
-    assert found["expected_volume_rms_cm"] == pytest.approx(3)
 
 
 @pytest.mark.parametrize(

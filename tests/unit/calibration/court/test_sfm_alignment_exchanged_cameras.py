@@ -125,3 +125,4 @@ def test_cameras_that_the_exchanged_clicks_have_bent_are_judged_after_adjustment
         quality.adjust_and_check(COURT, ties, clicks, **weights)
     _, checked = quality.adjust_and_check(COURT, ties, right, **weights)
     assert checked["warnings"] == []
+    assert 0.1 < checked["expected_volume_rms_cm"] < 10 and checked["volume_seen"] == 1

@@ -12,6 +12,7 @@ from courtside.calibration.bundle import selection
 from courtside.calibration.court import click_checks, joint_adjustment
 from courtside.calibration.court.court import ClickedPoints, Court, to_line_centres
 from courtside.calibration.point_covariance import ellipsoid, field, mahalanobis
+from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records.covariance import CameraCovariance
 from courtside.calibration.records.support import Support
 from courtside.geometry import rotations
@@ -36,7 +37,6 @@ def check_cameras(
     clicks: ClickedPoints,
     *,
     click_sigma_px: float,
-    point_covariance: Callable[[NDArray], NDArray] | None = None,
     inwards: tuple[float, float] | None = None,
     adjust: Callable[[ClickedPoints], Sequence[Camera]] | None = None,
     causes_m: NDArray | None = None,
@@ -44,15 +44,13 @@ def check_cameras(
 ) -> dict[str, Any]:
     """Check cameras, in the court's frame, against the clicked court points, each left out in turn.
 
-    The result, for a JSON file, holds `warnings`; `left_out`, by point: how far it is from its
-    place (cm) and from each click (px) in a similarity fitted to the other points; and
-    `expected_volume_rms_cm` where the covariance is known. Raises `InputError`, or if not `strict`
-    warns, if the points cannot be this court.
+    The result, for a JSON file, holds `warnings`, and `left_out`, by point: how far it is from its
+    place (cm) and from each click (px) in a similarity fitted to the other points. Raises
+    `InputError`, or if not `strict` warns, if the points cannot be this court.
 
     Parameters
     ----------
     click_sigma_px : of a good click, in the largest picture
-    point_covariance : covariance (N, 3, 3) m2 of points (N, 3) that these cameras triangulate
     inwards, adjust, causes_m : as for `click_checks.check`
     """
     table, each = leave_one_out_errors(court, cameras, clicks)
@@ -64,11 +62,7 @@ def check_cameras(
         if strict:
             raise
         warnings = [str(error)]
-    quality: dict[str, Any] = {"warnings": warnings, "left_out": each}
-    if point_covariance is not None:
-        covariance = point_covariance(volume(court))
-        quality["expected_volume_rms_cm"] = _number(expected_rms_cm(covariance))
-    return quality
+    return {"warnings": warnings, "left_out": each}
 
 
 def adjust_and_check(
@@ -83,11 +77,11 @@ def adjust_and_check(
 
     `solved` are the cameras where another adjustment has found them. `**weights` are those of the
     clicks, as for `joint_adjustment.solve`; warnings judge clicks by the scatter found. The result
-    also holds `variance_factors`. Raises `InputError` if the points cannot be this court. A model
-    of structure from motion is bent by what its ties leave open, mostly focal lengths: with 12
-    small pictures by 0.02 to 0.4 m at the court points, where clicks are 1 cm off. The adjustment
-    removes as much of the bend as the ties' own covariance allows: what is left is the fault of the
-    clicks or the court.
+    also holds the error to expect (`expected_volume`) and `variance_factors`. Raises `InputError`
+    if the points cannot be this court. A model of structure from motion is bent by what its ties
+    leave open, mostly focal lengths: with 12 small pictures by 0.02 to 0.4 m at the court points,
+    where clicks are 1 cm off. The adjustment removes as much of the bend as the ties' own
+    covariance allows: what is left is the fault of the clicks or the court.
     """
 
     def adjust(clicks: ClickedPoints) -> list[Camera]:
@@ -102,11 +96,12 @@ def adjust_and_check(
         solved.cameras,
         clicks,
         click_sigma_px=sigma_px,
-        point_covariance=solved.point_covariance,
         inwards=_inwards(court, ties, clicks, solved.factors, **weights),
         adjust=adjust,
         causes_m=field(solved.network, solved.covariance)(court.xyz),
     )
+    known = camera_covariance.of_network([c.name for c in solved.cameras], solved.covariance)
+    quality |= expected_volume(court, solved.cameras, known)
     return solved, quality | {"variance_factors": _variance_factors(solved)}
 
 
@@ -281,13 +276,14 @@ def expected_cm(
 
 def expected_volume(
     court: Court, cameras: Sequence[Camera], covariance: CameraCovariance
-) -> dict[str, float]:
+) -> dict[str, float | None]:
     """Return for a JSON file the expected error over a court, cm, and the share of it seen.
 
-    Points with your own coordinates have no lines: their frame begins anywhere.
+    The error is None if no two cameras show the same place. Points with your own coordinates have
+    no lines: their frame begins anywhere.
     """
     grid = volume(court)
     if not len(court.lines_m):
         grid[:, :2] += court.xyz[:, :2].min(axis=0)
     expected, share = expected_cm(cameras, covariance, grid)
-    return {"expected_volume_rms_cm": round(expected, 4), "volume_seen": round(share, 4)}
+    return {"expected_volume_rms_cm": _number(expected), "volume_seen": _number(share)}
