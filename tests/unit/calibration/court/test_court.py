@@ -113,6 +113,14 @@ def test_places_become_a_court_without_lines():
     assert found.indices("all").tolist() == [0, 1] and len(found.lines_m) == 0
 
 
+def test_a_floor_surveyed_to_some_millimetres_stays_floor():
+    z = [0.002, -0.001, 0.0, 1.55]
+    found = court_files.of_places(
+        "points", list("abcd"), np.array([[k, 0, z[k]] for k in range(4)])
+    )
+    assert found.sigma_m.tolist() == [0.005, 0.005, 0.005, 0.015]
+
+
 def test_the_badminton_court_is_the_papers():
     found = court()
     assert found.size_m.tolist() == [6.1, 13.4]

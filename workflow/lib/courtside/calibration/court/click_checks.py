@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from courtside.calibration.bundle import solver
 from courtside.calibration.court import joint_adjustment, line_edges, sfm_alignment
-from courtside.calibration.court.court import ClickedPoints, Court, to_line_centres
+from courtside.calibration.court.court import ClickedPoints, Court, is_raised, to_line_centres
 from courtside.calibration.point_covariance import MEDIAN_2D, mahalanobis
 from courtside.geometry.camera import Camera, project
 from courtside.study.errors import InputError
@@ -111,7 +111,7 @@ def crossings(camera: Camera, xyz: NDArray) -> NDArray:
     The edges of a post's tip are upright and level, and cross at a right angle; few such points
     carry all heights.
     """
-    raised = (xyz[:, 2] > 0)[:, None, None]
+    raised = is_raised(xyz)[:, None, None]
     return np.where(raised, RAISED**2 * np.eye(2), line_edges.crossings(camera, xyz))
 
 

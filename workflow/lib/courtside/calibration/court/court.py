@@ -13,6 +13,7 @@ from courtside.study.configuration import schemas
 from courtside.study.errors import InputError, StrPath
 
 ON_EDGE_M = 1e-6  # for rounding only: files state millimetres
+RAISED_M = 0.05  # ASSUME: floors are flat to this; points above it are on posts, nets or walls
 # ASSUME: of points that no court file names, as of those in config/courts: standard deviations, m.
 PLACED_M = {"floor": 0.005, "raised": 0.015}
 # Clicked court points by camera name: (P, 2) px in the order of `Court.points`, NaN where not
@@ -76,13 +77,18 @@ def read(path: StrPath) -> Court:
         points=points,
         xyz=xyz,
         edges=tuple(point["edges"] for point in content["points"].values()),
-        sigma_m=np.where(xyz[:, 2] > 0, sigma_m["raised"], sigma_m["floor"]).astype(float),
+        sigma_m=np.where(is_raised(xyz), sigma_m["raised"], sigma_m["floor"]).astype(float),
         sets={name: tuple(members) for name, members in content["sets"].items()} | {"all": points},
         lines_m=np.array(content["lines_m"], dtype=float),
         net=net and {key: np.array(value, dtype=float).tolist() for key, value in net.items()},
     )
     _check(path, court)
     return court
+
+
+def is_raised(xyz: NDArray) -> NDArray:
+    """Return which points (P, 3) m lie above the floor, (P,) bool."""
+    return xyz[:, 2] > RAISED_M
 
 
 def of_places(name: str, points: Sequence[str], xyz: NDArray) -> Court:
@@ -96,7 +102,7 @@ def of_places(name: str, points: Sequence[str], xyz: NDArray) -> Court:
         points=tuple(points),
         xyz=xyz,
         edges=("",) * len(points),
-        sigma_m=np.where(xyz[:, 2] > 0, PLACED_M["raised"], PLACED_M["floor"]),
+        sigma_m=np.where(is_raised(xyz), PLACED_M["raised"], PLACED_M["floor"]),
         sets={"all": tuple(points)},
         lines_m=np.zeros((0, 4)),
         net=None,

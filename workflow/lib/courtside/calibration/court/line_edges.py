@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration.court.court import ON_EDGE_M, Court
+from courtside.calibration.court.court import ON_EDGE_M, RAISED_M, Court
 from courtside.geometry.camera import Camera, project, undistort
 
 LONGEST = 4.0  # ASSUME: times the error across an edge: along edges that cross flat
@@ -35,7 +35,7 @@ def named(court: Court) -> tuple[tuple[Edge, ...], ...]:
 
 
 def _at(low: NDArray, high: NDArray, xyz: NDArray) -> tuple[Edge, ...]:
-    if xyz[2] > 0:
+    if xyz[2] > RAISED_M:
         return ()
     across = np.argmin(high - low, axis=1)
     inside = (xyz[:2] >= low - ON_EDGE_M) & (xyz[:2] <= high + ON_EDGE_M)
