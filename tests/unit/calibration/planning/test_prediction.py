@@ -8,7 +8,7 @@ import pytest
 
 from courtside.calibration.bundle import selection, solver
 from courtside.calibration.court import joint_adjustment, line_edges, quality, sfm_alignment
-from courtside.calibration.planning import prediction, tie_points
+from courtside.calibration.planning import cameras, prediction, tie_points
 from courtside.calibration.planning.prediction import Prediction
 from courtside.geometry.camera import project
 from fixtures.cameras import hall_plan
@@ -99,8 +99,27 @@ def test_a_camera_that_sees_no_point_is_named():
         hall_plan.fixed()[0],
         replace(hall_plan.fixed()[1], name="lost", cam_from_world=np.eye(3, 4)),
     ]
-    found = prediction.predict(
-        away,
+    found = predicted(away)
+    assert "lost" in found.fault
+    assert np.isnan(found.error_cm).all()
+    assert found.solution is None
+
+
+def test_a_camera_that_two_court_points_hardly_place_is_named():
+    """Its picture holds two points of the court, and nothing that another camera sees."""
+    side, back = hall_plan.fixed()
+    aim = hall_plan.COURT.xyz[hall_plan.COURT.indices(["p17", "p18"])].mean(axis=0)
+    narrow = cameras.camera("narrow", (-12, 6.7, 3), aim, hall_plan.SIZE, focal_px=9000)
+    shown = prediction.clicks([narrow], hall_plan.COURT)["narrow"]
+    assert np.isfinite(shown[:, 0]).sum() == 2
+    found = predicted([side, back, narrow])
+    assert "camera narrow: expected it to be placed" in found.fault
+    assert "found 2 court points" in found.fault and np.isnan(found.error_cm).all()
+
+
+def predicted(fixed):
+    return prediction.predict(
+        fixed,
         [],
         hall_plan.COURT,
         hall_plan.HALL_M,
@@ -110,9 +129,6 @@ def test_a_camera_that_sees_no_point_is_named():
         thinning=hall_plan.THINNING,
         **hall_plan.WEIGHTS,
     )
-    assert "lost" in found.fault
-    assert np.isnan(found.error_cm).all()
-    assert found.solution is None
 
 
 def guess(n_images, error_cm, neighbour_deg=3.0, least_ties=100, fault=""):

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection, solver, walk_parts
-from courtside.calibration.bundle.problem import Network
+from courtside.calibration.bundle.problem import IMAGE, Network
 from courtside.calibration.court import joint_adjustment, quality
 from courtside.calibration.court.court import Court
 from courtside.calibration.planning import cameras, tie_points
@@ -21,6 +21,7 @@ N_DRAWS = 2000  # 100 of them lie beyond the outer quantiles
 CENTRE_HEIGHT_M = 1.0  # ASSUME: above the court's centre, where angles between views are measured
 # ASSUME: in the virtual study every model with neighbours up to 9.5 degrees apart held together.
 WIDEST_DEG = 6.0
+LOOSE_RAD = 0.1  # ASSUME: a camera whose rotation is less certain is not placed
 NEARLY_LEAST = 1.1  # ASSUME: an error within 10 % of the least is as good
 
 
@@ -53,7 +54,8 @@ def predict(
 ) -> Prediction:
     """Predict the error over the court with planned fixed cameras and bridging images.
 
-    Without any image of a walk the cameras rest on clicked court points alone. The hall and lenses
+    Without any image of a walk the cameras rest on clicked court points, and on what fixed cameras
+    that stand near one another see alike. The hall and lenses
     are as for `tie_points.network`, `images_per_part` as for `walk_parts.split`; `tie_sigma` is the
     weight of ties in units of their noise, as after a session; `thinning` are arguments of
     `selection.thin`, `**clicking` sigma, bias and loss of clicks in `joint_adjustment.solve`.
@@ -76,7 +78,23 @@ def predict(
         )
     except InputError as error:
         return Prediction(*found, (np.nan,) * len(QUANTILES), fault=str(error))
+    if loose := _loose(solution, fixed, court):
+        return Prediction(*found, (np.nan,) * len(QUANTILES), fault=loose)
     return Prediction(*found, error_quantiles_cm(solution, court, rng), solution)
+
+
+def _loose(solution: joint_adjustment.Solution, fixed: Sequence[Camera], court: Court) -> str:
+    """Return one line on a camera that neither its ties nor its court points place, or nothing."""
+    variance = np.diag(solution.covariance)
+    for at, (name, xy) in enumerate(clicks(fixed, court).items()):
+        of_turn = variance[IMAGE * at : IMAGE * at + 3]
+        if of_turn.min() < 0 or of_turn.max() > LOOSE_RAD**2:
+            return (
+                f"camera {name}: expected it to be placed by ties or court points, found "
+                f"{np.isfinite(xy[:, 0]).sum()} court points in its picture; turn it towards the "
+                "court, or walk closer past it"
+            )
+    return ""
 
 
 def _constraints(ties: Network, fixed: NDArray) -> solver.Quadratic:
@@ -113,13 +131,18 @@ def clicks(fixed: Sequence[Camera], court: Court) -> dict[str, NDArray]:
 def error_quantiles_cm(
     solution: joint_adjustment.Solution, court: Court, rng: np.random.Generator
 ) -> tuple[float, ...]:
-    """Return the `QUANTILES` of the root mean square error over the playing volume, cm."""
+    """Return the `QUANTILES` of the root mean square error over the playing volume, cm.
+
+    Places that lie before fewer than two cameras are left out.
+    """
     grid = quality.volume(court)
-    by_column = point_covariance.sensitivity(solution.network, grid).reshape(3 * len(grid), -1)
+    by_column = point_covariance.sensitivity(solution.network, grid)
+    by_column = by_column[np.isfinite(by_column).all(axis=(1, 2))]
+    n_places, by_column = len(by_column), by_column.reshape(-1, by_column.shape[2])
     extent, axes = np.linalg.eigh(solution.covariance)
     root = axes * np.sqrt(np.maximum(extent, 0))
     error_m = by_column @ root @ rng.standard_normal((root.shape[1], N_DRAWS))
-    rms_cm = 100 * np.sqrt((error_m**2).sum(axis=0) / len(grid))
+    rms_cm = 100 * np.sqrt((error_m**2).sum(axis=0) / n_places)
     return tuple(np.quantile(rms_cm, QUANTILES).tolist())
 
 
