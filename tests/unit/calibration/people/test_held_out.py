@@ -37,6 +37,11 @@ def scores():
     }
 
 
+def test_a_block_in_which_no_joint_is_shared_does_not_count():
+    score = held_out.Score(share={0: 0.01, 1: float("nan"), 2: 0.03, 3: 0.02})
+    assert score.typical() == 0.02
+
+
 def test_true_cameras_are_better_and_wrong_ones_worse(scores):
     better = held_out.verdicts(scores["wrong"], scores["true"])
     assert better == dict.fromkeys(("joints", "court", "static"), "better")

@@ -41,8 +41,11 @@ class Score:
     squares: dict[str, list[NDArray]] = field(default_factory=dict)  # px^2 per axis, by kind
 
     def typical(self) -> float:
-        """Return the median over blocks of how far joints disagree, in heights of the person."""
-        return float(np.median(list(self.share.values())))
+        """Return the median over blocks of how far joints disagree, in heights of the person.
+
+        Blocks in which no joint is shared do not count.
+        """
+        return float(np.nanmedian(list(self.share.values())))
 
     def rms_px(self, kind: str) -> float:
         """Return the root mean square of points of a kind, px per axis; NaN of too few."""

@@ -100,9 +100,10 @@ def check(cameras: Sequence[Camera], seen: Seen, min_score: float) -> None:
     centres = np.stack([camera.centre_in_world for camera in cameras])
     extents = np.linalg.svd(centres - centres.mean(axis=0), compute_uv=False)
     if len(cameras) < 3 or extents[1] < ON_A_LINE * extents[0]:
+        line = " on a line" if len(cameras) > 2 else ""
         raise InputError(
-            f"cameras: expected three or more that do not stand on one line, found {len(cameras)} "
-            "on a line; people do not tell how these stand: add a camera beside the line"
+            f"cameras: expected three or more that do not stand on one line, found {len(cameras)}"
+            f"{line}; people do not tell how these stand: add a camera beside the line"
         )
     n_rows = int((usable.sum(axis=0) >= 2).sum())
     if n_rows < FEWEST_ROWS:
