@@ -86,8 +86,7 @@ def points(paths, base, weights):
     """Return points at rest, and clicks that the base did not use; fitted if it is a file."""
     names, static, court = [camera.name for camera in base], None, None
     if paths.static:
-        _, by_camera = clicks.read_static(paths.static, names)
-        static = np.stack(list(by_camera))
+        static = clicks.read_static(paths.static, names)[1]
     if paths.clicks and paths.court:
         lines = court_files.read(paths.court)
         marked = clicks.read(paths.clicks, names, list(lines.points))

@@ -113,7 +113,7 @@ def triangulate_robust(
 
     Parameters
     ----------
-    score : (C, N) float; its square root scales the weight of a view
+    score : (C, N) float; the weight of a view's squared error
     sigma_px : float or (N,) float; standard deviation per axis of a keypoint with score 1: scales
         the covariance only
     max_error_px : float or (C, N) float; the limit: a view is accepted if its keypoint lies this

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from courtside.calibration.click_proposals.line_profiles import LEAST_SAMPLES, STEP_PX, Stretch
 
 SLOPE_PX = 3.0  # ASSUME: by which a stretch may be turned, at its ends
+NEAR_PX = 8.0  # ASSUME: samples nearer than this to a point are those beside it
 ROUNDS = 4  # ASSUME: linearisations after which the shift stays
 SEEN = (0.35, 2.6)  # ASSUME: contrast of a sample in which the line is seen, in medians of all
 HUBER = 1.5  # standard deviations; 95 % efficiency for normal errors is at 1.345
@@ -29,9 +30,7 @@ class Shift:
     rival: float  # the best score over two widths away, relative to it: near 1 if ambiguous
 
 
-def shift(
-    stretch: Stretch, *, polarity: int = 1, near_px: float = 8.0, blur_px: float = 0.8
-) -> Shift | None:
+def shift(stretch: Stretch, *, polarity: int = 1, blur_px: float = 0.8) -> Shift | None:
     """Measure the shift of a line; None if the line is not found.
 
     First the best place and slope by correlation summed along the line, then linearised least
@@ -40,7 +39,7 @@ def shift(
     where the line is 3 px wide.
 
     `polarity` is 1 where paint is brighter than floor, -1 where darker, 0 where that may change
-    along the line; samples up to `near_px` from the nearest one count as near the origin.
+    along the line; samples up to `NEAR_PX` from the nearest one count as near the origin.
     """
     match = _correlations(stretch, polarity)
     offset, slope, score, rival = _best_line(match, stretch.along_px, stretch.width_px)
@@ -56,7 +55,7 @@ def shift(
         middle, slope = (low + high) / 2, slope + turn
         low, high = middle + moves[0], middle + moves[-1]
     sigma, kept = rest
-    nearest = np.abs(stretch.along_px) <= np.abs(stretch.along_px).min() + near_px
+    nearest = np.abs(stretch.along_px) <= np.abs(stretch.along_px).min() + NEAR_PX
     shares = kept.mean(), kept[nearest].mean()
     return Shift(low, high, slope, sigma, *shares, score, rival)
 

@@ -90,7 +90,7 @@ def register(view: View, search_px: float) -> tuple[View, str]:
         used = [shift for shift in shifts if shift is not None and is_reliable(shift)]
         offset = np.array([(shift.low_px + shift.high_px) / 2 for shift in used])
         sigma = np.array([shift.sigma_px for shift in used])
-        moved, _ = refine_pose.refine(view.camera, middle[good], normal, offset, sigma)
+        moved = refine_pose.refine(view.camera, middle[good], normal, offset, sigma)
         view = replace(view, camera=moved)
     return view, ""
 

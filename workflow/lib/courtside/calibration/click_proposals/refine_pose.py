@@ -33,25 +33,23 @@ def moved(camera: Camera, change: NDArray) -> Camera:
 
 def refine(
     camera: Camera, xyz: NDArray, normal: NDArray, offset_px: NDArray, sigma_px: NDArray
-) -> tuple[Camera, NDArray]:
+) -> Camera:
     """Adjust a camera so that points on lines shift across these lines by the measured offsets.
 
     The given camera is the start and the prior. The points `xyz` (M, 3) m lie on lines, `normal`
     (M, 2) is across these in the picture, of unit length. `offset_px` (M,) is along the normal,
     from where the camera expects the line to where it is seen, with a standard deviation of
-    `sigma_px` (M,). Also return what remains of the offsets, (M,) px.
+    `sigma_px` (M,).
     """
     start = project(camera, xyz)
     sigma = np.hypot(sigma_px, FLOOR_PX)
 
-    def rest(change: NDArray) -> NDArray:
-        shift = np.sum((project(moved(camera, change), xyz) - start) * normal, axis=1)
-        return np.nan_to_num(offset_px - shift, nan=1e3)
-
     def residuals(scaled: NDArray) -> NDArray:
-        return np.concatenate([rest(scaled * PRIOR_SIGMA) / sigma, scaled])
+        there = project(moved(camera, scaled * PRIOR_SIGMA), xyz)
+        rest = offset_px - np.sum((there - start) * normal, axis=1)
+        return np.concatenate([np.nan_to_num(rest, nan=1e3) / sigma, scaled])
 
     found = scipy.optimize.least_squares(
         residuals, np.zeros(len(PRIOR_SIGMA)), loss="cauchy", f_scale=2.0, x_scale=1.0
     )
-    return moved(camera, found.x * PRIOR_SIGMA), rest(found.x * PRIOR_SIGMA)
+    return moved(camera, found.x * PRIOR_SIGMA)
