@@ -25,7 +25,7 @@ TAKE = f"walk-4cams/takes/balancing/{{stage}}/file/all-robust/{real_footage.NETW
 STAGES = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
 LABEL = (
     "real, `walk-4cams/balancing`, against OpenPose's joints in Pose2Sim's TRC, which rests on the "
-    "unmended file (no truth)"
+    "original, faulty calibration file (no truth)"
 )
 COMMAND = "`python benchmarks/correct_real_footage.py`"
 

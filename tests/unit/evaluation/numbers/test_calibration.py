@@ -44,7 +44,7 @@ def test_ways_growth_and_capture_take_all_sessions(source, value):
     assert [n.printed for n in growth if n.part == "median"] == ["0.65", "1.10"]
     assert value(growth, "`plain-b`, 2 x 40", "p95").n == 4
     (row,) = {n.row for n in calibration.capture(source)}
-    assert row == "baseline_deg 15: control points (scored points left out)"
+    assert row == "baseline_deg 15: walk, 18 points without the two scored ones"
 
 
 def test_the_scatter_of_clicks_has_its_errors_and_coverage(source, value):

@@ -36,6 +36,10 @@ WORDS = {
     "paper_global": "walk, global mapper, the paper's eq 2-5",
     "paper": "walk, incremental mapper, the paper's eq 2-5 (the published method, re-enacted)",
 }
+CAPTURED = {  # ways of `figures.calibration.conditions`: how the documents call them
+    "control points": "walk, 18 points",
+    "paper's eq 2-5": "walk, the published method",
+}
 CAPTURE = ("way", "in_sample", "n", "p05", "median", "p95", "n_failed")  # no settings
 OVER_HALLS = ("walk18", "walk8", "walk3", "known18", "board18", "paper")
 
@@ -221,5 +225,7 @@ def capture(source: Source) -> list[Number]:
             cut = Cut(source, file, f"{setting}, way {way}", f"{file.split('/')[-1][:-4]}-*")
             shown = {part: (part, 2, "cm") for part in ("median", "p95")}
             count: Settings = {"n": row["n"], "n_failed": row["n_failed"]}
-            build.add_columns(f"{setting}: {way}", row, shown, cut, **count)
+            words = CAPTURED.get(row["way"], row["way"])
+            words += "" if row["in_sample"] else " without the two scored ones"
+            build.add_columns(f"{setting}: {words}", row, shown, cut, **count)
     return build.numbers

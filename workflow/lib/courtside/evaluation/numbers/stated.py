@@ -192,10 +192,10 @@ VIEWS = {  # the columns that the documents show of their tables
         {
             "pictures": "{row}",
             "sessions": "{sessions}",
-            "right cameras, told as exchanged": "{right}",
-            "two exchanged: told rightly": "{exchanged}",
-            "all off by one: told rightly": "{shifted}",
-            "one wrong otherwise: told as exchanged": "{otherwise}",
+            "false alarms with right cameras": "{right}",
+            "two exchanged: named rightly": "{exchanged}",
+            "all off by one: named rightly": "{shifted}",
+            "one wrong in another way: called exchanged": "{otherwise}",
             "by": "{right.origin}",
             "with": "{right.command}",
         },
@@ -271,7 +271,8 @@ VIEWS = {  # the columns that the documents show of their tables
         "ways",
         {
             "way": "{row}",
-            "alone: volume error, median / 95 %, cm; shape, cm; accepted, %": "{alone}",
+            "alone: volume error, median / 95 %, cm (people alone: joints, mm); shape, cm; "
+            "accepted, %": "{alone}",
             "refined by people; refined cameras taken": "{refined}",
         },
         "^`players-b`",

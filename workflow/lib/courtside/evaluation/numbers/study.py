@@ -25,17 +25,20 @@ REGISTER = "docs/numbers.csv"
 DOCUMENTS = ("README.md", "docs/measured.md")
 SUMMARY = "summary"  # the first table of the README
 SUMMED_UP = {  # what was measured: table, regular expression of its row, what is shown of it
-    "cameras from a walk and 18 clicks, six virtual halls: RMS error over the court": (
+    "cameras from a walk and 18 clicks, six virtual halls: RMS error of 3D points over the court, "
+    "up to 3 m high": (
         "halls",
         "^all ",
         "{walk18} cm in the median hall, {walk18_worst} cm in the worst",
     ),
-    "the same with the court's lines: median, worst hall, cm; points in 90 % ellipsoids": (
+    "the same halls with the court's lines, in other trials: median, worst hall, cm; points in "
+    "90 % ellipsoids": (
         "walk-lines",
         "^the six halls",
-        "{both}",
+        "{both} (walk and 18 clicks alone in these trials: {clicks})",
     ),
-    "joints of virtual players, four cameras, corrected: median / 95 %": (
+    "joints of virtual players, four cameras, corrected (joint offsets were fitted in three "
+    "layouts; one of them is that of these players): median / 95 %": (
         "players-sessions",
         "^`players-b`",
         "{corrected_median} / {corrected_p95} mm in the median take, "

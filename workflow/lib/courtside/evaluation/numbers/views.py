@@ -312,7 +312,7 @@ VIEWS = {
             "8 known points": "{known8}",
             "walk + 18 clicks": "{sfm18}",
             "perfect cameras": "{perfect}",
-            "walk + 18 clicks over perfect": "{sfm18_ratio}",
+            "walk + 18 clicks: error divided by that of perfect cameras": "{sfm18_ratio}",
             "runs, failed": "{sfm18.n}, {sfm18.n_failed}",
         },
     ),
@@ -320,10 +320,10 @@ VIEWS = {
         "published-walk",
         {
             "session: calibrated from": "{row}",
-            "authors: at two of its own points": "{published}",
-            "re-enacted: there; over the volume": "{again_xy}; {again_volume}",
+            "authors: at X_o and Y_o": "{published}",
+            "re-enacted: at X_o and Y_o; over the volume": "{again_xy}; {again_volume}",
             "its trials, failed": "{again_xy.n}, {again_xy.n_failed}",
-            "ours, 18 clicks: there; over the volume": "{here_xy}; {here_volume}",
+            "ours, 18 clicks: at X_o and Y_o; over the volume": "{here_xy}; {here_volume}",
         },
     ),
     "table-1": View(
