@@ -21,7 +21,9 @@ def main(paths, pdf, png, csv, *, layouts, sources, blur_faces):
         pose2d, film = files[example["session"], example["camera"]]
         view, at = keypoints.read_2d(pose2d), example["frame_idx"]
         persons = [view.xy[:, at]]
-        image = picture_crops.read(film, view.time_s[at], persons, joints, hidden=blur_faces)
+        image = picture_crops.read(
+            film, view.time_s[at], persons, joints, others=(), hidden=blur_faces
+        )
         images.append(image)
     shares = fig05.table(rows, layouts)
     drawing = fig05.draw(shares, layouts, chosen, images, joints.bones)

@@ -1,11 +1,14 @@
 """Parts of pictures hold the persons, and pixels are drawn where they lie."""
 
+from dataclasses import replace
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
 from courtside.figures.style import picture_crops
-from fixtures.people import walker
+from fixtures.people import takes_made, walker
 
 
 @pytest.mark.parametrize("aspect", [0.5, 1.0, 3.0])
@@ -55,16 +58,44 @@ def test_rings_are_where_the_points_are():
     np.testing.assert_array_equal(axis.lines[0].get_xydata(), [[3, 4], [5, 6]])
 
 
-def test_faces_of_all_methods_are_hidden_on_request(monkeypatch):
-    image = np.arange(300 * 400 * 3, dtype=np.uint32).reshape(300, 400, 3).astype(np.uint8)
+@pytest.fixture
+def filmed(monkeypatch):
+    """Return the only picture of every video, and the joints of a person in it."""
+    image = np.arange(1080 * 1920 * 3, dtype=np.uint32).reshape(1080, 1920, 3).astype(np.uint8)
     monkeypatch.setattr(picture_crops.reader, "read_frame", lambda video, time_s: (0, image))
-    xy = np.tile(np.linspace([150.0, 60.0], [250.0, 260.0], walker.N_JOINTS), (1, 1, 1))
+    return image, np.tile(np.linspace([150.0, 60.0], [250.0, 260.0], walker.N_JOINTS), (1, 1, 1))
+
+
+def pixel(xy):
+    return tuple(np.round(xy[::-1]).astype(int))
+
+
+def test_faces_of_all_methods_are_hidden_on_request(filmed):
+    image, xy = filmed
     unseen = np.full_like(xy, np.nan)
-    shown = picture_crops.read("film.mp4", 0.0, [xy], walker.SKELETON, hidden=False)
+    shown = picture_crops.read("film.mp4", 0, [xy], walker.SKELETON, others=(), hidden=False)
     np.testing.assert_array_equal(shown, image)
-    nose = np.round(xy[0, walker.SKELETON.index("nose")]).astype(int)
-    knee = np.round(xy[0, walker.SKELETON.index("left_knee")]).astype(int)
+    nose, knee = (pixel(xy[0, walker.SKELETON.index(name)]) for name in ("nose", "left_knee"))
     for persons in ([xy, unseen], [unseen, xy]):
-        found = picture_crops.read("film.mp4", 0.0, persons, walker.SKELETON, hidden=True)
-        assert (found[nose[1], nose[0]] != image[nose[1], nose[0]]).any()
-        np.testing.assert_array_equal(found[knee[1], knee[0]], image[knee[1], knee[0]])
+        found = picture_crops.read("film.mp4", 0, persons, walker.SKELETON, others=(), hidden=True)
+        assert (found[nose] != image[nose]).any()
+        np.testing.assert_array_equal(found[knee], image[knee])
+
+
+def test_the_face_of_a_bystander_before_a_person_is_hidden(filmed):
+    image, frame = filmed[0], 9
+    record, (one, *_) = takes_made.take(n_persons=2)
+    joint = walker.SKELETON.index
+    face = [joint(name) for name in walker.SKELETON.groups["face"]]
+    xy = one.tracklets.xy.copy()
+    knee = pixel(xy[0, frame, joint("left_knee")])
+    first = SimpleNamespace(assigned=lambda view: replace(view, xy=view.xy[:1]))
+    record = replace(record, xyz=record.xyz[:1])
+    for place, sharp in ((1.0, True), (xy[0, frame, joint("left_knee")], False)):
+        xy[1, frame, face] = place
+        seen = replace(one, tracklets=replace(one.tracklets, xy=xy), people=first)
+        found, detected, _ = picture_crops.at_frame(
+            seen, record, frame, walker.SKELETON, hidden=True
+        )
+        assert len(detected) == 1
+        assert (found[knee] == image[knee]).all() == sharp

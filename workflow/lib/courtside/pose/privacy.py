@@ -48,7 +48,9 @@ def blur_face(image: NDArray, xy_face: NDArray, extent_px: float = 0.0) -> NDArr
     return result
 
 
-def hide_faces(image: NDArray, everybody: NDArray, face: Sequence[int]) -> NDArray:
+def hide_faces(
+    image: NDArray, everybody: Sequence[NDArray] | NDArray, face: Sequence[int]
+) -> NDArray:
     """Return a picture with the faces of all people hidden.
 
     `everybody` (n, J, 2) are joints, px, NaN where unknown; `face` are the indices of those of the

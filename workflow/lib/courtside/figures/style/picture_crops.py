@@ -36,12 +36,19 @@ class Box:
 
 
 def read(
-    video: StrPath, time_s: float, persons: Sequence[NDArray], skeleton: Skeleton, *, hidden: bool
+    video: StrPath,
+    time_s: float,
+    persons: Sequence[NDArray],
+    skeleton: Skeleton,
+    *,
+    others: Sequence[NDArray] | NDArray,
+    hidden: bool,
 ) -> NDArray:
     """Return a video's frame (H, W, 3) BGR at a time of its own clock; `hidden`: without faces.
 
     `persons` are the joints (P, J, 2) px of the same persons by one or more methods, such as
-    detected and reprojected: where one of them does not know a face, another may.
+    detected and reprojected: where one of them does not know a face, another may. `others` are the
+    joints (J, 2) px of all further people, whose faces may lie before a person's body.
     """
     _, image = reader.read_frame(video, time_s)
     if not hidden:
@@ -49,8 +56,10 @@ def read(
     # The joints of all methods side by side: one face of each person.
     everybody, bones = np.concatenate(persons, axis=1), skeleton.bone_indices()
     starts = range(0, everybody.shape[1], len(skeleton.joints))
-    face = [at + skeleton.index(name) for at in starts for name in skeleton.groups["face"]]
-    return privacy.hide(image, np.concatenate(persons), bones, everybody, face)
+    own = [skeleton.index(name) for name in skeleton.groups["face"]]
+    face = [start + at for start in starts for at in own]
+    image = privacy.hide(image, np.concatenate(persons), bones, everybody, face)
+    return privacy.hide_faces(image, others, own)
 
 
 def at_frame(
@@ -64,7 +73,9 @@ def at_frame(
     both = one.view.xy[:, at], one.reprojected(points, at)
     if one.video is None:
         raise ValueError(f"expected a video of camera {one.camera.name}, found none")
-    return read(one.video, one.view.time_s[at], both, skeleton, hidden=hidden), *both
+    others = one.tracklets.xy[:, at]
+    image = read(one.video, one.view.time_s[at], both, skeleton, others=others, hidden=hidden)
+    return image, *both
 
 
 def box(xy: ArrayLike, size: tuple[int, int], aspect: float = 1.0) -> Box:
