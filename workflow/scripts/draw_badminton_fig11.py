@@ -10,19 +10,10 @@ from courtside.study.execution.script import run
 
 def main(paths, pdf, png, csv, *, limit_torso, n_frames, start_s, blur_faces):
     joints, points = skeleton.read(paths.skeleton), keypoints.read_3d(paths.pose3d)
-    seen = camera_shake.read_as_filmed(
-        paths.cameras,
-        paths.pose2d,
-        paths.people,
-        paths.sync,
-        paths.shake,
-        paths.videos,
-        wanted=points.cameras,
-    )
-    limbs, figure = (
-        joints.groups["limbs"],
-        stick_figure.stick(joints, derived_joints.read(paths.derived)),
-    )
+    files = paths.cameras, paths.pose2d, paths.people, paths.sync, paths.shake, paths.videos
+    seen = camera_shake.read_as_filmed(*files, wanted=points.cameras)
+    limbs = joints.groups["limbs"]
+    figure = stick_figure.stick(joints, derived_joints.read(paths.derived))
     frames = round_trip.span(points, n_frames, start_s).frames
     cameras = [one.camera for one in seen]
     limit = fig11.disagreements(points, cameras, limbs, limit_torso)

@@ -12,15 +12,8 @@ from courtside.study.execution.script import run
 
 def main(paths, pdf, png, csv, *, n_frames, blur_faces):
     joints, points = skeleton.read(paths.skeleton), keypoints.read_3d(paths.pose3d)
-    seen = camera_shake.read_as_filmed(
-        paths.cameras,
-        paths.pose2d,
-        paths.people,
-        paths.sync,
-        paths.shake,
-        paths.videos,
-        wanted=points.cameras,
-    )
+    files = paths.cameras, paths.pose2d, paths.people, paths.sync, paths.shake, paths.videos
+    seen = camera_shake.read_as_filmed(*files, wanted=points.cameras)
     shown = overlay.frames(points, n_frames)
 
     def picture(one, frame):
