@@ -18,7 +18,7 @@ def main(paths, pdf, png, csv, *, n_frames, blur_faces):
 
     def picture(one, frame):
         at = one.frame_at(points.time_s[frame])
-        both, when_s = overlay.seen(points, one, frame), one.view.time_s[at]
+        both, when_s = overlay.seen(points, one, frame, joints), one.view.time_s[at]
         everybody = one.tracklets.xy[:, at]
         return picture_crops.read(
             one.video, when_s, both, joints, others=everybody, hidden=blur_faces
@@ -26,7 +26,7 @@ def main(paths, pdf, png, csv, *, n_frames, blur_faces):
 
     images = [[picture(one, frame) for one in seen] for frame in shown]
     drawing = overlay.draw(points, seen, shown, images, joints)
-    style.save(drawing, overlay.table(points, seen, shown), pdf, png, csv)
+    style.save(drawing, overlay.table(points, seen, shown, joints), pdf, png, csv)
 
 
 if __name__ == "__main__":

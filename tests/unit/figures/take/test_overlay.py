@@ -25,7 +25,7 @@ def inputs(n_persons=1, offset_px=(3.0, 4.0)):
 
 def test_the_table_holds_the_distances():
     record, footage = inputs(n_persons=2)
-    rows = overlay.table(record, footage, overlay.frames(record, 2))
+    rows = overlay.table(record, footage, overlay.frames(record, 2), walker.SKELETON)
     assert len(rows) == 2 * 3 * 2 * 33
     np.testing.assert_allclose(rows.distance_px.dropna(), 5.0, atol=1e-6)
     truth = scene.opencv_projection(CAMERAS[1], record.xyz[0, 6, :1])[0]
@@ -34,12 +34,29 @@ def test_the_table_holds_the_distances():
     np.testing.assert_allclose([at.reprojected_x_px, at.reprojected_y_px], truth, atol=1e-6)
 
 
+def test_exchanged_sides_are_taken_as_the_fusion_took_them():
+    record, footage = inputs(offset_px=(0.0, 0.0))
+    mirror = walker.SKELETON.mirror()
+    crossed = replace(footage[1].tracklets, xy=footage[1].tracklets.xy[:, :, mirror])
+    footage[1] = replace(footage[1], tracklets=crossed)
+    record.swapped[..., 1] = True
+    rows = overlay.table(record, footage, [6], walker.SKELETON)
+    assert rows.distance_px.max() < 1e-6
+    record = replace(record, accepted=np.zeros_like(record.accepted))
+    images = [[IMAGE] * 3]
+    for axis in overlay.draw(record, footage, [6], images, walker.SKELETON).axes:
+        red = joints_of(axis, picture_crops.MARKED).reshape(-1, 2, 2)
+        np.testing.assert_allclose(red[:, 0], red[:, 1], atol=1e-6)
+
+
 def test_each_frame_has_its_own_camera():
     record, footage = inputs(offset_px=(0.0, 0.0))
     shown = overlay.frames(record, 2)
     turns = np.zeros((len(record.time_s), 3))
     turns[shown[1]] = [0, 14 / 1400, 0]
-    rows = overlay.table(record, [replace(one, turns=turns) for one in footage], shown)
+    rows = overlay.table(
+        record, [replace(one, turns=turns) for one in footage], shown, walker.SKELETON
+    )
     times_s = record.time_s[shown]
     still, moved = (rows[rows.time_s == time_s].distance_px.dropna() for time_s in times_s)
     assert still.max() < 1e-6

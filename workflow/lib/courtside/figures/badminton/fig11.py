@@ -75,21 +75,19 @@ def table(
     parts = []
     for camera, one in enumerate(footage):
         own = one.frame_at(points.time_s[frame])
-        reprojected = one.reprojected(points, own)
+        reprojected, raw = one.reprojected(points, own), one.view.xy[:, own]
+        seen = picture_crops.as_fused(points, frame, one.camera.name, raw, mirror)
         for person, name in enumerate(points.person_id):
             both = known[person, :, :, camera].sum(axis=0)
             percent = 100 * disagrees[person, :, :, camera].sum(axis=0) / np.maximum(both, 1)
-            seen = one.view.xy[person, own]
-            exchanged = points.swapped[person, frame, :, camera]
-            seen = np.where(exchanged[:, None], seen[mirror], seen)
-            drawn = np.column_stack([seen, reprojected[person]])[at]
+            drawn = np.column_stack([seen[person], reprojected[person]])[at]
             columns = {
                 "time_s": points.time_s[frame],
                 "person": str(name),
                 "camera": one.camera.name,
                 "joint": list(joints),
                 **dict(zip(PIXELS, drawn.T, strict=True)),
-                "sides_exchanged": exchanged[at],
+                "sides_exchanged": points.swapped[person, frame, at, camera],
                 "error_px": points.reproj_error_px[person, frame, at, camera],
                 "limit_px": limit_px[person, camera],
                 "accepted": points.accepted[person, frame, at, camera],

@@ -78,6 +78,18 @@ def at_frame(
     return image, *both
 
 
+def as_fused(
+    points: Keypoints3D, frame: int, camera: str, xy: NDArray, mirror: Sequence[int]
+) -> NDArray:
+    """Return a camera's detected joints (P, J, 2) px with left and right as the fusion took them.
+
+    `frame` is that of `points` which the joints are compared with; `mirror` holds for each joint
+    the index of the same one on the other body side.
+    """
+    exchanged = points.swapped[:, frame, :, list(points.cameras).index(camera), None]
+    return np.where(exchanged, xy[:, mirror], xy)
+
+
 def box(xy: ArrayLike, size: tuple[int, int], aspect: float = 1.0) -> Box:
     """Return the part of a picture that shows some points (..., 2) px; all of it if none is known.
 

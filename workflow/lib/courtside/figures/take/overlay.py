@@ -24,23 +24,29 @@ def frames(points: Keypoints3D, count: int) -> NDArray:
     return np.unique(at.round().astype(int))
 
 
-def seen(points: Keypoints3D, one: Footage, frame: int) -> tuple[NDArray, NDArray]:
+def seen(
+    points: Keypoints3D, one: Footage, frame: int, skeleton: Skeleton
+) -> tuple[NDArray, NDArray]:
     """Return the joints that a camera detected nearest to a frame, and reprojected, (P, J, 2) px.
 
-    The frame is of `points`; the 3D joints are those of its time.
+    The frame is of `points`; the 3D joints are those of its time, and the sides of the detected
+    ones are as the fusion took them.
     """
-    at = one.frame_at(points.time_s[frame])
-    return one.view.xy[:, at], camera_models.project(one.standing(at), points.xyz[:, frame])
+    at, name = one.frame_at(points.time_s[frame]), one.camera.name
+    detected = picture_crops.as_fused(points, frame, name, one.view.xy[:, at], skeleton.mirror())
+    return detected, camera_models.project(one.standing(at), points.xyz[:, frame])
 
 
-def table(points: Keypoints3D, footage: list[Footage], shown: Sequence[int]) -> pd.DataFrame:
+def table(
+    points: Keypoints3D, footage: list[Footage], shown: Sequence[int], skeleton: Skeleton
+) -> pd.DataFrame:
     """Return detected and reprojected joints, one row per frame, camera, person and joint.
 
     `footage` is of the cameras of `points`, in their order; `shown` are frames of `points`.
     """
     parts = []
     for frame, (at, one) in product(shown, enumerate(footage)):
-        detected, reprojected = (xy.reshape(-1, 2) for xy in seen(points, one, frame))
+        detected, reprojected = (xy.reshape(-1, 2) for xy in seen(points, one, frame, skeleton))
         columns = {
             "time_s": points.time_s[frame],
             "camera": one.camera.name,
@@ -73,7 +79,7 @@ def draw(
     axes = drawing.subplots(len(shown), len(footage), squeeze=False)
     for (row, column), axis in np.ndenumerate(axes):
         frame, one = shown[row], footage[column]
-        both, image = seen(points, one, frame), images[row][column]
+        both, image = seen(points, one, frame, skeleton), images[row][column]
         picture_crops.show(axis, image, picture_crops.box(both, image.shape[1::-1]))
         line = LINE / np.sqrt(len(footage))
         picture_crops.compare(axis, *both, skeleton.bone_indices(), line)
