@@ -70,6 +70,13 @@ def test_the_page_states_clocks_and_movement(tmp_path):
     assert "trembles by 0.01 px" in html
 
 
+def test_the_page_states_bumps_without_advice_that_was_followed(tmp_path):
+    line = "camera c0: was 5.0 px off its static picture at the start of the take: steady its "
+    html = page(tmp_path, shake=[f"{line}keypoints, or film the static picture again"])
+    sentence = "Camera c0: was 5.0 px off its static picture at the start of the take. This was"
+    assert sentence in html and "steady" not in html
+
+
 def test_the_page_states_missing_joints_with_their_reasons(tmp_path):
     joints = {
         "left_wrist": {"missing": 0.25, "reasons": {"unseen": 0.2, "rejected": 0.05}, "few": None}

@@ -2,10 +2,13 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from courtside.pages.report import warnings as warned
+from courtside.reconstruction import camera_shake
 from courtside.records.devices.clocks import Clock
+from fixtures.cameras import scene, shaken
 
 STILL = {
     "camera": "left",
@@ -72,26 +75,32 @@ def test_a_clock_error_is_also_given_as_the_path_of_a_fast_wrist():
     assert "16 ms" in found.text and "20 cm" in found.text  # 12 m/s times 16.45 ms
 
 
-@pytest.mark.parametrize(
-    ("line", "expected", "left_out"),
-    [
-        ("camera left: trembles by 0.02 px rms per axis", warned.GOOD, "steady"),
-        (
-            "camera left: knocked at 2.5 s by 15 px (0.4 deg): steady its keypoints from then on",
-            warned.LOOK,
-            "steady its",
-        ),
-        (
-            "camera left: no frame shows enough background to tell whether it shook",
-            warned.LOOK,
-            "out.",
-        ),
-    ],
-)
-def test_a_bump_is_reported_without_advice_that_was_followed(line, expected, left_out):
-    found = warned.shaken(line)
-    assert found.level == expected
-    assert found.text.startswith("Camera left: ") and left_out not in found.text
+def shake(knock_px=0.0, offset_px=0.0, unknown=0):
+    """Return the lines about a camera that stands off, is knocked and is partly unknown."""
+    (camera,) = scene.ring(1)
+    time_s = np.arange(240) / 30
+    table = shaken.table(camera, shaken.knock(camera, 240, 120, knock_px, 0.1), time_s)
+    table["shift_x_px"] += offset_px
+    table.loc[: unknown - 1, "shift_x_px"] = np.nan
+    return camera_shake.say(camera, table, np.array([0.0, 0.0, 1.0]))
+
+
+def test_a_bump_is_reported_without_advice_that_was_followed():
+    tremor, off, bump = map(warned.shaken, shake(knock_px=15.0, offset_px=5.0))
+    assert tremor.level == warned.GOOD and off.level == bump.level == warned.LOOK
+    assert tremor.text.startswith("Camera c0: trembles by 0.")
+    done = ". This was measured on the background and corrected."
+    assert off.text.startswith("Camera c0: was 5.0 px off its static picture at the start")
+    assert off.text.endswith(f" at the player{done}")
+    assert bump.text.startswith("Camera c0: knocked at 4.0 s by 15 px (")
+    assert bump.text.endswith(f" at the player){done}")
+
+
+@pytest.mark.parametrize("unknown", [10, 240])
+def test_frames_without_background_are_reported_as_unknown(unknown):
+    found = warned.shaken(shake(unknown=unknown)[0])
+    assert found.level == warned.LOOK
+    assert "background to tell" in found.text and "corrected" not in found.text
 
 
 @pytest.mark.parametrize(

@@ -49,6 +49,7 @@ def _take(take: dict, known: dict, found: Sequence[warned.Warned]) -> dict:
         "fusion": take["fusion"],
         "level": warned.worst(found),
         "clocks": [*known["clocks"].items(), *devices],
+        "shake": [warned.shaken(line).text for line in known["shake"]],
         "reasons": list(dict.fromkeys(reasons)),
     }
 

@@ -94,12 +94,15 @@ def moved(row: dict, max_shift_px: float, max_zoom_percent: float) -> Warned | N
 
 
 def shaken(line: str) -> Warned:
-    """Return the text of a line about the shake of a camera whose shake is corrected."""
-    text = line.rpartition("): ")[0] + ")" if "): " in line else line
+    """Return a line of `camera_shake.say` about a camera whose shake is corrected, as a sentence.
+
+    Without the advice to correct it.
+    """
+    text = line.partition(": steady")[0]
     text = text[:1].upper() + text[1:]
     if "too little" in line or "no frame" in line:
         return Warned(LOOK, f"{text}.")
-    if "knocked" in line or "stood" in line:
+    if "knocked" in line or "off its static picture" in line:
         return Warned(LOOK, f"{text}. This was measured on the background and corrected.")
     return Warned(GOOD, f"{text}; corrected.")
 
