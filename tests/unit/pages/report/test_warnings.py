@@ -112,11 +112,22 @@ def test_frames_without_background_are_reported_as_unknown(unknown):
         ({"tie_residual_px": 1.5}, [warned.LOOK]),
         ({"warnings": ["the lines' middles were clicked"]}, [warned.LOOK]),
         ({"left_out": "too few points", "expected_volume_rms_cm": 0.7}, [warned.LOOK]),
-        ({"left_out": {}, "expected_volume_rms_cm": None}, [warned.LOOK]),
+        ({"left_out": {}, "expected_volume_rms_cm": None}, []),
     ],
 )
 def test_a_bad_calibration_gives_warnings(change, expected):
     assert [item.level for item in warned.calibration("sfm-n40", QUALITY | change)] == expected
+
+
+@pytest.mark.parametrize(
+    ("name", "unknown"),
+    [("file", True), ("dlt8", True), ("known8", True)]
+    + [(name, False) for name in ("board", "wand", "people", "known", "file-people", "sfm-n40")],
+)
+def test_without_a_court_only_cameras_without_a_covariance_are_of_unknown_accuracy(name, unknown):
+    found = warned.calibration(name, {"warnings": []})
+    assert len(found) == unknown
+    assert not unknown or "the error bars do not include its error" in found[0].text
 
 
 def test_the_median_of_points_that_were_left_out():

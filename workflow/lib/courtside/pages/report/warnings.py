@@ -8,6 +8,7 @@ from typing import NamedTuple
 from courtside.calibration.point_covariance import WITHIN_90
 from courtside.records.devices.clocks import Clock
 from courtside.study.execution import verdicts
+from courtside.study.methods import Calibration
 
 GOOD, LOOK, DOUBT = 0, 1, 2  # their marks: LIGHTS in assets/report_parts.html
 MS_90 = 1645  # half of the 90 % interval of a normal error with a sigma of 1 s, in ms
@@ -162,7 +163,7 @@ def calibration(name: str, quality: dict) -> list[Warned]:
             found.append(Warned(_level_of(quantity, value), text))
     if isinstance(quality.get("left_out"), str):
         found.append(Warned(LOOK, f"Calibration {name}: {quality['left_out']}."))
-    if error is None and expected is None:
+    if not Calibration.parse(name).has_covariance and error is None and expected is None:
         made = "made elsewhere" if name == "file" else name
         text = "its accuracy is unknown, so that the error bars do not include its error"
         found.append(Warned(LOOK, f"Calibration {made}: {text}."))
