@@ -1,5 +1,7 @@
 """Figures and tables of the report: headings, captions, ids, complete tables."""
 
+import re
+
 import pytest
 
 from courtside.pages.report import figures as report_figures
@@ -60,6 +62,13 @@ def test_a_table_leaves_out_what_is_empty_and_escapes_the_rest(tmp_path):
 def test_ids_hold_only_characters_of_addresses():
     assert report_figures.identity("figures", "players-b", "shot") == "figures.players-b.shot"
     assert report_figures.identity("x", 'a"b c') == "x.a-b-c"
+
+
+def test_whole_numbers_of_a_table_keep_all_their_digits(tmp_path):
+    (tmp_path / "t.csv").write_text("n,person\n12345.0,01\n123456,02\n")
+    entry = {"file": tmp_path / "t.csv", "title": "t", "words": "", "link": "t.csv"}
+    found = re.findall(r"<td[^>]*>(.*?)</td>", report_figures.table(entry))
+    assert found == ["12345", "01", "123456", "02"]
 
 
 def test_text_of_a_table_stays_as_it_is(tmp_path):

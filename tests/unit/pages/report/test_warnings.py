@@ -57,6 +57,13 @@ def test_an_uncertain_clock_gives_a_warning(clock, expected):
     assert level(warned.clock("back", clock)) == expected
 
 
+def test_an_unknown_uncertainty_of_a_clock_is_called_unknown():
+    camera = warned.clock("back", Clock(status="found", uncertainty_s=math.nan))
+    assert camera.text == "Camera back: the uncertainty of its clock is unknown."
+    row = {"source": "mocopi", "status": "found", "uncertainty_s": math.nan}
+    assert warned.device(row).text == "mocopi: the uncertainty of its clock is unknown."
+
+
 @pytest.mark.parametrize(
     ("clock", "words"),
     [

@@ -123,9 +123,9 @@ def table(entry: dict) -> Markup:
 
 
 def _cell(value: str) -> tuple[str, bool]:
-    """Return a value with four digits if it is a number, and whether it is one."""
+    """Return a value, fractions with four digits, and whether it is a number."""
     try:
         number = float(value)
     except ValueError:
         return value, False
-    return (value if number.is_integer() and "." not in value else f"{number:.4g}"), True
+    return (value.removesuffix(".0") if number.is_integer() else f"{number:.4g}"), True

@@ -14,6 +14,7 @@ GOOD, LOOK, DOUBT = 0, 1, 2  # their marks: LIGHTS in assets/report_parts.html
 MS_90 = 1645  # half of the 90 % interval of a normal error with a sigma of 1 s, in ms
 # ASSUME: speed of the wrist in a fast stroke, to turn an error of a clock into one of position.
 WRIST_M_S = 12.0
+VAGUE_CLOCK = "the uncertainty of its clock is unknown"
 # {quantity: (LOOK from, DOUBT from, what it is)}
 # ASSUME: chosen so that a usual recording gives no warning; no study backs them.
 LIMITS = {
@@ -124,6 +125,8 @@ def clock(camera: str, found: Clock) -> Warned | None:
     level = _level_of("clock_ms", ms)
     if not level:
         return None
+    if math.isnan(ms):
+        return Warned(level, f"Camera {camera}: {VAGUE_CLOCK}.")
     price = f"a wrist at {WRIST_M_S:.0f} m/s is off by up to {ms * WRIST_M_S / 10:.0f} cm"
     return Warned(level, f"Camera {camera}: its clock is known only to {ms:.0f} ms; {price}.")
 
@@ -136,8 +139,8 @@ def device(row: dict) -> Warned | None:
         return Warned(DOUBT, f"{source}: {text}.")
     ms = MS_90 * row.get("uncertainty_s", 0.0)
     level = _level_of("clock_ms", ms)
-    text = f"{source}: its clock is known only to {ms:.0f} ms (90 %)."
-    return Warned(min(level, LOOK), text) if level else None
+    text = VAGUE_CLOCK if math.isnan(ms) else f"its clock is known only to {ms:.0f} ms (90 %)"
+    return Warned(min(level, LOOK), f"{source}: {text}.") if level else None
 
 
 def no_tpose(row: dict) -> Warned | None:
