@@ -2,7 +2,8 @@
 
 `layers` says, for each file of `paths.layers`, its `name`, the index of its skeleton in
 `paths.skeletons`, and whether it is `shown` at first; of a device also the `person`, its `source`
-in `paths.clocks`, and whether it is to be `placed` onto the first layer.
+in `paths.clocks`, and whether it is to be `placed` onto the first layer. A device whose clock is
+not known is left out, and the page says so.
 """
 
 from courtside.calibration.court import court as court_files
@@ -16,17 +17,21 @@ from courtside.study.execution import log
 from courtside.study.execution.script import run
 
 
-def main(paths, html, *, title, layers, notes=()):
+def main(paths, html, *, title, layers):
     skeletons = [skeleton.read(path) for path in paths.skeletons]
     _, clocks = sync.read(paths.clocks) if paths.clocks else ("", {})
-    made = []
+    made, notes = [], []
     for path, layout in zip(paths.layers, layers, strict=True):
+        name, clock = layout["name"], clocks.get(layout.get("source"))
+        if clock and not clock.usable:
+            notes.append(f"{name} is not shown: its clock is {clock.status} ({clock.note}).")
+            continue
         layer = viewer_layers.read(
             path,
-            layout["name"],
+            name,
             skeletons[layout["skeleton"]],
             person=layout.get("person", ""),
-            clock=clocks.get(layout.get("source")),
+            clock=clock,
             shown=layout["shown"],
         )
         made.append(viewer_layers.placed(layer, made[0]) if layout.get("placed") else layer)

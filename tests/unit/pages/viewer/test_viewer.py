@@ -2,8 +2,11 @@
 
 import json
 import re
+import runpy
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
+from types import SimpleNamespace
 
 import cv2
 import numpy as np
@@ -14,7 +17,8 @@ from courtside.figures.style import style
 from courtside.pages import page
 from courtside.pages.viewer import layers as viewer_layers
 from courtside.pages.viewer import viewer
-from courtside.records.keypoints import missing_reason
+from courtside.records.devices import clocks, device_motion
+from courtside.records.keypoints import keypoints, missing_reason
 from fixtures.cameras import scene
 from fixtures.people import walker
 
@@ -134,3 +138,41 @@ def test_every_reason_for_a_missing_joint_has_words():
     words = script.split("const WHY = {")[1].split("}")[0]
     told = {int(code) for code in re.findall(r"(\d+):", words)}
     assert set(missing_reason.WORDS) - {missing_reason.OK} <= told
+
+
+def test_a_device_of_unknown_clock_is_left_out_and_the_page_says_so(tmp_path):
+    record = walker.points()
+    files = [tmp_path / "points.npz", tmp_path / "suit.npz", tmp_path / "depth.npz"]
+    keypoints.write_3d(files[0], record)
+    suit = device_motion.DeviceMotion(
+        source="suit",
+        kind="inertial",
+        joints=record.joints,
+        time_s=record.time_s + 50,  # on a clock of its own
+        xyz=walker.body(20),
+        reason=np.zeros((20, walker.N_JOINTS), np.uint8),
+        performed=np.ones(20, bool),
+    )
+    device_motion.write(files[1], suit)
+    device_motion.write(files[2], replace(suit, source="depth"))
+    found = {
+        "cameras": clocks.Clock(status="reference"),
+        "suit": clocks.Clock(status="unknown", note="no clap"),
+        "depth": clocks.Clock(50.0, status="found"),
+    }
+    clocks.write(tmp_path / "clocks.json", "cameras", found)
+    paths = SimpleNamespace(
+        layers=files,
+        skeletons=[CONFIG / "skeletons" / "blazepose33.yaml"],
+        clocks=tmp_path / "clocks.json",
+        court=None,
+        cameras=None,
+    )
+    layers = [{"name": "raw", "skeleton": 0, "shown": True}]
+    device = {"skeleton": 0, "shown": False, "person": "p1", "placed": True}
+    layers += [{**device, "name": name, "source": name} for name in ("suit", "depth")]
+    script = runpy.run_path(str(CONFIG.parent / "workflow" / "scripts" / "build_viewer.py"))
+    script["main"](paths, tmp_path / "page.html", title="t", layers=layers)
+    held = Stores((tmp_path / "page.html").read_text()).held
+    assert [layer["name"] for layer in held["data-layers"]] == ["raw", "depth"]
+    assert held["data-scene"]["notes"] == ["suit is not shown: its clock is unknown (no clap)."]
