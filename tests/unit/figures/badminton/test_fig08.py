@@ -101,6 +101,19 @@ def test_what_has_no_result_is_marked(numbers):
     assert all(4 < line.get_xdata()[0] < 6 for line in crosses)
 
 
+def test_marks_of_both_errors_lie_within_their_common_axis(numbers):
+    shown = numbers.copy()
+    of = (shown["quantity"] == "volume_rms_cm") & (shown["method"] == "known")
+    shown.loc[of, ["p05", "median", "p95"]] *= 1000
+    axes = fig08.draw(shown, "made up").axes[:2]
+    assert axes[0].get_ylim() == axes[1].get_ylim()
+    low, high = axes[1].get_ylim()
+    for axis in axes:
+        drawn = [y for line in lines(axis) if line.get_marker() != "x" for y in line.get_ydata()]
+        assert all(low < y < high for y in drawn)
+    assert max(drawn) > 500
+
+
 def test_strong_calibrations_prefer_points_left_out(numbers):
     found = {label: rows for label, rows, _ in fig08.levels(numbers, "volume_rms_cm")}
     assert list(found) == ["known points, 18 clicks", "known points, 8 clicks"]

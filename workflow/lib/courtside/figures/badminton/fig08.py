@@ -104,13 +104,13 @@ def draw(numbers: pd.DataFrame, title: str, layout: str = "") -> Figure:
     drawing = style.figure(165)
     places = [["xy_cm", "volume_rms_cm"], ["solved", "angle"]]
     axes = drawing.subplot_mosaic(places, height_ratios=[1.55, 1])
+    axes["volume_rms_cm"].sharey(axes["xy_cm"])  # before drawing: limits are then those of both
     for quantity, words in ERRORS.items():
         _draw_errors(axes[quantity], numbers, quantity)
         axes[quantity].set_ylabel(words)
     _mark_published(axes["xy_cm"], numbers)
     for name in ("xy_cm", "volume_rms_cm", "angle"):
         bars.plain_log(axes[name])
-    axes["volume_rms_cm"].sharey(axes["xy_cm"])
     for quantity, form in (("solved_share", "o-"), ("registered_share", "x:")):
         _draw_mappers(axes["solved"], numbers, quantity, form, factor=100)
     axes["solved"].set(ylim=(-5, 105), ylabel="solved, registered (%)")
