@@ -111,8 +111,8 @@ def draw(numbers: pd.DataFrame, title: str, layout: str = "") -> Figure:
     _mark_published(axes["xy_cm"], numbers)
     for name in ("xy_cm", "volume_rms_cm", "angle"):
         bars.plain_log(axes[name])
-    for quantity, form in (("solved_share", "o-"), ("registered_share", "x:")):
-        _draw_mappers(axes["solved"], numbers, quantity, form, factor=100)
+    for quantity, form, size in (("solved_share", "o-", 4), ("registered_share", "x:", 8)):
+        _draw_mappers(axes["solved"], numbers, quantity, form, factor=100, size=size)
     axes["solved"].set(ylim=(-5, 105), ylabel="solved, registered (%)")
     _draw_angles(axes["angle"], numbers, layout)
     counts = sorted(numbers["n_bridging"].dropna().astype(int).unique())
@@ -185,13 +185,19 @@ def _draw_angles(axis: Axes, numbers: pd.DataFrame, layout: str) -> None:
 
 
 def _draw_mappers(
-    axis: Axes, numbers: pd.DataFrame, quantity: str, form: str, factor: float = 1
+    axis: Axes,
+    numbers: pd.DataFrame,
+    quantity: str,
+    form: str,
+    *,
+    factor: float = 1,
+    size: float = 4,
 ) -> None:
     for at, (mapper, colour) in enumerate(MAPPERS.items()):
         rows = calibration.pick(numbers, quantity=quantity, mapper=mapper).dropna(subset=["median"])
         rows = rows.sort_values("n_bridging")
         x = rows["n_bridging"] * np.exp(DODGE * (at - 0.5))
-        axis.plot(x, factor * rows["median"], form, color=colour, markersize=4, linewidth=1)
+        axis.plot(x, factor * rows["median"], form, color=colour, markersize=size, linewidth=1)
 
 
 def _legend(numbers: pd.DataFrame) -> list[Line2D]:
@@ -214,5 +220,6 @@ def _legend(numbers: pd.DataFrame) -> list[Line2D]:
             label = f"{mapper} mapper: solved; median angle"
             handles.append(bars.mark(colour, line="-", label=label))
     handles.append(bars.mark(grey, marker="x", line=":", label="the same: registered images"))
+    handles[-1].set_markersize(8)
     handles.append(bars.mark(grey, marker="^", line=":", label="the same: largest angle"))
     return handles
