@@ -65,6 +65,18 @@ def test_each_person_has_a_row_and_a_court_is_not_needed(tables):
     assert drawing.subfigs[1].axes[0].get_title().startswith("p2")
 
 
+def test_a_path_far_from_the_origin_fills_its_panel_where_there_is_no_court(tables):
+    frames, summary = tables
+    far = frames.assign(neck_x_m=frames.neck_x_m + 40, neck_y_m=frames.neck_y_m + 60)
+    drawing = speeds.draw(far, summary, None)
+    drawing.draw_without_rendering()
+    axis = drawing.subfigs[0].axes[0]
+    path = far[["neck_x_m", "neck_y_m"]].to_numpy()
+    low, high = np.transpose([axis.get_xlim(), axis.get_ylim()])
+    assert (np.nanmin(path, axis=0) > low).all() and (np.nanmax(path, axis=0) < high).all()
+    assert (high - low).max() < 4 * np.ptp(path[np.isfinite(path).all(axis=1)], axis=0).max()
+
+
 def test_the_table_holds_what_is_drawn(tables):
     rows = speeds.table(tables[0])
     assert {"neck_x_m", "mass_ground_speed_m_s", "trunk_lean_deg"} <= set(rows.columns)

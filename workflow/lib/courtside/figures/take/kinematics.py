@@ -65,13 +65,15 @@ def _draw_path(
     axis.set_title(
         f"{person}: neck from above\n{found.value:.2f} ± {reach:.2f} m on the ground (90 %)"
     )
+    if known.size and court is not None:
+        axis.set_ylim(
+            min(0.0, np.min(y[known])) - ROOM_M,
+            max(np.max(y[known]), court.size_m[1] / 2) + ROOM_M,
+        )
     if known.size:
-        low = min(0.0, np.min(y[known])) - ROOM_M
-        high = max(np.max(y[known]) + ROOM_M, 0 if court is None else court.size_m[1] / 2 + ROOM_M)
-        axis.set_ylim(low, high)
         axis.legend(loc="upper right", fontsize=7, frameon=True, edgecolor="none")
     axis.set(xlabel="x (m)", ylabel="y (m)")
-    axis.set_aspect("equal")
+    axis.set_aspect("equal", adjustable="box" if court else "datalim")
 
 
 def _band(
