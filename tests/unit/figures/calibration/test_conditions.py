@@ -68,3 +68,14 @@ def test_sizes_are_ordered_by_their_width():
     axis = conditions.draw(numbers, "size_px").axes[0]
     ticks = [text.get_text() for text in axis.get_xticklabels()]
     assert ticks == ["640x360", "960x540", "1280x720"]
+
+
+def test_any_number_of_second_settings_has_lines_that_differ():
+    parts = [
+        trials_made.structure({OUT: [1.0], PAPER: [2.0]}, session=f"s{n}", speed_kmh=1, frames=n)
+        for n in range(9)
+    ]
+    numbers = conditions.table(calibration.tidy(pd.concat(parts)), "speed_kmh", "frames")
+    axis = conditions.draw(numbers, "speed_kmh", "frames").axes[0]
+    lines = [line for line in axis.lines if len(line.get_xdata())]
+    assert len({(line.get_color(), line.get_marker()) for line in lines}) == 9

@@ -528,6 +528,9 @@ def test_a_good_condition_has_no_fault():
     assert conditions(vary={"layout": ["a"], "baseline_deg": [30, 60]}) == []
     assert conditions(set={"layout": "a"}, vary={"baseline_deg": [30, 60]}) == []
     assert conditions(set={"static_frames": 0}, vary={"walk_frames": [0]}) == []
+    axes = {"speed_kmh": [1, 4], "stabiliser": [True, False], "walk_frames": [40]}
+    assert conditions(vary={**axes, "seed": [1, 2], "click_seed": [1, 2]}) == []
+    assert conditions(vary={**axes, "walk_frames": [40, 80], "world": [{}, {}]}) == []
 
 
 @pytest.mark.parametrize(
@@ -553,6 +556,17 @@ def test_a_good_condition_has_no_fault():
         (
             {"vary": {"static_frames": [0, 2], "walk_frames": [0, 9, 12]}},
             ["speed.static_frames: expected 1 or more with a walk", "found 0"],
+        ),
+        (
+            {
+                "vary": {
+                    key: [1, 2] for key in ("speed_kmh", "walk_frames", "seed", "static_frames")
+                }
+            },
+            [
+                "speed.vary: expected at most two keys with several values besides seeds",
+                "found speed_kmh, walk_frames, static_frames; write further conditions",
+            ],
         ),
     ],
 )

@@ -84,10 +84,11 @@ def _draw_way(axis: Axes, part: pd.DataFrame, settings: list, x: str, group: str
         place += DODGE * (at - (len(values) - 1) / 2)
         label = None if group is None else f"{WORDS.get(group, group)} {_words(value)}"
         known = rows["median"].notna().to_numpy()
-        look: dict = {"colour": style.CYCLE[at], "marker": MARKERS[at], "label": label}
+        colour, marker = (looks[at % len(looks)] for looks in (style.CYCLE, MARKERS))
+        look: dict = {"colour": colour, "marker": marker, "label": label}
         bars.draw(axis, place[known], rows[known], filled=not rows["in_sample"].any(), **look)
         for each, (_, row) in zip(place, rows.iterrows(), strict=True):
-            _count(axis, each, row, at, style.CYCLE[at])
+            _count(axis, each, row, at, colour)
 
 
 def _count(axis: Axes, place: float, row: pd.Series, line: int, colour: str) -> None:

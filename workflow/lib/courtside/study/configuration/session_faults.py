@@ -356,6 +356,17 @@ def _varied_faults(where: str, virtual: Content, vary: Content) -> list[str]:
     return list(dict.fromkeys(faults))
 
 
+def _too_many_axes(where: str, vary: Content) -> list[str]:
+    """Return a fault if a condition varies more than the axis and the lines of its figure show."""
+    several = [key for key, values in vary.items() if len(values) > 1 and not key.endswith("seed")]
+    if "world" in vary or len(several) <= 2:
+        return []
+    return [
+        f"{where}.vary: expected at most two keys with several values besides seeds, because its "
+        f"figure shows no more, found {', '.join(several)}; write further conditions"
+    ]
+
+
 def conditions(config_file: str, config: Content, found: dict[str, tuple]) -> list[str]:
     """Return the faults of the conditions; `found` has (file, content) of each session, by name."""
     wanted, known = config["variations"], config["conditions"]
@@ -373,6 +384,7 @@ def conditions(config_file: str, config: Content, found: dict[str, tuple]) -> li
             f"{where}: expected {key} in either `set` or `vary`, found it in both; remove one"
             for key in sorted(set(condition.get("set", {})) & set(condition["vary"]))
         ]
+        faults += _too_many_axes(where, condition["vary"])
         # Variations are sessions named after their condition.
         faults += [
             f"{where}: expected a name that no session has, found session {own!r}; rename it"
