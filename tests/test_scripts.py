@@ -85,6 +85,11 @@ def test_a_rule_gives_its_script_what_main_takes(path):
             assert needed - given - WILDCARDS == set()
 
 
+@pytest.mark.parametrize("name", [p.stem for p in SCRIPTS if p.stem.startswith("build_")])
+def test_a_page_is_built_again_when_its_templates_change(name):
+    assert all("assets" in names["input"] for names in rules_of(name))
+
+
 @pytest.mark.parametrize("path", SCRIPTS, ids=[path.stem for path in SCRIPTS])
 def test_a_script_ends_with_one_call(path):
     last = ast.parse(path.read_text()).body[-1]
