@@ -367,6 +367,23 @@ def test_work_is_kept_by_the_browser_and_can_be_forgotten(open_page, make):
     assert marked(page) == {}
 
 
+def test_each_table_counts_as_unsaved_until_it_is_saved(open_page, make, pictures, tmp_path):
+    frame = {"size": (960, 540), "image": pictures["back"], "take": "smash1", "camera": "back"}
+    page = open_page(make(more=[clicking_page.Frame(frame_idx=12, **frame)]))
+    waiting = {}
+    for tab in ("smash1 back 12", "back"):
+        page.click(f"#tabs button:has-text('{tab}') >> nth=0")
+        page.keyboard.press("Space")
+        waiting[tab] = page.inner_text("#where")
+    saved(page, tmp_path)
+    assert "Not saved yet" not in page.inner_text("#where")
+    page.click("text=smash1 back 12")
+    waiting["after"] = page.inner_text("#where")
+    page.reload()
+    waiting["restored"] = page.inner_text("#where")
+    assert all("Not saved yet" in words for words in waiting.values())
+
+
 def test_other_clicks_or_another_session_start_of_their_own(open_page, make):
     page = open_page(make())
     page.keyboard.press("Space")

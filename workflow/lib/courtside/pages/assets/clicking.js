@@ -13,7 +13,8 @@
 
   let marks = Object.fromEntries(frames.map((frame) => [frame.id, {}]));
   let past = [], future = [];
-  let at = 0, chosen = "", fits = {}, turns = {}, views = {}, shownFrame = "", unsaved = false;
+  let at = 0, chosen = "", fits = {}, turns = {}, views = {}, shownFrame = "";
+  const unsaved = new Set(); // tables that differ from their files
 
   const frame = () => frames[at];
   const isTake = (one) => one.take !== null;
@@ -76,9 +77,9 @@
       const mark = direction > 0 ? change.after : change.before;
       if (mark) marks[change.frame][change.name] = mark;
       else delete marks[change.frame][change.name];
+      unsaved.add(tableOf(frames.find((one) => one.id === change.frame)));
     }
     fits = {};
-    unsaved = true;
     keep();
   }
 
@@ -207,11 +208,12 @@
     racket: { name: "racket.csv", columns: clickTables.RACKET, takes: true, text: () => clickTables.racket(rows(true)) },
   };
   const used = Object.values(tables).filter((table) => frames.some((one) => isTake(one) === table.takes));
-  const current = () => used.find((table) => table.takes === isTake(frame()));
+  const tableOf = (one) => used.find((table) => table.takes === isTake(one));
+  const current = () => tableOf(frame());
 
   function save(table) {
     courtside.download(table.name, table.text(), "text/csv");
-    unsaved = false;
+    unsaved.delete(table);
     say(`Saved ${table.name}: ${rows(table.takes).length} rows. Put it where the session's file says: ${given.targets[table.name]}`);
     render();
   }
@@ -277,7 +279,7 @@
     byId("undo").disabled = !past.length;
     byId("redo").disabled = !future.length;
     byId("text").value = current().text();
-    byId("where").textContent = `${unsaved ? "Not saved yet. " : ""}The workflow reads ${given.targets[current().name]}.`;
+    byId("where").textContent = `${unsaved.has(current()) ? "Not saved yet. " : ""}The workflow reads ${given.targets[current().name]}.`;
   }
 
   function renderTabs() {
@@ -426,7 +428,9 @@
     button(byId("files"), "Load…", () => byId("chooser").click(), { id: "load" });
     const kept = courtside.storage.get(KEEP);
     if (kept && kept.marks) {
+      const ofFiles = used.map((table) => table.text());
       for (const one of frames) if (kept.marks[one.id]) marks[one.id] = kept.marks[one.id];
+      used.forEach((table, index) => { if (table.text() !== ofFiles[index]) unsaved.add(table); });
       const time = new Date(kept.time);
       say(`Your work of ${Number.isNaN(time.getTime()) ? "last time" : time.toLocaleString()} is here again.`);
     } else if (frames.some(eitherEnd)) say("The court was found, but not which end is which: mark one point in each picture, then the others are proposed.");
