@@ -222,5 +222,5 @@ const clickFit = (() => {
     return { name: best.name, off, rms: Math.sqrt(best.cost / (n - 1)), suspicious: off > 1.5 && ratio > 12 };
   }
 
-  return { fit, LENS_FROM, FLOOR_FROM };
+  return { fit, FLOOR_FROM };
 })();

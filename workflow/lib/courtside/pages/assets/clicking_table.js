@@ -5,10 +5,6 @@ const clickTables = (() => {
   const COURT = ["camera", "point", "frame_idx", "x_px", "y_px"];
   const RACKET = ["take", "camera", "frame_idx", "end", "x_px", "y_px"];
 
-  function number(value) {
-    return String(value);
-  }
-
   function written(columns, rows) {
     const cell = (value) => (/[",\n]/.test(value) ? `"${String(value).replaceAll('"', '""')}"` : String(value));
     return [columns, ...rows].map((row) => row.map(cell).join(",")).join("\n") + "\n";
@@ -63,7 +59,7 @@ const clickTables = (() => {
 
   return {
     COURT, RACKET, read,
-    court: (rows) => written(COURT, rows.map((r) => [r.camera, r.point, r.frame_idx, number(r.x), number(r.y)])),
-    racket: (rows) => written(RACKET, rows.map((r) => [r.take, r.camera, r.frame_idx, r.point, number(r.x), number(r.y)])),
+    court: (rows) => written(COURT, rows.map((r) => [r.camera, r.point, r.frame_idx, r.x, r.y])),
+    racket: (rows) => written(RACKET, rows.map((r) => [r.take, r.camera, r.frame_idx, r.point, r.x, r.y])),
   };
 })();

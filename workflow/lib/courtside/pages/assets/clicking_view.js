@@ -207,7 +207,7 @@ const clickView = (() => {
 
     const middle = () => toPicture(box().map((length) => length / 2));
     return {
-      show, whole, centre, draw, toScreen, toPicture, middle,
+      show, whole, centre, middle,
       zoom: (factor) => zoomAt(factor, box().map((length) => length / 2)),
       scale: () => scale,
       state: () => ({ scale, middle: middle() }),
