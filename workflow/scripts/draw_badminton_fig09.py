@@ -10,12 +10,13 @@ from courtside.records.keypoints import derived_joints, keypoints, skeleton
 from courtside.study.execution.script import run
 
 
-def main(paths, pdf, png, csv, *, n_frames, start_s, blur_faces):
+def main(paths, pdf, png, csv, *, n_frames, start_s, blur_faces, session, take):
     joints, points = skeleton.read(paths.skeleton), keypoints.read_3d(paths.pose3d)
     files = paths.cameras, paths.pose2d, paths.people, paths.sync, paths.shake, paths.videos
     seen = camera_shake.read_as_filmed(*files, wanted=points.cameras)
     figure = stick_figure.stick(joints, derived_joints.read(paths.derived))
-    frames = round_trip.span(points, n_frames, start_s).frames
+    stated = f"draw_stroke.takes.{session}/{take}"
+    frames = round_trip.span(points, n_frames, start_s, stated).frames
     frame = (frames.start + frames.stop - 1) // 2
     images = {
         one.camera.name: picture_crops.at_frame(one, points, frame, joints, hidden=blur_faces)[0]

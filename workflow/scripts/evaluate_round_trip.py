@@ -23,6 +23,8 @@ def main(
     pose2d_npz=(),
     sync_json=None,
     truth_npz=None,
+    session,
+    take,
     **step,
 ):
     known = cameras.read_toml(cameras_toml)
@@ -34,7 +36,7 @@ def main(
     if truth_npz:
         truth = take_truth.read(truth_npz)
         truth = joint_errors.derive_truth(truth, table, names, step["derived_joints"])
-    rows = []
+    rows, stated = [], f"evaluate_round_trip.takes.{session}/{take}"
     for path in pose3d_npz:
         points = derived.append(keypoints.read_3d(path), table, names, step["derived_joints"])
         others = [
@@ -42,12 +44,14 @@ def main(
             for camera in known
             if camera.name in views and camera.name not in points.cameras
         ]
-        rows.append(rows_of(points, known, others, truth, **step))
+        rows.append(rows_of(points, known, others, truth, stated, **step))
     tables.write(rows_csv, pd.concat(rows, ignore_index=True))
 
 
-def rows_of(points, known, others, truth, *, joints, derived_joints, n_frames, start_s, **options):
-    chosen = round_trip.span(points, n_frames, start_s)
+def rows_of(
+    points, known, others, truth, stated, *, joints, derived_joints, n_frames, start_s, **options
+):
+    chosen = round_trip.span(points, n_frames, start_s, stated)
     joints = [*derived_joints, *joints]
     return round_trip.table(points, known, joints, chosen, truth=truth, others=others, **options)
 

@@ -92,8 +92,9 @@ def test_the_frames_are_in_the_middle_or_where_asked():
     assert round_trip.span(points, None).frames == slice(0, 40)
     start = round_trip.span(points, 5, points.time_s[8]).frames
     assert (start.start, start.stop) == (8, 13)
-    with pytest.raises(InputError, match="found 2 up to"):
-        round_trip.span(points, 5, points.time_s[-2])
+    stated = "draw_stroke.takes.hall/shot"
+    with pytest.raises(InputError, match=f"^{stated}: expected 5 frames from .*, found 2 up to"):
+        round_trip.span(points, 5, points.time_s[-2], stated)
 
 
 def truth_of(points, shift_m):

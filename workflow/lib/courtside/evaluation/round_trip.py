@@ -64,11 +64,13 @@ def round_to_grid(xy: NDArray, step_px: float) -> NDArray:
     return (np.rint((xy + 0.5) / step_px - 0.5) + 0.5) * step_px - 0.5
 
 
-def span(points: Keypoints3D, n_frames: int | None, start_s: float | None = None) -> Span:
+def span(
+    points: Keypoints3D, n_frames: int | None, start_s: float | None = None, stated: str = "start_s"
+) -> Span:
     """Choose `n_frames` consecutive frames of a table; all if None or if the take has fewer.
 
     They start at `start_s`, or are the middle of the take. `InputError` if too few follow
-    `start_s`.
+    `start_s`; it begins with `stated`: where the configuration has `start_s`.
     """
     total = len(points.time_s)
     count = total if n_frames is None else min(n_frames, total)
@@ -77,8 +79,8 @@ def span(points: Keypoints3D, n_frames: int | None, start_s: float | None = None
         first = int(np.argmin(np.abs(points.time_s - start_s)))
         if first + count > total:
             raise InputError(
-                f"table 1: expected {count} frames from {start_s:g} s on, found {total - first} up "
-                f"to {points.time_s[-1]:.2f} s; choose an earlier start"
+                f"{stated}: expected {count} frames from {start_s:g} s on, found {total - first} "
+                f"up to {points.time_s[-1]:.2f} s; choose an earlier start"
             )
     words = f"{count} frames from {points.time_s[first]:.3f} s"
     return Span(slice(first, first + count), words)
