@@ -114,3 +114,14 @@ def test_refined_cameras_are_drawn_below_those_before_on_one_scale():
     assert panels[0].get_position().y0 > panels[2].get_position().y1
     (scale,) = {tuple(axis.collections[0].levels) for axis in panels}
     assert scale[0] <= rows["sigma_cm"].min() < rows["before_cm"].max() <= scale[-1]
+
+
+def test_a_camera_above_the_courts_centre_is_named_there():
+    side, back = cameras()
+    above = scene.look_at((3.05, 6.7, 9.0), (3.05, 7.0, 0.0))
+    made = [side, replace(back, cam_from_world=above)]
+    rows = error_map.table(made, covariance(), COURT, [0.0])
+    drawing = error_map.draw(rows, made, COURT, "made up")
+    drawing.draw_without_rendering()
+    (place,) = (t.get_position() for t in drawing.axes[0].texts if t.get_text() == "back\n0 m")
+    np.testing.assert_allclose(place, (3.05, 6.7), atol=1e-6)

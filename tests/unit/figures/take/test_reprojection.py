@@ -1,6 +1,9 @@
 """The statistics drawn are numpy's."""
 
+from dataclasses import replace
+
 import numpy as np
+import pytest
 
 from courtside.figures.take import reprojection
 from fixtures.people import walker
@@ -25,3 +28,12 @@ def test_the_table_matches_numpys_percentiles():
 def test_every_camera_has_a_panel():
     drawing = reprojection.draw(reprojection.table(walker.points()))
     assert [axis.get_title().split(":")[0] for axis in drawing.axes] == ["c0", "c1", "c2"]
+
+
+@pytest.mark.parametrize("scale", [1.0, 0.01])
+def test_the_axis_holds_the_medians_however_small_they_are(scale):
+    record = walker.points()
+    rows = reprojection.table(replace(record, reproj_error_px=scale * record.reproj_error_px))
+    low, high = reprojection.draw(rows).axes[0].get_xlim()
+    assert low < rows.median_px.min() < rows.median_px.max() < high
+    assert scale < 1 or low == reprojection.SMALLEST_PX

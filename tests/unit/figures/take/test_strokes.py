@@ -49,4 +49,7 @@ def test_without_strokes_the_axes_are_empty(made):
     points, strokes, _ = made
     rows = phases.table(strokes[:0], points)
     assert list(rows.columns) == ["person", "stroke", "overhead", "phase_s", *phases.LINES]
-    phases.draw(rows).draw_without_rendering()
+    drawing = phases.draw(rows)
+    drawing.draw_without_rendering()
+    assert drawing.axes[0].get_xlim() == (-phases.BEFORE_S, phases.AFTER_S)
+    assert drawing.get_suptitle() == "no stroke found"

@@ -25,6 +25,7 @@ COLUMNS, ROWS = 25, 55  # of the grid, along the short and the long side
 LEVELS = 14  # of colour, about
 PANELS = {"before_cm": "before: ", "sigma_cm": "after: "}
 ROOM_M = 3.2  # around the court, for the cameras
+LEAST_M = 1e-6  # from the court's centre: a camera nearer than this is above it
 
 
 def table(
@@ -107,13 +108,21 @@ def _draw_height(
 
 
 def _point_to(axis: Axes, camera: Camera, court: Court) -> None:
-    """Mark at the court's edge the direction of a camera, which stands far outside."""
+    """Mark at the court's edge the direction of a camera, which stands far outside.
+
+    Above the court's centre it has no direction, and is named there.
+    """
     centre = np.asarray(court.size_m) / 2
     away = camera.centre_in_world[:2] - centre
-    outward = away / np.linalg.norm(away)
+    distance = np.linalg.norm(away)
+    text = f"{camera.name}\n{distance:.0f} m"
+    look: dict = {"ha": "center", "va": "center", "fontsize": 6.5}
+    if distance < LEAST_M:
+        axis.text(*centre, text, **look)
+        return
+    outward = away / distance
     reach = np.min((centre + 0.3) / np.maximum(np.abs(outward), 1e-9))
     tip = centre + reach * outward
     arrow = {"arrowstyle": "-|>", "color": "black", "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0}
     axis.annotate("", tip, tip + 1.1 * outward, arrowprops=arrow, zorder=5)
-    text = f"{camera.name}\n{np.linalg.norm(away):.0f} m"
-    axis.text(*(tip + 2.0 * outward), text, ha="center", va="center", fontsize=6.5)
+    axis.text(*(tip + 2.0 * outward), text, **look)

@@ -44,7 +44,9 @@ def draw(rows: pd.DataFrame) -> Figure:
         axis.set_xlabel("reprojection error (px)")
         axis.grid(axis="x")
     bars.name_rows(axes[0], joints)
-    axes[0].set(xscale="log", xlim=(SMALLEST_PX, None))
+    axes[0].set_xscale("log")
+    if rows.median_px.max() > SMALLEST_PX:
+        axes[0].set_xlim(left=SMALLEST_PX)
     handles, labels = axes[0].get_legend_handles_labels()
     drawing.legend(handles, labels, loc="outside lower center", ncols=3)
     return drawing

@@ -61,6 +61,9 @@ def draw(rows: pd.DataFrame) -> Figure:
     for axis, words in zip(axes[:, 0], LINES.values(), strict=True):
         axis.set_ylabel(words)
         axis.set_ylim(bottom=0)
+    if rows.empty:
+        axes[0, 0].set_xlim(-BEFORE_S, AFTER_S)
+        drawing.suptitle("no stroke found", fontsize=8)
     named = {
         label: handle
         for axis in axes[0]
