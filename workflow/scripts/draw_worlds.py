@@ -1,6 +1,7 @@
 """Draw the effect of unmodelled deviations: evaluations of sessions, quality -> figure, CSV."""
 
 import json
+from collections import Counter
 from pathlib import Path
 
 from courtside.evaluation.tables import calibration
@@ -10,12 +11,11 @@ from courtside.study.execution.script import run
 
 
 def main(errors_csv, quality_json, pdf, png, csv):
-    warnings = {}
+    warnings = Counter()  # of each session
     for path in map(Path, quality_json):  # results/{session}/calibration/{calibration}/quality.json
-        found = json.loads(path.read_text(encoding="utf-8"))["warnings"]
-        warnings.setdefault(path.parts[-4], []).extend(found)
+        warnings[path.parts[-4]] += len(json.loads(path.read_text(encoding="utf-8"))["warnings"])
     rows = calibration.read(errors_csv)
-    numbers = worlds.table(rows, {name: len(found) for name, found in warnings.items()})
+    numbers = worlds.table(rows, warnings)
     style.save(worlds.draw(numbers), numbers, pdf, png, csv)
 
 

@@ -40,3 +40,12 @@ def test_the_legend_shows_what_is_drawn():
     mark = bars.mark(style.LEFT, marker="s", filled=False, line="--", label="a")
     look = (mark.get_marker(), mark.get_linestyle(), mark.get_markerfacecolor(), mark.get_label())
     assert look == ("s", "--", "white", "a")
+
+
+def test_labels_of_several_axes_are_named_once():
+    axes = style.figure(60).subplots(1, 2)
+    for axis in axes:
+        for label in ("b", "a"):
+            axis.plot([0, 1], label=label)
+    axes[1].plot([0, 1], label="c")
+    assert list(bars.named(axes)) == ["b", "a", "c"]

@@ -117,12 +117,16 @@ def _draw_angles(
         axis.set_xlim(left=0)
         axis.grid(axis="x")
     axes[0].set_ylim(len(looks) - 0.5, -0.5)
-    axes[0].set_yticks(np.arange(len(looks)), list(looks))
-    for tick, look in zip(axes[0].get_yticklabels(), looks.values(), strict=True):
-        tick.set_color(look.colour)
+    _name_sources(axes[0], looks)
     axes[len(ANGLES) // 2].set_xlabel(
         "root mean square error of joint angles (degrees): source (hollow), skeletal model (filled)"
     )
+
+
+def _name_sources(axis: Axes, looks: dict[str, source_styles.Look]) -> None:
+    axis.set_yticks(np.arange(len(looks)), list(looks))
+    for tick, look in zip(axis.get_yticklabels(), looks.values(), strict=True):
+        tick.set_color(look.colour)
 
 
 def _draw_parts(
@@ -137,9 +141,7 @@ def _draw_parts(
         axis.set_title(words)
         axis.set_xlim(0, 100)
         axis.set_xlabel("share of the mean squared error (%)")
-    axes[0].set_yticks(np.arange(len(looks)), list(looks))
-    for tick, look in zip(axes[0].get_yticklabels(), looks.values(), strict=True):
-        tick.set_color(look.colour)
+    _name_sources(axes[0], looks)
     axes[0].set_ylim(len(looks) - 0.4, -0.6)
     marks = [
         bars.mark(colour, marker="s", label=name.replace("origin", "place of the origin"))

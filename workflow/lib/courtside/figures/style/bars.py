@@ -1,8 +1,9 @@
 """Medians with their 5-95 % ranges, their marks in legends, and the axes that they stand on."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import pandas as pd
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullFormatter
@@ -65,6 +66,12 @@ def name_rows(axis: Axes, joints: Sequence[str]) -> None:
     """Name the rows of an axis after joints, 0 at the top."""
     axis.set_yticks(range(len(joints)), [joint.replace("_", " ") for joint in joints])
     axis.set_ylim(len(joints) - 0.5, -0.5)
+
+
+def named(axes: Iterable[Axes]) -> dict[str, Artist]:
+    """Return what axes draw under a label, by label, each once: of several the last."""
+    pairs = [pair for axis in axes for pair in zip(*axis.get_legend_handles_labels(), strict=True)]
+    return {label: handle for handle, label in pairs}
 
 
 def mark(

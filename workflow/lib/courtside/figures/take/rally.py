@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from courtside.calibration.point_covariance import WITHIN_90
-from courtside.figures.style import style
+from courtside.figures.style import bars, style
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.strokes import signals
 
@@ -42,11 +42,7 @@ def draw(strokes: pd.DataFrame, events: pd.DataFrame, points: Keypoints3D) -> Fi
         hands = ", ".join(f"{hand} hand ({source})" for hand, source in _hands(own))
         axis.set_title(f"{person}: {counted}{', ' if hands else ''}{hands}", loc="left", pad=11)
     rows[-1].set_xlabel("time (s)")
-    named = {
-        label: handle
-        for axis in rows
-        for handle, label in zip(*axis.get_legend_handles_labels(), strict=True)
-    }
+    named = bars.named(rows)
     drawing.legend(named.values(), named, loc="outside upper right", ncols=min(len(named), A_ROW))
     return drawing
 

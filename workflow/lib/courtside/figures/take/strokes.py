@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from courtside.calibration.point_covariance import WITHIN_90
-from courtside.figures.style import style
+from courtside.figures.style import bars, style
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.strokes import signals
 
@@ -64,11 +64,7 @@ def draw(rows: pd.DataFrame) -> Figure:
     if rows.empty:
         axes[0, 0].set_xlim(-BEFORE_S, AFTER_S)
         drawing.suptitle("no stroke found", fontsize=8)
-    named = {
-        label: handle
-        for axis in axes[0]
-        for handle, label in zip(*axis.get_legend_handles_labels(), strict=True)
-    }
+    named = bars.named(axes[0])
     drawing.legend(named.values(), named, loc="outside upper right", ncols=max(len(named), 1))
     return drawing
 
