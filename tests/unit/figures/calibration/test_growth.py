@@ -53,3 +53,13 @@ def test_the_legend_states_the_exponent(paths):
     assert "adjust_network, global" in labels
     assert "match_images, once per session" in labels
     assert drawing.axes[0].get_xscale() == drawing.axes[0].get_yscale() == "log"
+
+
+def test_marks_of_several_choices_of_images_stand_side_by_side(paths):
+    axis = growth.draw(growth.table(paths)).axes[0]
+    handles = dict(zip(*reversed(axis.get_legend_handles_labels()), strict=True))
+    (line,) = (line for label, line in handles.items() if label.startswith("map_images, global"))
+    x = np.sort(line.get_xdata()).reshape(-1, 2)
+    counts = np.array([10, 20, 80])
+    assert (x[:, 0] < counts).all() and (counts < x[:, 1]).all()
+    np.testing.assert_allclose(x, np.repeat(counts[:, None], 2, axis=1), rtol=0.05)

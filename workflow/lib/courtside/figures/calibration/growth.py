@@ -13,6 +13,7 @@ from courtside.study.methods import VARIANT, Variant
 
 ONCE = "once per session"
 MARKERS = "osv^Dx"
+DODGE = 0.05  # of the logarithm of N, between choices of images
 
 
 def table(paths: Sequence[StrPath]) -> pd.DataFrame:
@@ -52,7 +53,7 @@ def draw(rows: pd.DataFrame, title: str = "") -> Figure:
     """Draw the table of `table` with its power laws."""
     drawing = style.figure(95)
     axis = drawing.subplots()
-    laws = exponents(rows)
+    laws, middle = exponents(rows), rows["offset"].max() / 2
     looks = zip(laws.itertuples(), style.CYCLE * 2, MARKERS * 2, strict=False)
     for law, colour, marker in looks:
         of = rows[(rows["step"] == law.step) & (rows["mapper"] == law.mapper)]
@@ -61,11 +62,10 @@ def draw(rows: pd.DataFrame, title: str = "") -> Figure:
             label += f": N$^{{{law.exponent:.2f}}}$ (n = {law.n})"
             ends = np.array([of["n_bridging"].min(), of["n_bridging"].max()])
             axis.plot(ends, law.factor_s * ends**law.exponent, color=colour, linewidth=0.9)
-        axis.plot(
-            of["n_bridging"], of["seconds"], marker, color=colour, markersize=4.5, label=label
-        )
+        x = of["n_bridging"] * np.exp(DODGE * (of["offset"] - middle))
+        axis.plot(x, of["seconds"], marker, color=colour, markersize=4.5, label=label)
     once = rows[rows["mapper"] == ONCE].groupby("step")["seconds"].sum()
-    for (step, seconds), line in zip(once.items(), ("--", ":", "-."), strict=False):
+    for (step, seconds), line in zip(once.items(), ("--", ":"), strict=False):
         axis.axhline(
             seconds, color="#777777", linestyle=line, linewidth=0.9, label=f"{step}, {ONCE}"
         )

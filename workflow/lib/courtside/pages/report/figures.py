@@ -24,7 +24,7 @@ TITLES = {
     "three_cameras": "Two, three and four cameras against the truth",
     "error_map": "Expected error over the court",
     "coverage": "Coverage of the error bars",
-    "growth": "Time and memory",
+    "growth": "Time of each step",
     "court_points": "Court points",
     "clock_errors": "Errors of clocks against the truth",
     "reliability": "How far stated errors of joints hold",
