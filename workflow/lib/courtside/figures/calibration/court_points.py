@@ -121,8 +121,10 @@ def _draw_detail(axis: Axes, court: Court, point: int) -> None:
     axis.plot(x, y, "o", color=style.LEFT, markersize=4, zorder=4)
     axis.set(xlim=(x - DETAIL_M, x + DETAIL_M), ylim=(y - DETAIL_M, y + DETAIL_M))
     axis.set(xticks=[], yticks=[])
-    axis.add_patch(Rectangle((x + 0.045, y - 0.14), 0.1, 0.008, facecolor="black"))
-    axis.text(x + 0.095, y - 0.125, "0.1 m", ha="center", va="bottom", fontsize=5.5)
+    axis.add_patch(Rectangle((x + 0.045, y - 0.14), 0.1, 0.008, facecolor="black", zorder=5))
+    box = {"facecolor": "white", "edgecolor": "none", "pad": 0.4}
+    look = {"ha": "center", "va": "bottom", "fontsize": 5.5, "bbox": box, "zorder": 5}
+    axis.text(x + 0.095, y - 0.125, "0.1 m", **look)
     axis.spines[:].set_visible(True)
     axis.set_title(court.points[point])
 

@@ -8,6 +8,8 @@ from courtside.figures.style import style
 from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D
 from courtside.records.keypoints.skeleton import Skeleton
 
+A_ROW = 6  # cameras in the legend
+
 
 def table(points: Keypoints3D, views: list[Keypoints2D]) -> pd.DataFrame:
     """Return scores and numbers of views over time; empty if a camera saw nothing.
@@ -38,7 +40,7 @@ def draw(rows: pd.DataFrame, skeleton: Skeleton) -> Figure:
         upper.plot(mean.index, mean, color=colour, linewidth=1, label=name.removeprefix("score_"))
     upper.set(ylabel="mean score", ylim=(0, 1.02))
     upper.set_title("Confidence of the network, mean over the 12 limb joints")
-    upper.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    drawing.legend(loc="outside upper right", ncols=min(len(names), A_ROW))
     counts = rows.groupby(["joint", "time_s"]).n_views.min().unstack().loc[joints]
     times = counts.columns.to_numpy()
     step = np.median(np.diff(times)) if len(times) > 1 else 1.0
