@@ -18,8 +18,8 @@ SETS = {"limbs": "12 limb joints", "right half": "right half", "left half": "lef
 JOINTS = (*skeleton.JOINTS[6:], *skeleton.JOINTS[:6])  # the half that the paper speaks of first
 POINTS = {"neck": "neck", "centre": "centre of gravity"}
 ROWS = (*SETS, *JOINTS, *POINTS)
-# What the paper calls stable, or fairly so, with the two cameras that see the right half.
 NOTHING_MM = 1.0, 1000.0  # limits of the axis when nobody was placed
+# What the paper calls stable, or fairly so, with the two cameras that see the right half.
 CLAIMED = ("right half", *(joint for joint in JOINTS if joint.startswith("right_")), *POINTS)
 PANELS = {"pose3d": "as triangulated (raw)", "pose3d_corrected": "filtered, joint offsets removed"}
 NO_OFFSETS = "no estimate of\njoint offsets"

@@ -1,7 +1,6 @@
 """A court from above, to scale."""
 
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from courtside.calibration.court.court import Court
@@ -9,7 +8,7 @@ from courtside.calibration.court.court import Court
 PAINT = "#777777"
 
 
-def draw(axis: Axes, court: Court, colour: str = PAINT, least_pt: float = 0.0) -> Figure:
+def draw(axis: Axes, court: Court, colour: str = PAINT, least_pt: float = 0.0) -> None:
     """Draw the painted lines at their true width, and the net as a dashed line.
 
     The axis is in metres. An outline of `least_pt` keeps lines visible on plans at a small scale.
