@@ -2,6 +2,7 @@
 
 import csv
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -19,6 +20,24 @@ def test_labels_come_first_and_numbers_have_six_digits(tmp_path):
     assert found[1] == ["north", "3", "left_hip", "0.333333"]
     assert found[2] == ["north", "3", "a, b", ""]
     assert b"\r" not in path.read_bytes()
+
+
+def test_times_of_long_takes_keep_a_tenth_of_a_millisecond_and_speeds_six_digits(tmp_path):
+    time_s = 1200 + np.arange(4) / 120
+    rows = pd.DataFrame({"time_s": time_s, "hand_m_s": time_s, "lag_s": [100, 1 / 3, np.nan, -2]})
+    tables.write(tmp_path / "rows.csv", rows)
+    assert (tmp_path / "rows.csv").read_text().splitlines()[1:] == [
+        "1200,1200,100",
+        "1200.0083,1200.01,0.333333",
+        "1200.0167,1200.02,",
+        "1200.025,1200.03,-2",
+    ]
+
+
+@pytest.mark.parametrize("number", [0.0, 1 / 3, -2 / 3e5, 99.99994, 99.99996, 1e-300, np.inf])
+def test_times_below_100_s_are_written_as_other_numbers(tmp_path, number):
+    tables.write(tmp_path / "rows.csv", pd.DataFrame({"time_s": [500.25, number]}))
+    assert (tmp_path / "rows.csv").read_text().split()[2] == f"{number:.6g}"
 
 
 def test_a_label_replaces_a_column_of_its_name(tmp_path):

@@ -1,10 +1,15 @@
 """The wrists' distance: rows of sources, zooms of claps, candidates with their reasons."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
 
+from courtside.events import detect
 from courtside.figures.devices import wrist_distance
+from courtside.records import tables
+from fixtures.recordings import device_takes
 
 HELD_M = 0.08
 
@@ -154,3 +159,17 @@ def test_events_share_a_panel_to_half_a_second_from_the_first(aligned, panels):
     events = pd.DataFrame([event(source, "clap", time_s, 1) for source, time_s in times])
     rows = wrist_distance.table(wrists(TWO), events, aligned=aligned)
     assert rows["panel"].tolist() == panels
+
+
+def test_times_of_a_clock_that_counts_from_1970_are_read_as_they_were_written(tmp_path):
+    rng = np.random.default_rng(3)
+    truth = device_takes.truth(3)
+    motion = device_takes.device(rng, truth)
+    motion = replace(motion, time_s=motion.time_s + 1715151474.88)
+    tables.write(tmp_path / "wrists.csv", detect.wrists([motion]))
+    tables.write(tmp_path / "events.csv", detect.events(detect.detect([motion])))
+    found, events = wrist_distance.read(tmp_path / "wrists.csv", tmp_path / "events.csv")
+    np.testing.assert_allclose(found["time_s"], motion.time_s, rtol=0, atol=1e-4)
+    claps = events.loc[events["event"] == "clap", "own_time_s"]
+    true = [truth[2][f"clap_{number}"] + 1715151474.88 for number in (1, 2)]
+    np.testing.assert_allclose(claps, true, rtol=0, atol=0.05)

@@ -1,9 +1,10 @@
-"""Write and read the CSV tables of the study: whole files, labels first, floats to 6 digits."""
+"""Write and read the CSV tables of the study: whole files, labels first, 6 significant digits."""
 
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from courtside.study.errors import InputError, StrPath, reading
@@ -12,6 +13,9 @@ from courtside.study.execution.files import atomic
 REMAKE = "delete it and run the study again"
 # Columns of names, which are texts even where all of them are digits.
 LABELS = ("person", "opponent", "camera", "take", "session", "foot", "source")
+DIGITS = 6  # significant, of a number that is not whole
+TIME_DECIMALS = 4  # at least, of a time in seconds: epoch times have 10 digits before the point
+RATES = ("_m_s", "_deg_s")  # ends of columns of speeds, which are no times
 
 
 def column_fault(table: pd.DataFrame, columns: Iterable[str], numbers: Iterable[str]) -> str:
@@ -27,17 +31,20 @@ def write(
     path: StrPath,
     rows: pd.DataFrame,
     labels: Mapping[str, Any] | None = None,
-    float_format: str | None = "%.6g",
+    float_format: str | None = f"%.{DIGITS}g",
     about: str | None = None,
 ) -> None:
     """Write a table as CSV, whole or not at all.
 
     `labels` are columns put before the others, the same in every row: session, take, how it was
     measured. `float_format` is that of every number that is not whole, None for the shortest exact
-    form. `about` is a comment for the first line.
+    form; by default, times (columns `*_s`) have at least `TIME_DECIMALS` decimals. `about` is a
+    comment for the first line.
     """
     labels = labels or {}
     rows = rows.assign(**labels)
+    if float_format == f"%.{DIGITS}g":
+        rows = rows.assign(**_times(rows))
     columns = [*labels, *(name for name in rows.columns if name not in labels)]
     with (
         atomic(path) as temporary,
@@ -46,6 +53,20 @@ def write(
         if about:
             file.write(f"# {about}\n")
         rows[columns].to_csv(file, index=False, float_format=float_format, lineterminator="\n")
+
+
+def _times(rows: pd.DataFrame) -> dict[str, pd.Series]:
+    """Return the columns of times that have over 2 digits before the point, as texts."""
+    return {
+        name: rows[name].map(_time, na_action="ignore")
+        for name in rows.select_dtypes("floating")
+        if name.endswith("_s") and not name.endswith(RATES) and np.abs(rows[name]).max() >= 100
+    }
+
+
+def _time(time_s: float) -> str:
+    whole = f"{abs(time_s) // 1:.0f}"
+    return f"{time_s:.{max(DIGITS, len(whole) + TIME_DECIMALS)}g}"
 
 
 def read(
