@@ -92,6 +92,8 @@ def test_modes_are_what_most_pixels_share_and_not_the_mean():
     z = np.concatenate([RNG.normal(2.0, 0.005, 60), RNG.normal(3.0, 0.005, 200), [2.5, 2.6]])
     assert modes_of(z, 0.02, Sampling()) == pytest.approx([2.0, 3.0], abs=0.005)
     assert modes_of(z, 0.02, Sampling(min_share=0.3)) == pytest.approx([3.0], abs=0.005)
+    tied = np.repeat([2.0, 3.0], 8) + np.tile(np.linspace(0, 0.007, 8), 2)
+    assert modes_of(tied, 0.02, Sampling()) == pytest.approx([2.0035, 3.0035])
     assert modes_of(np.zeros(0), 0.02, Sampling()) == []
 
 

@@ -173,6 +173,7 @@ def modes_of(z: NDArray, width_m: float | NDArray, sampling: Sampling) -> list[f
     modes: list[float] = []
     while len(modes) < N_SURFACES and len(z) and count.max() >= least:
         best = count == count.max()
+        best &= np.abs(z - z[count.argmax()]) <= 2 * width_m  # of one surface, where two tie
         modes.append(float(np.median(z[best])))
         apart = np.abs(z - modes[-1]) > 2 * width_m
         z, count = z[apart], count[apart]
