@@ -8,6 +8,8 @@ from courtside.kinematics import filtering
 from courtside.records.keypoints import missing_reason
 from fixtures.people.waves import record, wave
 
+MORE_ERRORS = "covariance_camera", "covariance_network", "offset", "outlier"
+
 
 def test_short_gaps_are_filled_and_marked_long_ones_left():
     xyz = wave(1.0)
@@ -26,8 +28,13 @@ def test_frames_that_are_known_far_worse_than_the_rest_are_left_out():
     points.covariance_2d[0, :5] *= 100  # two cameras from nearly one side: ten times the deviation
     points.covariance_2d[0, 20, 0] *= 10000  # one joint alone is no reason
     points.xyz[0, 2, 1] = np.nan
+    points = replace(points, **{key: np.ones_like(getattr(points, key)) for key in MORE_ERRORS})
     found = filtering.leave_out_uncertain(points)
     assert np.isnan(found.xyz[0, :5]).all()
+    for key in ("covariance_2d", *MORE_ERRORS):
+        stated = getattr(found, key)[0]
+        assert np.isnan(stated[:2]).all()
+        np.testing.assert_array_equal(stated[5:], getattr(points, key)[0, 5:])
     assert np.isfinite(found.xyz[0, 5:]).all()
     assert (found.reason[0, :2] == missing_reason.UNCERTAIN).all()
     assert not found.n_views[0, :2].any() and not found.accepted[0, :2].any()

@@ -140,8 +140,7 @@ def _without_open(points: Keypoints3D) -> Keypoints3D:
     """Leave out joints whose views leave them open: the standard deviation exceeds `OPEN_M`."""
     variance = np.trace(points.covariance_2d, axis1=-2, axis2=-1)
     is_open = np.isfinite(points.xyz[..., 0]) & ~(np.abs(variance) <= OPEN_M**2)
-    covariance = np.where(is_open[..., None, None], np.nan, points.covariance_2d)
-    return replace(points.without(is_open), covariance_2d=covariance)
+    return points.without(is_open)
 
 
 def why_missing(score: NDArray, xyz: NDArray, min_score: float, min_views: int) -> NDArray:

@@ -95,11 +95,18 @@ class Keypoints3D:
         return replace(self, time_s=self.time_s[at], **cut)
 
     def without(self, lost: NDArray) -> "Keypoints3D":
-        """Return the record without some points, by a mask (P, T, J): they are too uncertain."""
+        """Return the record without some points, by a mask (P, T, J): they are too uncertain.
+
+        What was stated of their errors is unknown, too.
+        """
         nothing = lost[..., None]
+        errors = {key: getattr(self, key).copy() for key in unknown_errors(self.xyz)}
+        for one in errors.values():
+            one[lost] = np.nan
         return replace(
             self,
             xyz=np.where(nothing, np.nan, self.xyz),
+            **errors,
             n_views=np.where(lost, 0, self.n_views),
             reproj_error_px=np.where(nothing, np.nan, self.reproj_error_px),
             accepted=self.accepted & ~nothing,
