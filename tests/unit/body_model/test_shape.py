@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,16 @@ def seen(noise_m=0.0):
     points = moving_model.points(moving_model.moving(), noise_m)
     place = dict(zip(points.joints.tolist(), np.moveaxis(points.xyz[0], 1, 0), strict=True))
     return points, place, {joint: np.full(len(points.time_s), 0.01) for joint in place}
+
+
+def placed(body, points, gone=(), free=None):
+    """Return the shape with points by true poses, some joints unseen."""
+    true = moving_model.body()
+    origin, turned = pose.forward(segments.model(), moving_model.moving(), true.offsets)
+    weight = np.ones(points.xyz.shape[1:3])
+    weight[:, list(gone)] = 0
+    free = shape.is_free(body) if free is None else free
+    return shape.with_points(body, free, origin, turned, points.xyz[0], weight)
 
 
 def test_lengths_lie_between_what_is_seen_and_their_share_of_the_height():
@@ -46,10 +58,30 @@ def test_feet_and_other_points_are_placed_where_they_are_seen():
     bare = shape.of_lengths(model, moving_model.LENGTHS, moving_model.JOINTS)
     found = shape.with_feet(bare, place)
     np.testing.assert_allclose(found.places, true.places, atol=1e-6)
-    origin, turned = pose.forward(model, moving_model.moving(), true.offsets)
-    weight = np.ones(points.xyz.shape[1:3])
-    again = shape.with_points(bare, origin, turned, points.xyz[0], weight)
-    np.testing.assert_allclose(again.places, true.places, atol=1e-6)
+    np.testing.assert_allclose(placed(bare, points).places, true.places, atol=1e-6)
+
+
+@pytest.mark.parametrize("unseen", ["left", "right"])
+def test_a_point_that_is_seen_on_one_side_only_mirrors_to_the_other(unseen):
+    points, _, _ = seen()
+    gone = [at for at, name in enumerate(moving_model.JOINTS) if name == f"{unseen}_heel"]
+    bare = shape.of_lengths(segments.model(), moving_model.LENGTHS, moving_model.JOINTS)
+    found = placed(bare, points, gone)
+    np.testing.assert_allclose(found.places, moving_model.body().places, atol=1e-6)
+
+
+def test_toes_without_heels_follow_the_poses_of_every_round():
+    points, place, _ = seen()
+    heels = [at for at, name in enumerate(moving_model.JOINTS) if "heel" in name]
+    gone = {moving_model.JOINTS[at]: np.full_like(points.xyz[0, :, at], np.nan) for at in heels}
+    bare = shape.of_lengths(segments.model(), moving_model.LENGTHS, moving_model.JOINTS)
+    first = shape.with_feet(bare, place | gone)
+    free = shape.is_free(first)
+    shifted = replace(points, xyz=points.xyz + 0.05)
+    again = placed(placed(first, shifted, heels, free), points, heels, free)
+    others = [at for at in range(len(moving_model.JOINTS)) if at not in heels]
+    true = moving_model.body().places
+    np.testing.assert_allclose(again.places[others], true[others], atol=1e-6)
 
 
 @pytest.mark.filterwarnings("error")

@@ -134,17 +134,21 @@ def _offsets(model: Model, size: Mapping[str, float]) -> NDArray:
     return np.array([found.get(name, (0.0, 0.0, 0.0)) for name in model.names])
 
 
-def is_fixed(shape: Shape) -> NDArray:
-    """Return which points (J,) are origins of segments: limb joints."""
-    return np.array([joint.partition("_")[2] in segments.ORIGINS for joint in shape.joints])
+def is_free(shape: Shape) -> NDArray:
+    """Return which points (J,) are placed by `with_points`.
+
+    All but limb joints and what `with_feet` placed.
+    """
+    names = np.array([joint.partition("_")[2] for joint in shape.joints])
+    placed = np.isin(names, ["heel", *TOES]) & shape.places.any(axis=1)
+    return ~np.isin(names, list(segments.ORIGINS)) & ~placed
 
 
 def with_feet(shape: Shape, place: Mapping[str, NDArray]) -> Shape:
     """Return the shape with heel and toe in the foot's middle plane, its sole along X.
 
     From the medians of the sides of the triangle of ankle, heel and toe, both feet together. If
-    there are no heels, or heels or toes are never seen, points stay at the ankle, to which nothing
-    ties them.
+    there are no heels, or heels or toes are never seen, points stay at the ankle.
     """
     places = shape.places.copy()
     for toe in TOES:
@@ -168,18 +172,23 @@ def with_feet(shape: Shape, place: Mapping[str, NDArray]) -> Shape:
 
 
 def with_points(
-    shape: Shape, origin: NDArray, turned: NDArray, xyz: NDArray, weight: NDArray
+    shape: Shape,
+    free: NDArray,
+    origin: NDArray,
+    turned: NDArray,
+    xyz: NDArray,
+    weight: NDArray,
 ) -> Shape:
-    """Return the shape with all points but limb joints where poses of the model see them.
+    """Return the shape with its free points (J,) where poses of the model see them.
 
     `origin` (S, T, 3), `turned` (S, T, 3, 3) are poses, `xyz` (T, J, 3) m the measured points and
-    `weight` (T, J) theirs, 0 where missing. Left and right mirror each other.
+    `weight` (T, J) theirs, 0 where missing. Left and right mirror each other; a side that is never
+    seen mirrors the other one.
     """
-    places = shape.places.copy()
-    free = ~is_fixed(shape) & ~_is_sole(shape)
+    places, seen = shape.places.copy(), np.count_nonzero(weight, axis=0) > 0
     for at in np.flatnonzero(free).tolist():
         segment, w = shape.segment_of[at], weight[:, at]
-        if w.any():
+        if seen[at]:
             line = np.nan_to_num(xyz[:, at]) - origin[segment]
             own = np.einsum("tba,tb->ta", turned[segment], line)
             places[at] = w @ own / w.sum()
@@ -188,15 +197,9 @@ def with_points(
         side, _, part = joint.partition("_")
         other = {"left": "right", "right": "left"}.get(side)
         if other and f"{other}_{part}" in shape.joints:
-            across = places[shape.joints.index(f"{other}_{part}")] * [1, 1, -1]
-            mirrored[at] = (places[at] + across) / 2
+            there = shape.joints.index(f"{other}_{part}")
+            share = 0.5 if seen[at] == seen[there] else float(seen[at])
+            mirrored[at] = share * places[at] + (1 - share) * places[there] * [1, 1, -1]
         else:
             mirrored[at] = places[at] * [1, 1, 0]
     return replace(shape, places=np.where(free[:, None], mirrored, shape.places))
-
-
-def _is_sole(shape: Shape) -> NDArray:
-    """Return which points (J,) are those that `with_feet` placed."""
-    names = [joint.partition("_")[2] for joint in shape.joints]
-    sole = np.array([name in ("heel", *TOES) for name in names])
-    return sole & shape.places.any(axis=1)

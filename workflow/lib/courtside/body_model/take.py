@@ -82,6 +82,7 @@ def person(
     model = segments.model()
     body = shape.of_lengths(model, shape.lengths(place, spread, height_m), names)
     body = shape.with_feet(body, place)
+    free = shape.is_free(body)
     filled = {joint: _filled(place[joint]) for joint in skeleton.JOINTS}
     found = start.pose(model, filled)
     known = np.isfinite(xyz[:, body.index]).all(axis=2)
@@ -95,7 +96,7 @@ def person(
         stand = held.of_contacts(body.joints, own, floor_m, points.rate_hz)
     for number, steps in enumerate(ROUNDS, start=1):
         origin, turned = pose.forward(model, found, body.offsets)
-        body = shape.with_points(body, origin, turned, data.xyz, weight)
+        body = shape.with_points(body, free, origin, turned, data.xyz, weight)
         on = stand if number == len(ROUNDS) else None
         found = fit.fit(model, body, data, found, hz, points.rate_hz, steps, on)
         if number < len(ROUNDS):
