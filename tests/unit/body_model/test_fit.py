@@ -94,6 +94,19 @@ def test_clavicles_that_nothing_shows_rise_with_the_arms():
         np.testing.assert_allclose(lift, sign * (90 + 18) / 6, atol=0.5)
 
 
+def test_clavicles_of_raised_arms_keep_the_range_of_the_joint():
+    """Arms overhead let clavicles rise by about 27 degrees: at 0 they are still in their range."""
+    true, raise_ = moving_model.moving(3), np.zeros((3, len(MODEL.sigma)))
+    at = [moving_model.column(f"{side}_clavicle") for side in ("left", "right")]
+    for sign, side in ((1, "left"), (-1, "right")):
+        raise_[:, moving_model.column(f"{side}_humerus")] = sign * (0.8 + 1.3)
+    up, one = pose.moved(MODEL, true, raise_), data(moving_model.points(true))
+    none = replace(one, information=np.zeros_like(one.information))
+    spread = fit.spread(MODEL, moving_model.body(), none, up)
+    sigma = np.degrees(np.sqrt(np.diagonal(spread.total, axis1=1, axis2=2)[:, at]))
+    np.testing.assert_allclose(sigma, segments.LIMBS["clavicle"].coordinates[0].sigma_deg)
+
+
 def test_time_grows_linearly_with_frames():
     def seconds(n_frames):
         true = moving_model.moving(n_frames)

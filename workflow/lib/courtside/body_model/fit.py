@@ -199,10 +199,9 @@ def _linearised(
 def _prior(model: Model, pose: Pose) -> tuple[NDArray, NDArray]:
     """Return the normal matrix (T, D, D) and right side (T, D) of priors and ranges."""
     value, blocks = poses.coordinates(model, pose)
-    value = value - _girdle(model, pose)
     beyond = value - np.clip(value, model.low, model.high)
     weight = 1 / model.sigma**2 + (beyond != 0) / LIMIT_SIGMA**2
-    slope = -value / model.sigma**2 - beyond / LIMIT_SIGMA**2
+    slope = (_girdle(model, pose) - value) / model.sigma**2 - beyond / LIMIT_SIGMA**2
     normal = np.zeros((*value.shape, value.shape[1]))
     right = slope.copy()
     diagonal = np.arange(value.shape[1])
