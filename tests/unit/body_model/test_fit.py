@@ -52,9 +52,25 @@ def test_wrong_lengths_are_mended_by_what_all_frames_say():
     at = moving_model.NAMES.index("left_tibia")
     wrong = replace(body, offsets=body.offsets + 0.02 * body.by_length[0])  # of both thighs
     found = fit.fit(MODEL, wrong, one, true, HZ, moving_model.RATE_HZ)
-    mended = fit.lengthened(MODEL, wrong, one, found)
+    mended = fit.lengthened(MODEL, wrong, one, found, moving_model.RATE_HZ)
     assert abs(wrong.offsets[at, 1] - body.offsets[at, 1]) > 0.019
     assert abs(mended.offsets[at, 1] - body.offsets[at, 1]) < 0.004
+
+
+def test_a_second_says_the_same_of_lengths_at_any_rate():
+    true = moving_model.moving(30)
+    one, body = data(moving_model.points(true), 0.05), moving_model.body()
+    twice = fit.Data(*(np.repeat(part, 2, 0) for part in (one.xyz, one.information, one.noise)))
+    slow = pose.Pose(
+        np.repeat(true.root, 2, 0), np.repeat(true.local, 2, 1), np.repeat(true.angle, 2, 0)
+    )
+    wrong = replace(body, offsets=body.offsets + 0.02 * body.by_length[0])
+    found = [
+        fit.lengthened(MODEL, wrong, *how).offsets
+        for how in ((one, true, moving_model.RATE_HZ), (twice, slow, 2 * moving_model.RATE_HZ))
+    ]
+    np.testing.assert_allclose(found[1], found[0], atol=1e-9)
+    assert np.abs(found[0] - wrong.offsets).max() > 0.001
 
 
 def test_the_weight_of_second_differences_passes_half_the_power_at_the_cut_off():

@@ -18,9 +18,9 @@ from courtside.geometry.rotations import rodrigues_from_rotation
 LIMIT_SIGMA = np.radians(2.0)  # ASSUME: how far a joint gives way beyond its range
 FAR = 2.0  # ASSUME: standard deviations beyond which a point loses weight (Huber)
 LIFT = 1 / 6  # of the arm's elevation: the clavicle rises by 30 degrees of 180 (Inman 1944)
-# ASSUME: frames whose errors count as those of one, when lengths are fitted: 1 s at 30 a second.
-# On `players-dev` 5 to 200 serve alike.
-ALIKE = 30
+# ASSUME: the errors of frames within it count as those of one, when lengths are fitted.
+# On `players-dev` 0.2 to 7 s serve alike.
+ALIKE_S = 1.0
 LONGEST = 0.5  # rad or m, of a step
 CHUNK = 250  # frames whose derivatives are in memory at once
 SETTLED = 1e-3  # rad or m: a largest median step below it ends the fit
@@ -119,11 +119,12 @@ def fit(
     return pose
 
 
-def lengthened(model: Model, shape: Shape, data: Data, pose: Pose) -> Shape:
+def lengthened(model: Model, shape: Shape, data: Data, pose: Pose, rate_hz: float) -> Shape:
     """Return the shape with its most probable lengths, one step from poses that were fitted.
 
-    Each frame says, whatever its pose, what it does of the lengths; `ALIKE` frames count as one,
-    and the shape's own lengths with their standard deviations.
+    Each frame says, whatever its pose, what it does of the lengths; the frames of `ALIKE_S` count
+    as one. The shape's own lengths count with the standard deviations of `shape.lengths`, also when
+    they were fitted before: the more often, the less the first lengths count.
     """
     normal, right, _ = _linearised(model, shape, data, pose, with_lengths=True)
     prior, slope = _prior(model, pose)
@@ -132,8 +133,9 @@ def lengthened(model: Model, shape: Shape, data: Data, pose: Pose) -> Shape:
     solved = np.linalg.solve(own, cross)
     said = normal[:, n_free:, n_free:] - np.swapaxes(cross, 1, 2) @ solved
     wanted = right[:, n_free:] - np.einsum("tdk,td->tk", solved, right[:, :n_free] + slope)
-    known = said.sum(axis=0) / ALIKE + np.diag(1 / shape.length_sigma_m**2)
-    grown = np.linalg.solve(known, wanted.sum(axis=0) / ALIKE)
+    alike = max(round(ALIKE_S * rate_hz), 1)
+    known = said.sum(axis=0) / alike + np.diag(1 / shape.length_sigma_m**2)
+    grown = np.linalg.solve(known, wanted.sum(axis=0) / alike)
     return replace(shape, offsets=shape.offsets + np.tensordot(grown, shape.by_length, 1))
 
 

@@ -100,7 +100,7 @@ def person(
         on = stand if number == len(ROUNDS) else None
         found = fit.fit(model, body, data, found, hz, points.rate_hz, steps, on)
         if number < len(ROUNDS):
-            body = fit.lengthened(model, body, data, found)
+            body = fit.lengthened(model, body, data, found, points.rate_hz)
     return Fitted(frames, body, found, fit.spread(model, body, data, found))
 
 
