@@ -1,8 +1,9 @@
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
 
-from courtside.body_model import take
+from courtside.body_model import fit, take
 from courtside.records.devices import hierarchy
 from courtside.records.keypoints import missing_reason, skeleton
 from fixtures.people import moving_model
@@ -28,6 +29,21 @@ def test_joints_get_constant_bones_near_where_they_were():
     before, after = (np.linalg.norm(one.xyz - true, axis=-1) for one in (points, found))
     assert np.median(after) < 0.9 * np.median(before)
     assert np.linalg.eigvalsh(found.covariance[0]).min() > 0
+
+
+def test_joints_in_parts_of_a_take_are_the_same_and_need_less_memory(monkeypatch):
+    points, found, most = moving_model.points(moving_model.moving(50), noise_m=0.01), [], []
+    for frames in (1000, 8):
+        monkeypatch.setattr(fit, "CHUNK", frames)
+        fits = fitted(points)
+        tracemalloc.start()
+        record = take.joints(points, fits)
+        most.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+        found.append([record.xyz, record.covariance])
+    for whole, parts in zip(*found, strict=True):
+        np.testing.assert_array_equal(parts, whole)
+    assert most[1] < most[0] / 3
 
 
 def test_a_network_s_lasting_shift_is_stated_and_a_record_without_network_has_none():

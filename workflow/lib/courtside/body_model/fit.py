@@ -52,6 +52,10 @@ class Spread:
     total: NDArray
     noise: NDArray
 
+    def frames(self, at: slice) -> "Spread":
+        """Return some frames."""
+        return Spread(self.total[at], self.noise[at])
+
     def points(self, by: NDArray) -> tuple[NDArray, NDArray]:
         """Return both for points, (T, J, 3, 3) m2, by their derivatives (T, J, 3, D + K)."""
         total, noise = (
@@ -139,6 +143,11 @@ def lengthened(model: Model, shape: Shape, data: Data, pose: Pose, rate_hz: floa
     return replace(shape, offsets=shape.offsets + np.tensordot(grown, shape.by_length, 1))
 
 
+def chunks(n_frames: int) -> list[slice]:
+    """Return parts of at most `CHUNK` frames, in order."""
+    return [slice(at, min(at + CHUNK, n_frames)) for at in range(0, n_frames, CHUNK)]
+
+
 def spread(model: Model, shape: Shape, data: Data, pose: Pose) -> Spread:
     """Return the covariance of each frame's coordinates and of the lengths.
 
@@ -179,10 +188,8 @@ def _linearised(
     The noise (T, D, D) is the right side's covariance from the keypoints' own errors.
     """
     parts: list[list[NDArray]] = [[], [], []]
-    for first in range(0, len(pose.root), CHUNK):
-        at = slice(first, first + CHUNK)
-        part = Pose(pose.root[at], pose.local[:, at], pose.angle[at])
-        points, by = derivatives(model, shape, part, with_lengths)
+    for at in chunks(len(pose.root)):
+        points, by = derivatives(model, shape, pose.frames(at), with_lengths)
         residual = data.xyz[at] - points
         info = data.information[at]
         far = np.sqrt(np.einsum("tja,tjab,tjb->tj", residual, info, residual))

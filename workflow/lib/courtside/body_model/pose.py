@@ -17,6 +17,10 @@ class Pose:
     local: NDArray  # (S, T, 3, 3): each segment's rotation in its parent
     angle: NDArray  # (T, D) rad: coordinates of hinges; others unused
 
+    def frames(self, at: slice) -> "Pose":
+        """Return some frames."""
+        return Pose(self.root[at], self.local[:, at], self.angle[at])
+
 
 def about(axis: int, angle: NDArray) -> NDArray:
     """Return rotations (T, 3, 3) about a coordinate axis by angles (T,)."""

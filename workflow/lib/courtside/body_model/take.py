@@ -161,15 +161,16 @@ def joints(points: Keypoints3D, fits: Mapping[int, Fitted]) -> Keypoints3D:
         for one in (points.xyz, points.covariance_2d, points.covariance_network)
     )
     for at, one in fits.items():
-        placed, by = fit.derivatives(model, one.shape, one.pose, with_lengths=True)
-        total, own = one.spread.points(by)
-        rows = np.ix_(np.arange(one.frames.start, one.frames.stop), one.shape.index)
-        known = np.isfinite(points.xyz[at][rows]).all(axis=2)
-        kept[at][rows] = known
-        xyz[at][rows] = np.where(known[..., None], placed, np.nan)
-        noise[at][rows] = np.where(known[..., None, None], own, np.nan)
         shift = _shifts(points, at)[one.shape.index][:, None, None] * np.eye(3)
-        rest[at][rows] = np.where(known[..., None, None], total - own + shift, np.nan)
+        for part in fit.chunks(len(one.pose.root)):
+            placed, by = fit.derivatives(model, one.shape, one.pose.frames(part), with_lengths=True)
+            total, own = one.spread.frames(part).points(by)
+            rows = np.ix_(one.frames.start + np.arange(part.start, part.stop), one.shape.index)
+            known = np.isfinite(points.xyz[at][rows]).all(axis=2)
+            kept[at][rows] = known
+            xyz[at][rows] = np.where(known[..., None], placed, np.nan)
+            noise[at][rows] = np.where(known[..., None, None], own, np.nan)
+            rest[at][rows] = np.where(known[..., None, None], total - own + shift, np.nan)
     found = points.without(np.isfinite(points.xyz[..., 0]) & ~kept)
     return replace(found, xyz=xyz, covariance_2d=noise, covariance_network=rest)
 
