@@ -113,8 +113,9 @@ def fit(
             weights = stiffness(normal, cutoff_hz, rate_hz, model.sigma)
         below = np.zeros_like(normal[1:])
         if held is not None:
-            tied = feet.doubted(model, shape, held, pose)
-            more, pull, below = feet.linearised(model, shape, tied, pose)
+            origin, turned, points = feet.placed(model, shape, held, pose)
+            tied = feet.doubted(held, points)
+            more, pull, below = feet.linearised(model, shape, tied, origin, turned, points)
             normal, right = normal + more, right + pull
         step = _solve(model, pose, normal, right, weights, below)
         pose = poses.moved(model, pose, np.clip(step, -LONGEST, LONGEST))

@@ -56,15 +56,19 @@ def of_contacts(
     )
 
 
-def doubted(model: Model, shape: Shape, held: Held, pose: Pose) -> Held:
-    """Return weaker holds of points that move, in fitted poses, as only swinging feet do.
+def placed(model: Model, shape: Shape, held: Held, pose: Pose) -> tuple[NDArray, NDArray, NDArray]:
+    """Return the segments' origins and rotations (`pose.forward`), and the points (T, H, 3) m."""
+    origin, turned = poses.forward(model, pose, shape.offsets)
+    segment = shape.segment_of[held.points]
+    return origin, turned, poses.placed(origin, turned, segment, shape.places[held.points])
+
+
+def doubted(held: Held, points: NDArray) -> Held:
+    """Return weaker holds of points (T, H, 3) m that move as only swinging feet do.
 
     The probability that a point stands becomes, by Bayes' rule, that given its speed too, and never
     grows. A frame's height counts with the lesser of the steps to its neighbours.
     """
-    origin, turned = poses.forward(model, pose, shape.offsets)
-    segment = shape.segment_of[held.points]
-    points = poses.placed(origin, turned, segment, shape.places[held.points])
     square = (np.diff(points, axis=0) ** 2).sum(axis=2) * held.rate_hz**2
     chance = np.minimum(held.between * DRIFT_M**2 / held.rate_hz, SURE)
     odds = np.exp(-square / 2 * (1 / HELD_M_S**2 - 1 / SWING_M_S**2)) * (SWING_M_S / HELD_M_S) ** 3
@@ -76,16 +80,13 @@ def doubted(model: Model, shape: Shape, held: Held, pose: Pose) -> Held:
 
 
 def linearised(
-    model: Model, shape: Shape, held: Held, pose: Pose
+    model: Model, shape: Shape, held: Held, origin: NDArray, turned: NDArray, points: NDArray
 ) -> tuple[NDArray, NDArray, NDArray]:
     """Return normal matrix (T, D, D) and right side (T, D), and blocks (T - 1, D, D) below it.
 
-    A block is of the next frame's rows and the frame's own columns.
+    A block is of the next frame's rows and the frame's own columns. What `placed` returns is given.
     """
-    origin, turned = poses.forward(model, pose, shape.offsets)
-    segment = shape.segment_of[held.points]
-    points = poses.placed(origin, turned, segment, shape.places[held.points])
-    by = poses.derivatives(model, origin, turned, points, segment)
+    by = poses.derivatives(model, origin, turned, points, shape.segment_of[held.points])
     flat = by.reshape(len(by), -1, by.shape[3])
     before, after = flat[:-1], flat[1:]
     weight = np.repeat(held.between, 3, axis=1)
