@@ -89,8 +89,8 @@ def gather(footage: Sequence[Footage], points: Keypoints3D, skeleton: Skeleton) 
     step = max(1, len(points.time_s) * max(xy.shape[1], 1) // MOST_FRAMES)
     at = np.arange(0, len(points.time_s), step)
     nowhere = np.full((*xy[:, :, at].shape[:-1], 3), np.nan)
-    points = _of_joints(points, sides[0] + sides[1])
-    whole = Seen(cameras, points, xy, score, rows, height_px, at, nowhere)
+    limb_points = points.some_joints(sides[0] + sides[1])
+    whole = Seen(cameras, limb_points, xy, score, rows, height_px, at, nowhere)
     return without(whole, ())
 
 
@@ -123,13 +123,6 @@ def disagreement(seen: Seen, used: Sequence[int]) -> float:
     n_views = np.isfinite(square).sum(axis=0)
     left = np.nansum(square, axis=0)[n_views > 1] / (2 * n_views[n_views > 1] - 3)
     return float(np.sqrt(np.median(left))) if len(left) else float("nan")
-
-
-def _of_joints(points: Keypoints3D, chosen: list[int]) -> Keypoints3D:
-    """Return a record of some joints only, without its errors."""
-    per_joint = ("xyz", "n_views", "reproj_error_px", "accepted", "swapped", "reason")
-    cut = {key: getattr(points, key)[:, :, chosen] for key in per_joint}
-    return replace(points, joints=points.joints[chosen], **cut)
 
 
 def _placed(seen: Seen, rest: list[int], xy: NDArray, score: NDArray) -> NDArray:
