@@ -32,7 +32,7 @@ def report(clocks):
             1e3 * clock.offset_s,
             clock.drift_ppm,
             1e3 * clock.uncertainty_s,
-            sync.wrist_error_mm(clock.uncertainty_s, WRIST_M_S),
+            1e3 * clock.uncertainty_s * WRIST_M_S,
             WRIST_M_S,
             clock.note,
         )

@@ -81,10 +81,6 @@ def test_a_doubtful_clock_is_named_with_its_offsets():
     assert clocks.fault_line("take rally", sure) == ""
 
 
-def test_8_ms_move_a_smashing_wrist_by_the_speed_times_the_time():
-    assert clocks.wrist_error_mm(0.008, 12.0) == pytest.approx(96.0)
-
-
 def test_clocks_that_somebody_states_are_used():
     found = clocks.stated({"left": {"offset_s": 1.5, "uncertainty_s": 0.02}})
     assert found["left"].usable

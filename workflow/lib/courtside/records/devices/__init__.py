@@ -3,5 +3,5 @@
 device_motion: `read`, `write`; `of_person`, `of_truth`: other sources as a device's motion
 hierarchy: `forward`: forward kinematics of a posed tree of joints
 events: `read`, `write`: T-poses and claps of sources
-clocks: `read`, `write`; `one_clock`, `stated`, `fault_line`, `wrist_error_mm`
+clocks: `read`, `write`; `one_clock`, `stated`, `fault_line`
 """

@@ -90,11 +90,6 @@ def fault_line(where: StrPath, clocks: Mapping[str, Clock]) -> str:
     return ""
 
 
-def wrist_error_mm(uncertainty_s: float, speed_m_s: float) -> float:
-    """Return how far a wrist (or any point) moves within a clock's uncertainty, mm."""
-    return 1e3 * uncertainty_s * speed_m_s
-
-
 def write(path: StrPath, reference: str, clocks: Mapping[str, Clock]) -> None:
     """Write the clocks of a take; `reference` is the camera whose clock is the take's."""
     if reference not in clocks:
