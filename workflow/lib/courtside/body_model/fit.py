@@ -14,6 +14,7 @@ from courtside.body_model.pose import Pose
 from courtside.body_model.segments import BALL, Model
 from courtside.body_model.shape import Shape
 from courtside.geometry.rotations import rodrigues_from_rotation
+from courtside.records.keypoints.skeleton import without_side
 
 LIMIT_SIGMA = np.radians(2.0)  # ASSUME: how far a joint gives way beyond its range
 FAR = 2.0  # ASSUME: standard deviations beyond which a point loses weight (Huber)
@@ -70,7 +71,7 @@ def cutoffs(model: Model, cutoff_hz: Mapping[str, float]) -> NDArray:
     found[:3] = cutoff_hz["left_hip"]
     for at, name in enumerate(model.names):
         first = model.first[at]
-        part = name.removeprefix("left_").removeprefix("right_")
+        part = without_side(name)
         joint, factor = SHOWN[part]
         stop = first + len(model.joints[at].coordinates)
         found[first:stop] = factor * cutoff_hz[f"left_{joint}"]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from courtside.body_model import segments
 from courtside.body_model.segments import SIDES, Model
-from courtside.records.keypoints.skeleton import TOES
+from courtside.records.keypoints.skeleton import SEGMENTS, TOES
 
 BEST = 0.5  # share of the frames, those of least uncertainty, that a length is the median of
 LUMBAR = 0.2  # ASSUME: height of the joint of pelvis and thorax, share of the trunk's length
@@ -26,12 +26,6 @@ OF_HEIGHT = {
 OF_HEIGHT_SIGMA = 0.06  # ASSUME: standard deviation of such a length, as a share of it
 HEIGHT_M, HEIGHT_SIGMA = 1.72, 0.06  # ASSUME: of an adult whose height is not stated; as a share
 LEAST = 10  # frames that a median needs
-PAIRS = {
-    "thigh": ("hip", "knee"),
-    "shank": ("knee", "ankle"),
-    "upper_arm": ("shoulder", "elbow"),
-    "forearm": ("elbow", "wrist"),
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,8 +73,9 @@ def _distances(
     name: str, place: Mapping[str, NDArray], sigma: Mapping[str, NDArray]
 ) -> tuple[NDArray, NDArray]:
     """Return distances (N,) m, and how uncertain each is, of one length of the body."""
-    if name in PAIRS:
-        ends = [(f"{side}_{PAIRS[name][0]}", f"{side}_{PAIRS[name][1]}") for side in SIDES]
+    if name in SEGMENTS:
+        start, stop = SEGMENTS[name]
+        ends = [(f"{side}_{start}", f"{side}_{stop}") for side in SIDES]
         apart = [np.linalg.norm(place[a] - place[b], axis=1) for a, b in ends]
         return np.concatenate(apart), np.concatenate(
             [np.hypot(sigma[a], sigma[b]) for a, b in ends]

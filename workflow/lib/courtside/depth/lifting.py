@@ -129,7 +129,7 @@ def by_joint(names: Sequence[str], skin_m: Mapping[str, float] | None = None) ->
     `skin_m` gives it by the joint's name or its name without side; without it, `SKIN_TO_JOINT_M`
     does, and `OTHERS_M`. Raise `InputError` if a joint is not in a given `skin_m`.
     """
-    plain = [name.removeprefix("left_").removeprefix("right_") for name in names]
+    plain = [skeleton.without_side(name) for name in names]
     table = dict.fromkeys(ON_SKIN, 0.0) | dict(SKIN_TO_JOINT_M if skin_m is None else skin_m)
     missing = [n for n, p in zip(names, plain, strict=True) if n not in table and p not in table]
     if missing and skin_m is not None:

@@ -224,7 +224,7 @@ def _by_angle(found: Mapping[str, object]) -> dict[str, list[str]]:
     """Return the measured angles that make up each angle: both sides of a limb, and one."""
     both: dict[str, list[str]] = {}
     for name in found:
-        stem = name.removeprefix("left_").removeprefix("right_")
+        stem = limbs.without_side(name)
         both.setdefault(stem, []).append(name)
     return both | {name: [name] for name in found}
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from courtside.exports.trc import WORLD_AXES
 from courtside.kinematics import centre_of_mass
 from courtside.records.keypoints.skeletal_motion import SkeletalMotion
+from courtside.records.keypoints.skeleton import without_side
 from courtside.study.errors import StrPath
 from courtside.study.execution.files import atomic
 
@@ -181,8 +182,7 @@ def _shares(motion: SkeletalMotion, sex: str) -> NDArray:
     found = {segment: table[part] for segment, part in PARTS.items()}
     found |= {"pelvis": LOWER_TRUNK[sex], "clavicle": CLAVICLE}
     found["thorax"] = table["trunk"] - LOWER_TRUNK[sex] - 2 * CLAVICLE
-    parts = [name.removeprefix("left_").removeprefix("right_") for name in motion.segments.tolist()]
-    return np.array([found[part] for part in parts])
+    return np.array([found[without_side(name)] for name in motion.segments.tolist()])
 
 
 def _cylinder(

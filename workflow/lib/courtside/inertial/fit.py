@@ -88,7 +88,7 @@ class Fit:
 
     def _slow_prior(self) -> None:
         settings = self.settings
-        kinds = [self.segments.kind(name) for name in self.segments.names]
+        kinds = [skeleton.without_side(name) for name in self.segments.names]
         names = [kind for kind in kinds for _ in range(3)] + ["heading"] + ["shift"] * 3
         sizes = {kind: np.radians(size) for kind, size in settings.turn_deg.items()}
         sizes |= {"heading": np.radians(settings.heading_deg), "shift": settings.shift_m}
@@ -105,7 +105,7 @@ class Fit:
     def _fixed_prior(self, lag_s: float) -> None:
         settings, layout = self.settings, self.model.fixed
         deviation = np.zeros(self.model.n_fixed)
-        kinds = [self.segments.kind(name) for name in self.segments.names]
+        kinds = [skeleton.without_side(name) for name in self.segments.names]
         mounts = [settings.mount_deg[kind] for kind in kinds]
         deviation[layout["mount"]] = np.radians(np.repeat(mounts, 3))
         deviation[layout["stretch"]] = [

@@ -16,12 +16,6 @@ from courtside.study.errors import InputError
 
 Shares = dict[str, list[tuple[int, float]]]  # per segment: joints and their shares in it
 SIDES = ("left", "right")
-LIMBS = {  # segment: (joint it begins at, joint it ends at)
-    "upper_arm": ("shoulder", "elbow"),
-    "forearm": ("elbow", "wrist"),
-    "thigh": ("hip", "knee"),
-    "shank": ("knee", "ankle"),
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +84,7 @@ class Model:
         return turn, mount, heading
 
     def places(self, frames: Frames, slow: NDArray, fixed: NDArray) -> NDArray:
-        """Return where vision should see the joints, (N, D, 3) metres."""
+        """Return the joints as vision is expected to see them, (N, D, 3) metres."""
         world = self.orient(frames, slow, fixed)
         offsets = fixed[self.fixed["offset"]].reshape(-1, 3)
         factor = self.stretches(fixed)
@@ -208,10 +202,6 @@ class Segments:
         """(J,) bool: joints whose frame is corrected itself, not only carried along."""
         return np.any(self.share, axis=1)
 
-    def kind(self, segment: str) -> str:
-        """Return the name of a segment without its side."""
-        return segment.removeprefix("left_").removeprefix("right_")
-
 
 def path(hierarchy: Hierarchy, joint: int) -> list[int]:
     """Return the indices of joints from the root to `joint`, both included."""
@@ -274,7 +264,7 @@ def _trunk(paths: Mapping[str, list[int]]) -> Shares:
 def _limbs(paths: Mapping[str, list[int]], joints: list[str], where: str) -> Shares:
     parts = {}
     for side in SIDES:
-        for name, (start, stop) in LIMBS.items():
+        for name, (start, stop) in skeleton.SEGMENTS.items():
             start, stop = f"{side}_{start}", f"{side}_{stop}"
             if joints.index(start) not in paths[stop]:
                 raise InputError(
@@ -290,12 +280,13 @@ def _stretches(paths: Mapping[str, list[int]], joints: list[str]) -> Shares:
     spine = _spine(paths)
     found = {"body": [(joint, 1.0) for joint in range(len(joints))]}
     found["trunk"] = [(joint, 1.0) for joint in spine[1:]]
-    bones = {"girdle": len(spine), "pelvis": 1} | dict.fromkeys(LIMBS)
-    ends = {"girdle": "shoulder", "pelvis": "hip"} | {name: LIMBS[name][1] for name in LIMBS}
+    limbs = skeleton.SEGMENTS
+    bones = {"girdle": len(spine), "pelvis": 1} | dict.fromkeys(limbs)
+    ends = {"girdle": "shoulder", "pelvis": "hip"} | {name: limbs[name][1] for name in limbs}
     for name, end in ends.items():
         members = {}
         for side in SIDES:
-            first = bones[name] or len(paths[f"{side}_{LIMBS[name][0]}"])
+            first = bones[name] or len(paths[f"{side}_{limbs[name][0]}"])
             members[side] = paths[f"{side}_{end}"][first:]
         found[name] = [(joint, 1.0) for side in SIDES for joint in members[side]]
         found[f"{name} difference"] = [(j, 0.5) for j in members["left"]]

@@ -1,6 +1,7 @@
 """Bone lengths of tracked people, in 3D; they distinguish people of different size."""
 
 from collections.abc import Sequence
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,14 +10,14 @@ from courtside.geometry import camera as camera_models
 from courtside.geometry import triangulation
 from courtside.geometry.camera import Camera
 from courtside.reconstruction.association.identity import Followed
-
-PAIRS = (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "ankle"))
+from courtside.records.keypoints.skeleton import SEGMENTS
 
 
 def bones(names: Sequence[str]) -> list[tuple[int, int]]:
     """Return the bones of arms and legs as pairs of indices of `names` that are there."""
     at = {name: index for index, name in enumerate(names)}
-    wanted = [(f"{side}_{a}", f"{side}_{b}") for a, b in PAIRS for side in ("left", "right")]
+    pairs = product(SEGMENTS.values(), ("left", "right"))
+    wanted = [(f"{side}_{a}", f"{side}_{b}") for (a, b), side in pairs]
     return [(at[a], at[b]) for a, b in wanted if a in at and b in at]
 
 

@@ -65,6 +65,11 @@ def mirror(joints: Sequence[str]) -> list[int]:
     return [joints.index(_other_side(joint)) for joint in joints]
 
 
+def without_side(name: str) -> str:
+    """Return the name of a joint, segment or angle without its side."""
+    return name.removeprefix("left_").removeprefix("right_")
+
+
 def _other_side(joint: str) -> str:
     for side, other in SIDES.items():
         if joint.startswith(side):
@@ -111,6 +116,12 @@ def _check(path: StrPath, skeleton: Skeleton) -> None:
 
 CHAINS = ("shoulder", "elbow", "wrist"), ("hip", "knee", "ankle")
 LIMBS = tuple(limb for chain in CHAINS for limb in chain)
+SEGMENTS = {  # of limbs: the joint that each begins at, and the one that it ends at
+    "upper_arm": ("shoulder", "elbow"),
+    "forearm": ("elbow", "wrist"),
+    "thigh": ("hip", "knee"),
+    "shank": ("knee", "ankle"),
+}
 PARENT = {stop: start for chain in CHAINS for start, stop in pairwise(chain)}
 JOINTS = tuple(f"{side}_{limb}" for side in ("left", "right") for limb in LIMBS)
 TOES = ("foot_index", "big_toe")  # what networks call the toe; each has one of them
