@@ -24,6 +24,7 @@ def test_bone_scales_are_those_of_the_body():
     lengths = [np.linalg.norm(posed.translation[0], axis=1) for posed in (raw, body)]
     for at, joint in enumerate(raw.hierarchy.joints[1:], start=1):
         assert report.bone_scale[joint] == pytest.approx(lengths[1][at] / lengths[0][at], abs=1e-4)
+    assert report.bone_scale["left_knee"] == pytest.approx(1 / 0.95, abs=0.02)  # as it was made
 
 
 def test_place_in_visions_frame_agrees_with_vision():
