@@ -111,7 +111,7 @@ def test_too_few_frames_per_second_are_told(rate_hz, n_claps):
     if n_claps:
         assert len(found_at(motion)) == n_claps
     else:
-        assert f"{rate_hz:.0f} frames per second are too few: a clap needs 20" in why_none(motion)
+        assert f"{rate_hz:.0f} frames per second are too few: a clap needs 18.9" in why_none(motion)
 
 
 def test_a_clap_without_its_t_pose_is_listed_and_not_used():

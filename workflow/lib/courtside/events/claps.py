@@ -119,7 +119,7 @@ def _after(motion, spell, number, stop_s, bend_deg) -> Clap | NoClap | None:
         return None
     rate_hz = 1 / interpolation.frame_step_s(time_s)
     if rate_hz < LEAST_HZ:
-        why = f"{rate_hz:.3g} frames per second are too few: a clap needs 20"
+        why = f"{rate_hz:.3g} frames per second are too few: a clap needs {LEAST_HZ:.3g}"
         return NoClap(float(time_s[close[0]]), why)
     rest = apart[_within(time_s, time_s[close[0]], HELD_S)]
     floor = float(np.nanmedian(rest)) if np.isfinite(rest).any() else float(apart[close[0]])
