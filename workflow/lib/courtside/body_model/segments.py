@@ -40,9 +40,9 @@ class Joint:
 
 FREE, HALL_M = 400.0, 100.0  # degrees, metres: no prior
 # Ranges: the largest of Kapandji's and the AAOS' normal ranges of motion, rounded outwards for
-# athletes. ASSUME: standard deviations of priors: what people in sport use of these ranges where
-# joint centres do not show it; they decide axial rotation of straight limbs, the pelvis' tilt and
-# the share of the clavicle.
+# athletes; ASSUME: the clavicle's. ASSUME: standard deviations of priors: what people in sport use
+# of these ranges where joint centres do not show it; they decide axial rotation of straight limbs,
+# the pelvis' tilt and the share of the clavicle.
 LIMBS = {
     "clavicle": Joint("thorax", HINGES, (Coordinate(12, -45, 15), Coordinate(12, -35, 35)), (0, 1)),
     # From an arm held out to the side

@@ -68,8 +68,8 @@ def person(
 ) -> Fitted | None:
     """Fit one person's frames from the first to the last that is seen; None if none is.
 
-    `contacts`, of the same persons and frames, hold heels and toes where they stand: in the last
-    round alone, for held earlier they cost time and change nothing.
+    `contacts`, of the same persons and frames, hold heels and toes where they stand. Only the last
+    round uses them: earlier rounds would take longer and end in the same poses.
     """
     names, frames = points.joints.tolist(), _frames(points, at)
     if _unseen(points, at, frames):

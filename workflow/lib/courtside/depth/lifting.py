@@ -68,15 +68,15 @@ def lift_take(
     `view` has one person (P = 1), its times on the recording's clock, increasing. `depth_frames`
     are times and depth (h, w) uint16, in order of time; few are held at once. `bones` are pairs of
     joints whose distance is constant; `baseline_m`, between the imagers that depth comes from, is
-    for the noise. `skin_m` is the depth of each joint behind the skin, by default
-    `SKIN_TO_JOINT_M`; `beyond_m` how far the network places a joint beyond the end of its limb
-    (`skeleton.PARENT`), which is subtracted. Both go by the joint's name, or its name without side.
+    for the noise. `skin_m` is the depth of each joint behind the skin, by its name or its name
+    without side, by default `SKIN_TO_JOINT_M`; `beyond_m` how far the network places a joint beyond
+    the end of its limb, which is subtracted, by names without side, of `skeleton.PARENT`.
 
     The motion is in the colour camera's axes (x right, y down, z forward), metres. The reason is
     `NO_DEPTH` if there is no depth or another part of the body is in front, else that of the 2D
-    joint. Beside it, the standard deviation (T, J) m along the viewing ray by the noise of the
-    depth alone. A `ValueError` if the view has not one person or its times do not increase; an
-    `InputError` if a joint is not in a given `skin_m`.
+    joint. Beside it, the standard deviation (T, J) m of the depth along the camera's axis, by the
+    noise of one pixel alone. A `ValueError` if the view has not one person or its times do not
+    increase; an `InputError` if a joint is not in a given `skin_m`.
 
     Each joint has up to three candidate surfaces: the nearest one whose joint keeps the lengths of
     the bones (medians over the take) is used, from the trunk outwards. A joint without one is

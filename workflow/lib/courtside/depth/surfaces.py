@@ -68,7 +68,7 @@ class Sampler:
         self.pixel = rig.colour.K[0, 0] / rig.depth.K[0, 0]  # colour px to one depth px
 
     def sigma_z(self, z: NDArray | float) -> NDArray:
-        """Return the standard deviation of depth at a distance, metres."""
+        """Return the standard deviation of one pixel's depth at a depth along the axis, metres."""
         return self.noise_per_m2 * z**2
 
     def surfaces(self, xy: NDArray, depth: NDArray) -> tuple[NDArray, float]:
