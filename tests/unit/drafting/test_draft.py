@@ -313,6 +313,15 @@ def test_a_study_of_the_session_alone_is_written_once(tmp_path):
     assert path.read_text() == "mine"
 
 
+@pytest.mark.parametrize("name", ["20260302", "2026_03_02", "2026-03-02", "007", "1e3", "on"])
+def test_the_study_of_a_session_called_like_a_number_or_a_date_names_it(tmp_path, name):
+    path = tmp_path / "study.yaml"
+    session_draft.write_study(path, name, ["a"])
+    said = yaml.safe_load(path.read_text())
+    assert said["sessions"] == [name]
+    assert said["export_overlay_video"] == {"takes": [f"{name}/a"]}
+
+
 def test_a_half_size_video_is_drafted_as_a_scaled_copy():
     calibration = recording(
         "data/north/c.toml", "calibration", cameras={"left": (128, 96), "right": (48, 64)}

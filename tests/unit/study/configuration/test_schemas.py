@@ -1,5 +1,6 @@
 """Files against their schemas: every fault of a file, each in one line of plain words."""
 
+import datetime
 from pathlib import Path
 
 import pytest
@@ -103,3 +104,13 @@ def test_no_name_is_read_as_a_missing_value(name):
         assert line.endswith(f"and none of na, nan, none and null, found {name!r}")
     assert not configuration.NAME.fullmatch(name)
     assert configuration.NAME.fullmatch(f"{name}1")
+
+
+@pytest.mark.parametrize("found", [20260302, datetime.date(2026, 3, 2), 1.5, False])
+def test_text_that_yaml_reads_as_something_else_is_to_be_put_in_quotes(found):
+    session = {"court": "none", "cameras": {}, "description": found}
+    (line,) = schemas.faults(session, "session", Path("s.yaml"))
+    assert line == f"s.yaml: description: expected text, found {found!r}; put it in quotes"
+    session["description"] = ["a"]
+    (line,) = schemas.faults(session, "session", Path("s.yaml"))
+    assert line.endswith("found ['a']")

@@ -332,7 +332,7 @@ def write_study(path: Path, session: str, takes: Iterable[str]) -> str:
     filmed = ", ".join(f"{session}/{take}" for take in takes)  # those with videos
     lines = [
         f"# The study of {session} alone; keys not stated here are as in config.yaml.",
-        f"sessions: [{session}]",
+        f"sessions: [{_quoted(session)}]",
         "plans: []",
         "variations: []",
         f"calibrations: [{', '.join(WAYS)}] # without ways that are only compared with these",

@@ -4,6 +4,7 @@ import difflib
 import functools
 import sys
 from collections.abc import Iterator
+from datetime import date
 from pathlib import Path
 from typing import Any
 
@@ -130,7 +131,14 @@ def _lines(error: Any) -> Iterator[str]:  # of jsonschema, whose types leave all
             values = error.instance
             twice = next(value for at, value in enumerate(values) if value in values[:at])
             found = f"{shown(twice)} again"
+        if error.validator == "type" and _is_unquoted(error.instance, error.validator_value):
+            found += "; put it in quotes"
         yield f"{where}: expected {wanted}, found {found}"
+
+
+def _is_unquoted(value: object, kinds: str | list[str]) -> bool:
+    """Tell whether text was expected where YAML read a number, a date, or yes and no."""
+    return "string" in kinds and isinstance(value, int | float | date)
 
 
 def _key_lines(error: Any, where: str) -> Iterator[str]:
