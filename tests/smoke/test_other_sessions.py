@@ -220,6 +220,16 @@ def test_an_own_detector_is_checked_and_kept(gym):
         assert (gym / kept).exists() == (not message)
 
 
+def test_a_fault_is_told_of_the_configuration_that_was_given(gym):
+    (gym / "config" / "wrong.yaml").write_text("sessions: [unknown-hall]\n")
+    (gym / "config" / "more.yaml").write_text("plans: []\n")
+    said = snakemake(gym, "config/wrong.yaml", "-n").stderr.splitlines()
+    assert sum(line.startswith("Error: config/wrong.yaml: sessions: ") for line in said) == 1
+    said = snakemake(gym, "config/wrong.yaml", "config/more.yaml", "-n").stderr.splitlines()
+    both = "Error: config/wrong.yaml or config/more.yaml: sessions: "
+    assert sum(line.startswith(both) for line in said) == 1
+
+
 def test_another_court_is_a_file(gym):
     session = {
         "description": "a tennis court",

@@ -50,8 +50,12 @@ configfile: str(REPOSITORY / "config" / "config.yaml")
 
 NAME = "[a-z0-9][a-z0-9_-]*"
 
+# Where faults are told to be: the files of --configfile, which come before the default one.
+OWN_FILES = [files.seen_from(path) for path in workflow.configfiles]
+OWN_FILES = " or ".join(OWN_FILES[:-1] or OWN_FILES)
+
 try:
-    STUDY = configuration.load(config, workflow.configfiles[-1], folder=CONFIG, root=Path.cwd())
+    STUDY = configuration.load(config, OWN_FILES, folder=CONFIG, root=Path.cwd())
     PLANS = {
         name: plans.read(CONFIG / paths.PLAN_YAML.format(plan=name)) for name in config["plans"]
     }
