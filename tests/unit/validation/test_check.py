@@ -1,5 +1,6 @@
 """Mistakes with recordings that users make: each gives one line that names file, camera or take."""
 
+import re
 import shutil
 from importlib import import_module
 from pathlib import Path
@@ -7,10 +8,11 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+import yaml
 
 from courtside.geometry import camera as geometry
 from courtside.records.cameras import clicks
-from courtside.study.configuration import schemas
+from courtside.study.configuration import schemas, session_faults
 from fixtures.recordings import rooms_filmed
 from fixtures.recordings.real_data import REAL, needs_real
 
@@ -189,19 +191,29 @@ def test_every_fault_is_told_at_once(hall):
     assert len(faults) == 3
 
 
-def test_too_few_photos_are_told_with_keys_that_exist(hall):
+@pytest.mark.parametrize(("n_photos", "n_cameras"), [(11, 0), (11, 3), (1, 3)])
+def test_too_few_photos_are_told_with_keys_that_help(hall, n_photos, n_cameras):
     photos = hall.root / "photos"
     photos.mkdir()
-    for number in range(11):
+    for number in range(n_photos):
         cv2.imwrite(str(photos / f"{number}.jpg"), rooms_filmed.background(number))
-    hall.content |= {"cameras": {}, "takes": {}, "walks": {"door": {"images": str(photos)}}}
+    cameras = {}
+    for room, name in enumerate(list(hall.content["cameras"])[:n_cameras], 1):
+        cameras[name] = {"static": str(hall.root / f"{name}.png")}
+        cv2.imwrite(cameras[name]["static"], rooms_filmed.background(room))
+    hall.content |= {"cameras": cameras, "takes": hall.content["takes"] if cameras else {}}
+    hall.content["walks"] = {"door": {"images": str(photos)}}
     del hall.content["calibration"]
     said = hall.fault()
-    assert "walks: expected 40 pictures or more, found 11" in said
-    assert "`override: {sweep: {n_images: [11], n_offsets: 1}}`" in said
-    hall.content["override"] = {"sweep": {"n_images": [11], "n_offsets": 1}}
+    assert f"walks: expected 40 pictures or more, found {n_photos}" in said
+    (advice,) = re.findall("`(.+?)`", said)
+    hall.content |= yaml.safe_load(advice)
     assert schemas.faults(hall.content, "session", "hall.yaml") == []
-    assert hall.said() == ([], [])
+    found = session_faults.find(Path("config"), Path("hall.yaml"), hall.content, None, hall.root)
+    assert [*found, *session_faults.unmeasured(hall.session())] == []
+    assert hall.session().take_calibrations() == [f"sfm-n{max(2, n_photos)}"] * bool(cameras)
+    if n_photos > 1:
+        assert hall.said() == ([], [])
 
 
 @pytest.mark.parametrize("pair", [(), ("left", "back"), ("right", "back")])

@@ -48,8 +48,13 @@ class Variant:
 
 
 def fewer_images(n_images: int) -> str:
-    """Return the key of a session, as YAML, that asks for no more bridging images than so many."""
-    return f"override: {{sweep: {{n_images: [{max(2, n_images)}], n_offsets: 1}}}}"
+    """Return the key of a session, as YAML, that asks for no more bridging images than so many.
+
+    Sessions without fixed cameras map the sweep, others the images of their calibrations.
+    """
+    n_images = max(2, n_images)
+    sweep, ways = f"{{n_images: [{n_images}], n_offsets: 1}}", f"[sfm-n{n_images}]"
+    return f"override: {{sweep: {sweep}, calibrations: {ways}, take_calibrations: {ways}}}"
 
 
 def start(n_images: int, n_frames: int, offset: int, every: int = 1) -> int:

@@ -137,10 +137,9 @@ class _Session:
         wanted = session.variants() if not session.cameras else list(filter(None, ways))
         most = max((variant.n_images for variant in wanted), default=0)
         if most > n_there:
-            used = f" and `override: {{calibrations: [sfm-n{n_there}]}}`" * bool(session.cameras)
             yield (
                 f"walks: expected {most} pictures or more, found {n_there}; take more, or ask for "
-                f"fewer by `{fewer_images(n_there)}`{used}"
+                f"fewer by `{fewer_images(n_there)}`"
             )
 
     def _sizes(self) -> dict[str, dict[str, tuple[int, int]]]:
