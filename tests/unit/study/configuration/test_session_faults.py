@@ -426,6 +426,23 @@ def test_nothing_is_called_all(root, changes, key):
     assert f"{key}: expected another name, found 'all'" in line
 
 
+@pytest.mark.parametrize(
+    ("key", "given"),
+    [
+        ("court_points", "p.csv"),
+        ("board", without(BOARD, "lenses")),
+        ("wand", without(WAND, "lenses")),
+    ],
+)
+def test_the_take_of_somebody_who_withdrew_tells_no_size_of_pictures(root, key, given):
+    content = {"court": "badminton", "cameras": {"a": {"static": "a.mp4"}, "b": None}, key: given}
+    content |= {"takes": {"t": {"videos": AB}, "u": {"videos": AB, "subjects": ["p2"]}}}
+    assert find(root, content | {"subjects": {"p1": {"consent": []}, "p2": None}}) == []
+    (line,) = find(root, content | {"subjects": {"p1": {"consent": []}, "p2": {"consent": []}}})
+    assert "cameras.b: expected `static` or a video in a take" in line
+    assert "found neither in takes of persons who have agreed to analysis; add one" in line
+
+
 def test_clicks_of_pictures_whose_size_nothing_tells_are_named_beside_a_file_too(root):
     clicked = {"court_points": "placed.csv"}
     assert unfilmed(root, **clicked) == []

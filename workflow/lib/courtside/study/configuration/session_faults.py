@@ -49,8 +49,7 @@ def find(
     for name, given in content.get("takes", {}).items():
         take: Content = given or {}
         yield from take_faults.find(f"{file}: takes.{name}", take, cameras, subjects, virtual)
-        # Recordings of somebody who has withdrawn may be gone.
-        if not consent.withdrawn(subjects, virtual) & set(take.get("subjects", [*subjects])):
+        if not _refused(content, take):  # else its recordings may be gone
             paths |= dict(_take_paths(f"takes.{name}", take))
     yield from take_faults.of_other_programs(folder, file, content)
     for where, path in paths.items():
@@ -154,6 +153,13 @@ def _take_paths(where: str, take: Content) -> Iterator[tuple[str, str]]:
                 yield f"{where}.{key}.{skeleton}.{at}", path
     for name, device in take.get("devices", {}).items():
         yield f"{where}.devices.{name}.file", device["file"]
+
+
+def _refused(content: Content, take: Content) -> bool:
+    """Tell whether somebody has withdrawn who is in a take: nothing is made of it."""
+    subjects = content.get("subjects", {})
+    gone = consent.withdrawn(subjects, "virtual" in content)
+    return bool(gone & set(take.get("subjects", [*subjects])))
 
 
 def _target_paths(content: Content) -> Iterator[tuple[str, str]]:
@@ -325,12 +331,15 @@ def _point_faults(file: Path, content: Content, root: Path) -> Iterator[str]:
 def _unsized(file: Path, content: Content) -> Iterator[str]:
     """Yield the cameras of which nothing tells the size of the picture that points are in."""
     takes = [take for take in content.get("takes", {}).values() if take]
-    filmed = {name for take in takes for name in take.get("videos", {})}
+    measured = [take for take in takes if not _refused(content, take)]
+    filmed = {name for take in measured for name in take.get("videos", {})}
     for name, camera in content["cameras"].items():
         if not (camera or {}).get("static") and name not in filmed:
             yield (
                 f"{file}: cameras.{name}: expected `static` or a video in a take, which tell the "
-                "size of its picture, found neither; add one or remove the camera"
+                "size of its picture, found neither"
+                + " in takes of persons who have agreed to analysis" * (takes != measured)
+                + "; add one or remove the camera"
             )
 
 
