@@ -131,6 +131,26 @@ def test_a_drawing_is_as_close_as_its_numbers(trees, number, drawing):
 
 
 @pytest.mark.parametrize(
+    ("name", "text", "close", "far"),
+    [
+        ("net.p1.mot", "time\tarm_flex_r\n0.0\t{}\n", (60.0, 60.1), (60.0, 61.0)),
+        ("net.p1.osim", "<Body><mass>{}</mass></Body>", (7.5, 7.501), (7.5, 7.51)),
+        ("net.p1.bvh", "MOTION\nFrames: 1\n{} 0\n", (1.0, 1.001), (1.0, 1.1)),
+    ],
+)
+def test_models_and_motions_for_opensim_are_compared_number_by_number(
+    trees, name, text, close, far
+):
+    name = f"gym/takes/t/pose3d_ik/file/all/{name}"
+    (trees[0] / name).parent.mkdir(parents=True)
+    (trees[1] / name).parent.mkdir(parents=True)
+    for numbers, outcome in ((close, comparison.CLOSE), (far, comparison.DIFFERENT)):
+        for tree, number in zip(trees, numbers, strict=True):
+            (tree / name).write_text(text.format(number))
+        assert outcomes(trees) == {name: outcome}
+
+
+@pytest.mark.parametrize(
     ("name", "outcome"),
     [
         ("gym/video.mp4", comparison.OTHER_BYTES),

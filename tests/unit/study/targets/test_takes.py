@@ -1,6 +1,8 @@
 """What the study makes of each take: written out for the tiny study."""
 
+import fnmatch
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -8,6 +10,7 @@ from courtside.study.configuration.sessions import Device
 from courtside.study.jobs.devices import sources
 from courtside.study.jobs.job import Job
 from courtside.study.jobs.pages import layers
+from courtside.study.provenance import comparison, provenance
 from courtside.study.targets import devices, pages, takes, together
 
 REAL = "results/walk-4cams-tiny/takes/balancing"
@@ -52,6 +55,15 @@ def test_skeletons_of_every_stage_are_exported(study):
     motion = [f"{joints}.{end}" for end in ("trc", "c3d", "csv", "mot", "osim")]
     motion += [f"{REAL}/motion/file/all-robust/blazepose-full.p1.{end}" for end in ("bvh", "glb")]
     assert takes.every_export(study) == [*exported, *motion]
+
+
+def test_every_exported_file_has_a_record_and_can_be_compared(study):
+    made = takes.every_export(study) + devices.every_device_export(study)
+    made += pages.every_overlay_video(study)
+    assert {Path(path).suffix for path in made} <= provenance.FINAL
+    for path in made:
+        unread = any(fnmatch.fnmatch(path, pattern) for pattern in comparison.UNREAD)
+        assert unread or Path(path).suffix in {*comparison.READERS, *comparison.TABLED}, path
 
 
 def test_joints_are_corrected_only_of_networks_with_offsets(studies):

@@ -4,6 +4,7 @@ import csv
 import fnmatch
 import json
 import math
+import re
 import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -28,6 +29,7 @@ TOLERANCES = (
     ("*/pose2d*/*", 0.0, 0.05, "px and scores; sums of a network depend on the processor"),
     ("*/sfm/*", 1e-3, 1e-3, "sums of many threads; feature detection depends on the processor"),
     ("*/calibration/*", 1e-3, 1e-3, "1 mm of a camera, 0.1 % of a focal length"),
+    ("*/pose3d*/*.mot", 0.0, 0.5, "0.5 degrees, of which 0.01 rad are 2 mm at the end of a limb"),
     ("*/pose3d*/*", 0.0, 2e-3, "2 mm, of 0.05 px and of the cameras"),
     ("*/evaluation/*", 2e-2, 2e-2, "errors are differences: 0.2 mm, or 2 %"),
     ("*/figures/*", 2e-2, 2e-2, "the numbers drawn, as in evaluations"),
@@ -155,7 +157,9 @@ def _from_table(path: Path) -> dict[Any, Any]:
 
 
 def _from_words(path: Path) -> dict[Any, Any]:
-    return {at: _value(word) for at, word in enumerate(path.read_text(encoding="utf-8").split())}
+    """Return {place: number or text} of words and, of XML, of tags and what stands between them."""
+    words = re.findall(r"[^\s<>]+", path.read_text(encoding="utf-8"))
+    return {at: _value(word) for at, word in enumerate(words)}
 
 
 def _value(word: str) -> float | str:
@@ -185,6 +189,8 @@ READERS = {
     ".csv": _from_table,
     ".trc": _from_table,
     ".bvh": _from_words,
+    ".mot": _from_words,
+    ".osim": _from_words,
     ".txt": _from_words,
     ".json": lambda path: _from_tree(json.loads(path.read_text(encoding="utf-8"))),
     ".toml": lambda path: _from_tree(tomllib.loads(path.read_text(encoding="utf-8"))),

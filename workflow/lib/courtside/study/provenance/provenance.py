@@ -18,7 +18,8 @@ from courtside.study.execution import checksums, files
 
 FORMAT = 1
 # Of files that people or other programs read.
-FINAL = {".pdf", ".png", ".csv", ".html", ".trc", ".c3d", ".bvh", ".glb", ".txt"}
+FINAL = {".pdf", ".png", ".csv", ".html", ".trc", ".c3d", ".bvh", ".glb", ".txt", ".mp4"}
+FINAL |= {".mot", ".osim"}
 Job = Mapping[str, Any]
 
 
