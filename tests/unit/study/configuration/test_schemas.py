@@ -1,6 +1,7 @@
 """Files against their schemas: every fault of a file, each in one line of plain words."""
 
 import datetime
+import re
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,7 @@ FILES = {
     "plan": sorted((CONFIG / "plans").glob("*.yaml")),
     "external": [CONFIG / "external.yaml"],
 }
+KINDS = ("smk", "py")
 
 
 @pytest.mark.parametrize(
@@ -114,3 +116,18 @@ def test_text_that_yaml_reads_as_something_else_is_to_be_put_in_quotes(found):
     session["description"] = ["a"]
     (line,) = schemas.faults(session, "session", Path("s.yaml"))
     assert line.endswith("found ['a']")
+
+
+def test_a_session_overrides_the_steps_that_are_asked_of_it_alone():
+    folders = [schemas.SCHEMAS.parent / "rules", schemas.SCHEMAS.parent / "lib" / "courtside"]
+    files = [path for folder in folders for path in folder.rglob("*") if path.suffix[1:] in KINDS]
+    text = "\n".join(path.read_text(encoding="utf-8") for path in files)
+    asked = re.findall(r'\b(?:step|some)\("(\w+)"|session\.parameters\["(\w+)"\]', text)
+    asked += re.findall(r'self\.(parameters)\["(\w+)"\]', text)
+    steps = yaml.safe_load((CONFIG / "config.yaml").read_text(encoding="utf-8"))
+    blocks = {name for name, step in steps.items() if isinstance(step, dict)}
+    assert blocks & {name for names in asked for name in names} == blocks - set(schemas.OF_STUDY)
+    for name in blocks:
+        session = {"court": "none", "cameras": {}, "override": {name: {}}, "description": "a hall"}
+        said = schemas.faults(session, "session", Path("s.yaml"))
+        assert bool(said) == (name in schemas.OF_STUDY), said

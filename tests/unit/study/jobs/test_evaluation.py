@@ -23,11 +23,12 @@ def test_truth_is_that_of_virtual_takes(job):
     assert evaluation.true_take(job(session="walk-4cams-tiny", take="balancing")) == []
 
 
-def test_recorded_takes_are_compared_with_the_imported_keypoints_that_are_named(job, studies):
+def test_recorded_takes_are_compared_with_the_imported_keypoints_that_are_named(job, study):
     assert evaluation.reference(job(**SHOT)) == []
     take = {"session": "walk-4cams-tiny", "take": "balancing"}
-    step = {"takes": {"walk-4cams-tiny/balancing": "body25b"}, "networks": ["blazepose-full"]}
-    found = evaluation.reference(job(replace_step(studies(), step), **take))
+    step = {"evaluate_networks": {"takes": {"walk-4cams-tiny/balancing": "body25b"}}}
+    named = replace(study, parameters=study.parameters | step)
+    found = evaluation.reference(job(named, **take))
     folder = "results/walk-4cams-tiny/takes/balancing/pose2d/body25b"
     assert found == [f"{folder}/cam0{at}.npz" for at in (1, 2, 3, 4)]
 
@@ -50,15 +51,6 @@ def test_all_calibrations_are_put_side_by_side(study):
     files = evaluation.ways_files(study)
     assert {real["cameras"], plain["quality"], plain["truth"], *real["skeletons"]} < set(files)
     assert len(files) == len(set(files))
-
-
-def replace_step(study, step):
-    """Return the study with another step in the parameters of every session."""
-    changed = {
-        name: replace(one, parameters={**one.parameters, "evaluate_networks": step})
-        for name, one in study.sessions.items()
-    }
-    return replace(study, sessions=changed)
 
 
 def test_skeletons_of_every_stage_and_fusion_are_compared_and_labelled(job):

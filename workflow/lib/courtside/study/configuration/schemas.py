@@ -33,6 +33,12 @@ WORDS = {  # of types, as people call them
     "boolean": "true or false",
     "null": "nothing",
 }
+# Steps that name their sessions or takes themselves: no session changes them for itself.
+OF_STUDY = (
+    *("export_overlay_video", "evaluate_racket", "evaluate_round_trip", "evaluate_networks"),
+    *("draw_badminton_fig05", "draw_stroke", "draw_three_cameras", "draw_thesis_fig3"),
+    *("compare_networks", "compare_sessions", "conditions"),
+)
 REPLACED = {  # keys of former versions: what to use now
     "measure_kinematics": "remove it: kinematics are measured on the exported skeletons, whose "
     "filter and cut-offs are those of filter_motion"
@@ -96,11 +102,11 @@ def _validator(schema: str) -> Any:
 
 
 def _overridable(steps: Content) -> Content:
-    """Return the schema of `override`: step blocks without required keys, and some of the lists."""
+    """Return the schema of `override`: blocks of steps without required keys, and some lists."""
     blocks = {
         key: {name: value for name, value in block.items() if name != "required"}
         for key, block in steps["properties"].items()
-        if block.get("type") == "object" and key != "conditions"
+        if block.get("type") == "object" and key not in OF_STUDY
     }
     lists = ("models", "calibrations", "take_calibrations", "fusions", "compared_fusions")
     more = ("export_stages", "take_figures")

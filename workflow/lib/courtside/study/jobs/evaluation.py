@@ -35,7 +35,7 @@ def true_take(job: Job) -> str | list:
 
 def reference(job: Job) -> list[str]:
     """Return the imported keypoints that a recorded take is compared with; nothing of a virtual."""
-    takes = job.step("evaluate_networks")["takes"]
+    takes = job.study.parameters["evaluate_networks"]["takes"]
     model = takes.get(job.fill("{session}/{take}"))
     return job.of_each(paths.POSE2D, camera=job.take.cameras, model=[model]) if model else []
 
