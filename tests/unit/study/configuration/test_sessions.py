@@ -201,7 +201,9 @@ def test_choices_of_images_that_are_the_same_are_made_once(tmp_path):
     sweep = {"n_images": [11, 5], "n_offsets": 3, "offsets_up_to": 40, "mappers": ["global"]}
     parameters = {"sweep": sweep, "map_images": {"rule": "even"}}
     for number in range(11):
-        (tmp_path / f"{number}.jpg").touch()
+        (tmp_path / f"{number}{'.JPG' if number else '.png'}").touch()
+    for other in ("notes.txt", "cover.psd", ".hidden.jpg"):
+        (tmp_path / other).touch()
     photos = session(parameters=parameters, walks={"door": str(tmp_path)})
     assert photos.n_walk_frames() == 11
     found = [variant.name for variant in photos.variants()]

@@ -12,6 +12,7 @@ from courtside.devices import frame_numbers, openpose
 from courtside.drafting.guess import Recording
 from courtside.records.cameras import clicks
 from courtside.study.errors import InputError, StrPath
+from courtside.study.execution.files import PHOTOS
 from courtside.video import reader as video
 from courtside.video import walk_frames
 
@@ -135,7 +136,7 @@ def _calibration(path: Path) -> dict[str, Any] | None:
 
 READERS: dict[str, Callable[[Path], dict[str, Any] | None]] = {  # by the ending of a file
     **dict.fromkeys(VIDEOS, _video),
-    **dict.fromkeys((*walk_frames.PHOTOS, *walk_frames.UNREADABLE), _photos),
+    **dict.fromkeys((*PHOTOS, *walk_frames.UNREADABLE), _photos),
     **dict.fromkeys(CALIBRATIONS, _calibration),
     ".csv": _table,
     ".bvh": lambda path: {"kind": "bvh"},

@@ -14,7 +14,8 @@ from av.error import FFmpegError
 from numpy.typing import NDArray
 
 from courtside.study.errors import InputError, StrPath
-from courtside.video import images, walk_frames
+from courtside.study.execution.files import PHOTOS
+from courtside.video import images
 from courtside.video.decoder import display_matrix, upright
 from courtside.video.packets import MEND, list_packets, opened
 
@@ -46,7 +47,7 @@ def glance(path: StrPath, *, stop_s: float | None = None) -> Glance:
     if the file is missing, neither, without a picture that decodes, or cut short.
     """
     path = Path(path)
-    if path.suffix.lower() in walk_frames.PHOTOS:
+    if path.suffix.lower() in PHOTOS:
         picture = images.read(path, cv2.IMREAD_GRAYSCALE)
         return Glance((picture.shape[1], picture.shape[0]), _small(picture))
     with opened(path) as (container, stream):

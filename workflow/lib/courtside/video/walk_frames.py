@@ -9,12 +9,12 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from courtside.study.errors import InputError, StrPath
+from courtside.study.execution.files import PHOTOS
 from courtside.video import images, reader
 from courtside.video.decoder import pictures
 from courtside.video.packets import list_packets
 from courtside.video.static_picture import check_light
 
-PHOTOS = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".bmp", ".webp")
 UNREADABLE = (".heic", ".heif", ".avif", ".dng", ".raw", ".cr2", ".cr3", ".nef", ".arw", ".orf")
 PHOTO = "a photo"  # for messages
 SMALL_PX = 320  # width of the pictures that `courtside.sfm.usable.judge` compares

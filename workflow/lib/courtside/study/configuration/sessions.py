@@ -7,6 +7,7 @@ from typing import Any
 
 from courtside.study import paths
 from courtside.study.configuration import consent
+from courtside.study.execution import files
 from courtside.study.execution.artefacts import Artefact
 from courtside.study.methods import ALONE, HALFBODY, Calibration, Fusion, Variant, distinct_offsets
 
@@ -223,8 +224,9 @@ class Session:
             return self.virtual["walk_frames"]
         if not self.walks or not all(Path(path).is_dir() for path in self.walks.values()):
             return None
-        files = [file for path in self.walks.values() for file in Path(path).iterdir()]
-        return sum(file.is_file() and not file.name.startswith(".") for file in files)
+        there = [file for path in self.walks.values() for file in Path(path).iterdir()]
+        shown = [file for file in there if not file.name.startswith(".")]
+        return sum(file.suffix.lower() in files.PHOTOS for file in shown)
 
     def filmed(self) -> list[str]:
         """Return the names of all cameras and walks."""

@@ -15,6 +15,7 @@ from typing import Any
 from courtside.study.errors import InputError, StrPath, reading
 
 CHUNK_BYTES = 1 << 20
+PHOTOS = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".bmp", ".webp")  # that are read
 # Names that `atomic` and `atomic_folder` give.
 UNFINISHED = re.compile(r"\..+\.[0-9a-f]{8}(\.\w+)?")
 WINDOWS = os.name == "nt"
