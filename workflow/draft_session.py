@@ -12,6 +12,7 @@ import sys
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[1]
+COURTS = REPOSITORY / "config" / "courts"
 sys.path.insert(0, str(REPOSITORY / "workflow" / "lib"))
 
 from courtside.drafting import draft, guess, survey
@@ -21,6 +22,7 @@ from courtside.study.errors import InputError
 
 def main(folder, name, court, sessions):
     """Draft one session and return the lines to print."""
+    check_court(court)
     recordings = survey.survey(folder, root=Path.cwd())
     found = guess.guess(recordings)
     name = name or file_names.name(folder.resolve().name, "session1")
@@ -33,6 +35,16 @@ def main(folder, name, court, sessions):
     said = [f"Wrote {shown(path)}.", draft.write_study(study, name, filmed)]
     points = draft.court_points(found, written)
     return [*said, *draft.to_check(found, shown(path), points, study)]
+
+
+def check_court(court):
+    """Refuse a court of which there is no file."""
+    known = ["none", *sorted(path.stem for path in COURTS.glob("*.yaml"))]
+    if court not in known:
+        raise InputError(
+            f"--court: expected one of {', '.join(known)}, found {court}; correct it, or add "
+            f"{shown(COURTS / f'{court}.yaml')}"
+        )
 
 
 def shown(path):
@@ -49,5 +61,5 @@ if __name__ == "__main__":
     given = parser.parse_args()
     try:
         print("\n".join(main(given.folder, given.name, given.court, given.sessions)))
-    except InputError as error:
+    except (InputError, OSError) as error:
         sys.exit(f"Error: {error}")

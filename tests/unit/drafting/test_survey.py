@@ -140,6 +140,23 @@ def run(root, *arguments):
     return subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
 
 
+@pytest.mark.parametrize("court", ["Badminton", "curling", "../courts/badminton"])
+def test_an_unknown_court_is_refused_with_those_that_there_are(gym, court):
+    (gym / "sessions").mkdir(exist_ok=True)
+    done = run(gym, "data/My Gym", "--court", court, "--name", "with-court")
+    known = "none, badminton, basketball, futsal, rectangle-10x5, sports-hall, tennis, volleyball"
+    assert done.stderr.startswith(f"Error: --court: expected one of {known}, found {court}; ")
+    assert done.returncode == 1 and done.stderr.count("\n") == 1
+    assert not list((gym / "sessions").glob("with-court*"))
+
+
+def test_a_folder_of_sessions_that_is_not_there_is_told_in_one_line(gym):
+    done = run(gym / "data", str(gym / "data" / "My Gym"))
+    assert done.returncode == 1
+    assert done.stderr.startswith("Error: ") and done.stderr.count("\n") == 1
+    assert str(gym / "data" / "sessions") in done.stderr
+
+
 def test_the_program_drafts_once(gym):
     (gym / "sessions").mkdir(exist_ok=True)
     done = run(gym, "data/My Gym")
