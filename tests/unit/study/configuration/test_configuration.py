@@ -451,7 +451,7 @@ def test_a_fault_of_a_virtual_session_names_key_and_value(folder, changes, parts
 @pytest.mark.parametrize(
     ("override", "parts"),
     [
-        ({"take_calibrations": ["file-peolpe"]}, ["take_calibrations", "['file']", "peolpe"]),
+        ({"take_calibrations": ["sfm-n41"]}, ["take_calibrations", "['file']", "sfm-n41"]),
         ({"take_calibrations": ["file-people"]}, ["take_calibrations", "in both lists"]),
         ({"fusions": ["three-robust"]}, ["fusions", "three-robust", "`views`"]),
     ],

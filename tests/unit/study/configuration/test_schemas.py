@@ -131,3 +131,27 @@ def test_a_session_overrides_the_steps_that_are_asked_of_it_alone():
         session = {"court": "none", "cameras": {}, "override": {name: {}}, "description": "a hall"}
         said = schemas.faults(session, "session", Path("s.yaml"))
         assert bool(said) == (name in schemas.OF_STUDY), said
+
+
+@pytest.mark.parametrize(
+    ("step", "takes", "where", "found"),
+    [
+        ("evaluate_round_trip", {"shot": None}, "takes", "shot"),
+        ("draw_stroke", {"players/shot/1": 2.5}, "takes", "players/shot/1"),
+        ("draw_three_cameras", ["players/a shot"], "takes.0", "players/a shot"),
+    ],
+)
+def test_takes_of_the_study_are_named_with_their_session(step, takes, where, found):
+    config = yaml.safe_load((CONFIG / "config.yaml").read_text(encoding="utf-8"))
+    assert schemas.faults(config, "config", "c.yaml") == []
+    config[step]["takes"] = takes
+    (line,) = schemas.faults(config, "config", "c.yaml")
+    assert line == f"c.yaml: {step}.{where}: expected session/take, found {found!r}"
+
+
+def test_a_calibration_that_takes_are_measured_with_has_the_name_of_one():
+    session = {"court": "none", "cameras": {}, "description": "a hall"}
+    session["override"] = {"take_calibrations": ["file", "sfm-40"]}
+    (line,) = schemas.faults(session, "session", Path("s.yaml"))
+    assert line.startswith("s.yaml: override.take_calibrations.1: expected file, known, board")
+    assert line.endswith("found 'sfm-40'")
