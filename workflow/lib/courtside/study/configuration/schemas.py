@@ -1,5 +1,6 @@
 """Check YAML files against JSON schemas, with one line for each fault."""
 
+import copy
 import difflib
 import functools
 import sys
@@ -39,6 +40,9 @@ OF_STUDY = (
     *("draw_badminton_fig05", "draw_stroke", "draw_three_cameras", "draw_thesis_fig3"),
     *("compare_networks", "compare_sessions", "conditions"),
 )
+# Schemas that use the `$defs` of another one, too.
+SHARED = dict.fromkeys(("external", "models", "plan", "session"), "config")
+SHARED |= {"detectors": "models"}
 REPLACED = {  # keys of former versions: what to use now
     "measure_kinematics": "remove it: kinematics are measured on the exported skeletons, whose "
     "filter and cut-offs are those of filter_motion"
@@ -67,6 +71,7 @@ def faults(content: Content, schema: str, file: StrPath) -> list[str]:
     ]
 
 
+@functools.cache
 def _rules(schema: str) -> Content:
     """Read a schema by libyaml, which is many times as fast as `yaml_files`.
 
@@ -74,6 +79,12 @@ def _rules(schema: str) -> Content:
     """
     text = (SCHEMAS / f"{schema}.schema.yaml").read_text(encoding="utf-8")
     return yaml.load(text, Loader=yaml.CSafeLoader)
+
+
+def _definitions(schema: str) -> Content:
+    """Return the `$defs` of a schema and, below them, those of the schema whose it shares."""
+    other, own = SHARED.get(schema), _rules(schema).get("$defs", {})
+    return (_definitions(other) if other else {}) | own
 
 
 @functools.cache
@@ -84,11 +95,10 @@ def _validator(schema: str) -> Any:
     plain = jsonschema.Draft202012Validator
     types = plain.TYPE_CHECKER.redefine_many(TYPES)
     validator = jsonschema.validators.extend(plain, type_checker=types)
-    rules = _rules(schema)
+    rules = copy.deepcopy(_rules(schema))
+    rules["$defs"] = _definitions(schema)
     if schema == "session":
-        steps = _rules("config")
-        rules["properties"]["override"] = _overridable(steps)
-        rules["$defs"] = steps["$defs"] | rules["$defs"]
+        rules["properties"]["override"] = _overridable(_rules("config"))
     elif schema == "config":
         condition = rules["properties"]["conditions"]["additionalProperties"]["properties"]
         condition["override"] = _overridable(rules)
