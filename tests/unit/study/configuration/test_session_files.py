@@ -277,3 +277,12 @@ def test_sightings_may_be_one_or_several_and_names_stand_in_a_file():
     assert found.subjects["p1"].seen == (seen,)
     assert found.subjects["p2"].seen == (seen, seen)
     assert found.people == "up/people.csv"
+
+
+def test_the_ending_of_a_recording_says_what_made_it_and_a_folder_is_of_a_depth_camera(tmp_path):
+    folder = tmp_path / "2026-03-02_10.15.30"
+    folder.mkdir()
+    assert session_files.kind_of(str(folder)) == "rgbd"
+    endings = {"a.BVH": "inertial", "a.bag": "rgbd", "a.json": "nuitrack", "a.mp4": "rgb"}
+    assert {name: session_files.kind_of(name) for name in endings} == endings
+    assert session_files.kind_of(f"{'long' * 100}.mp4") == "rgb"

@@ -30,7 +30,10 @@ OVERRIDDEN = ("principal_point_px", "reason")  # of a calibration file, as its s
 
 def kind_of(recording: str) -> str:
     """Return the kind of a device by the ending of its recording; a video by default."""
-    return KINDS.get(Path(recording).suffix.lower(), "rgb")
+    path = Path(recording)
+    if is_there(path) and path.is_dir():  # a dot in its name begins no ending
+        return "rgbd"
+    return KINDS.get(path.suffix.lower(), "rgb")
 
 
 def is_there(path: Path) -> bool:
