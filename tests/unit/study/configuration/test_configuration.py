@@ -464,3 +464,42 @@ def test_takes_that_nothing_measures_are_a_fault(folder, override, parts):
 def test_a_session_may_say_that_its_takes_are_not_measured(folder):
     study = load(folder, SESSION | {"override": {"take_calibrations": []}})
     assert study.sessions["hall"].take_calibrations() == []
+
+
+def changed_step(step, **change):
+    return {step: yaml_files.read(CONFIG / "config.yaml")[step] | change}
+
+
+def test_networks_that_are_compared_are_known(folder):
+    networks = ["blazepose-full", "blazepose-huge"]
+    (line,) = faults(folder, **changed_step("compare_networks", networks=networks))
+    assert line.startswith("config/config.yaml: compare_networks.networks: expected one of [")
+    assert line.endswith("found 'blazepose-huge'")
+
+
+@pytest.mark.parametrize("sessions", [[], ["hall"], ["other"]])
+def test_files_of_networks_that_are_compared_are_there(folder, sessions):
+    entry = {"decoder": "simcc", "skeleton": "coco17", "landmarks": {"file": "my.onnx"}}
+    entry["landmarks"]["sha256"] = "0" * 64
+    entry["input"] = {"size": [192, 256], "channels": "rgb", "padding": 1.25}
+    text = (folder / "models.yaml").read_text()
+    (folder / "models.yaml").write_text(text + yaml.safe_dump({"mine": entry}))
+    step = changed_step("compare_networks", networks=["blazepose-full", "mine"], sessions=sessions)
+    if sessions == ["hall"]:
+        (line,) = faults(folder, **step)
+        assert "mine.landmarks.file: expected an ONNX file, found none at my.onnx" in line
+    else:
+        load(folder, **step)
+
+
+def test_layouts_of_figure_5_show_cameras_of_takes_that_are_compared_with_something(folder):
+    def said(**place):
+        layouts = {"a": {"take": "hall/t1", "cameras": ["left"]} | place}
+        return faults(folder, **changed_step("draw_badminton_fig05", layouts=layouts))
+
+    strange, unseen = said(cameras=["left", "middle"])
+    where = "config/config.yaml: draw_badminton_fig05.layouts.a"
+    assert strange == f"{where}.cameras: expected one of ['left', 'right'], found 'middle'"
+    assert unseen.startswith(f"{where}.take: expected a virtual take, or one of evaluate_networks")
+    layouts = {"a": {"take": "elsewhere/t1", "cameras": ["left"]}}
+    load(folder, **changed_step("draw_badminton_fig05", layouts=layouts))

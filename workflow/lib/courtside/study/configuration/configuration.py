@@ -59,9 +59,7 @@ def load(config: Content, config_file: str, folder: StrPath, root: StrPath = "."
             faults += _override_faults(file, content, models)
             found[name] = (file, content)
     if not faults:
-        faults += session_faults.conditions(config_file, config, found)
-        step = config["evaluate_networks"]
-        faults += take_faults.evaluated(config_file, step, models or {}, found)
+        faults += _step_faults(config, config_file, models or {}, found)
         faults += model_faults.absent(folder, Path(root), models, detectors, _used(config, found))
     if faults or known is None or models is None or detectors is None:
         raise InputError(*faults)
@@ -72,8 +70,20 @@ def load(config: Content, config_file: str, folder: StrPath, root: StrPath = "."
         parameters=config,
         folder=folder,
     )
-    _check_bodies(study)
+    if faults := [*_body_faults(study), *_layout_faults(study, config_file)]:
+        raise InputError(*faults)
     return study
+
+
+def _step_faults(
+    config: Content, config_file: str, models: Content, found: dict[str, tuple]
+) -> Iterator[str]:
+    """Yield the faults of the steps that name sessions, takes or networks themselves."""
+    yield from session_faults.conditions(config_file, config, found)
+    yield from take_faults.evaluated(config_file, config["evaluate_networks"], models, found)
+    imported = [name for _, content in found.values() for name in take_faults.imported(content)]
+    where, wanted = f"{config_file}: compare_networks", config["compare_networks"]["networks"]
+    yield from take_faults.unknown(f"{where}.networks", wanted, {*models, *imported})
 
 
 def _override_faults(file: Path, content: Content, models: Content | None) -> list[str]:
@@ -83,20 +93,31 @@ def _override_faults(file: Path, content: Content, models: Content | None) -> li
     return take_faults.unknown(f"{file}: override.models", wanted, there)
 
 
-def _check_bodies(study: Study) -> None:
-    """Raise `InputError` if a network without a metric body measures single videos."""
-    faults = []
+def _body_faults(study: Study) -> Iterator[str]:
+    """Yield a fault for each single video that a network without a metric body would measure."""
     for session, take in study.takes():
         videos = [name for name, device in take.devices.items() if device.kind == "rgb"]
         model = session.parameters["models"][0]
         for name in () if study.models[model].metric_body else videos:
-            faults.append(
+            yield (
                 f"{session.file}: takes.{take.name}.devices.{name}: expected a network with a "
                 f"metric body (decoder blazepose) as the first of `models`, found {model}; name "
                 "one, or remove the device"
             )
-    if faults:
-        raise InputError(*faults)
+
+
+def _layout_faults(study: Study, config_file: str) -> Iterator[str]:
+    """Yield what in the layouts of fig 5 no take has: cameras, and keypoints to compare with."""
+    known = study.parameters["evaluate_networks"]["takes"]
+    for layout, place in study.parameters["draw_badminton_fig05"]["layouts"].items():
+        where = f"{config_file}: draw_badminton_fig05.layouts.{layout}"
+        for session, take in study.named_takes([place["take"]]):
+            yield from take_faults.unknown(f"{where}.cameras", place["cameras"], take.videos)
+            if not session.virtual and place["take"] not in known:
+                yield (
+                    f"{where}.take: expected a virtual take, or one of evaluate_networks.takes, "
+                    f"found {place['take']}; name it there with its imported keypoints"
+                )
 
 
 def _used(config: Content, found: dict[str, tuple]) -> list[str]:
@@ -105,6 +126,8 @@ def _used(config: Content, found: dict[str, tuple]) -> list[str]:
     compared = config["evaluate_networks"]
     there = {name.partition("/")[0] for name in compared["takes"]} & set(found)
     own.append(compared["networks"] if there else [])
+    step = config["compare_networks"]
+    own.append(step["networks"] if set(step["sessions"]) & set(found) else [])
     return [*config["models"], *itertools.chain.from_iterable(own)]
 
 
