@@ -36,6 +36,12 @@ def test_a_truncated_video_is_told(hall):
     assert f"{path}: expected a video, found a file without a readable header" in hall.fault()
 
 
+def test_a_folder_in_place_of_a_video_is_told(hall):
+    folder = hall.video("left").parent
+    hall.content["takes"]["serve"]["videos"]["left"] = str(folder)
+    assert hall.fault() == f"{folder}: expected a video, found a folder; name the file in it"
+
+
 def test_a_scaled_video_is_told_and_may_be_declared(hall):
     path = hall.film("left", size=(160, 90))
     hall.film("left", "lob", size=(160, 90))

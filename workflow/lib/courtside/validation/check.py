@@ -43,13 +43,13 @@ class _Session:
         self._static = {
             name: look
             for name, camera in session.cameras.items()
-            for look in self._look(camera.static, None)
+            for look in self._look(camera.static)
         }
         self._takes = {
             name: {
                 camera: look
                 for camera, path in take.videos.items()
-                for look in self._look(path, take.trim_s)
+                for look in self._look(path, take.trim_s, film=True)
             }
             for name, take in session.takes.items()
         }
@@ -59,11 +59,20 @@ class _Session:
         }
         others = [*session.walks.values(), *_filmed_by_devices(session)]
         for path in others:
-            self._look(path, None)
+            self._look(path)
 
-    def _look(self, path: str | None, trim_s: tuple[float, ...] | None) -> list[Glance]:
-        """Return a look at a file that is there and readable, else nothing."""
-        if path is None or not is_there(Path(path)) or Path(path).is_dir():
+    def _look(
+        self, path: str | None, trim_s: tuple[float, ...] | None = None, *, film: bool = False
+    ) -> list[Glance]:
+        """Return a look at a file that is there and readable, else nothing.
+
+        A folder, of photos or of a depth camera, is a fault only where a film is needed.
+        """
+        if path is None or not is_there(Path(path)):
+            return []
+        if Path(path).is_dir():
+            line = f"{path}: expected a video, found a folder; name the file in it"
+            self._unreadable += [line] * film
             return []
         try:
             return [self._remembered.look(path, stop_s=trim_s[1] if trim_s else None)]
