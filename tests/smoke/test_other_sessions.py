@@ -230,6 +230,22 @@ def test_a_fault_is_told_of_the_configuration_that_was_given(gym):
     assert sum(line.startswith(both) for line in said) == 1
 
 
+def test_sessions_and_takes_of_similar_names_are_simulated_side_by_side(gym):
+    sessions = gym / "config" / "sessions"
+    hall = yaml.safe_load((sessions / "plain-tiny.yaml").read_text())
+    hall |= {"cameras": {"side": None, "back": None}}
+    players = yaml.safe_load((sessions / "players-tiny.yaml").read_text())
+    players["takes"] = {"b": players["takes"]["shot"]}
+    for name, content in {"a-b": hall, "a_b": hall, "a": players}.items():
+        (sessions / f"{name}.yaml").write_text(yaml.safe_dump(content))
+    mine = {"sessions": ["a-b", "a_b", "a"], "variations": [], "plans": []}
+    (gym / "config" / "alike.yaml").write_text(yaml.safe_dump(mine))
+    done = snakemake(gym, "config/alike.yaml", "-n", "-q", "rules")
+    assert done.returncode == 0, done.stdout + done.stderr
+    planned = set((done.stdout + done.stderr).split())
+    assert {"simulate_a-b", "simulate_a_b", "simulate_a", "simulate_a.b"} <= planned
+
+
 def test_another_court_is_a_file(gym):
     session = {
         "description": "a tennis court",

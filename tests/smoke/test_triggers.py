@@ -301,7 +301,7 @@ def test_sessions_that_are_added_rerun_only_the_table_that_they_share(kept):
     real = {"import_cameras": 1, "extract_static": 3, "check_movement": 3}
     real |= {"estimate_background": 1, "check_videos": 1, "detect_pose": 4, **REAL_FUSED}
     del real["export_overlay_video"]  # the study names the takes whose videos it writes
-    found = {"simulate_plain_again": 1, "extract_static": 2, "extract_frames": 1}
+    found = {"simulate_plain-again": 1, "extract_static": 2, "extract_frames": 1}
     found |= {"extract_features": 1, "match_images": 1, "map_images": 2, "adjust_network": 2}
     found |= {"resect_cameras": 4, "calibrate_lens": 2, "evaluate_known": 1, **TIES}
     del found["evaluate_racket"], found["draw_badminton_fig12"]  # the study names their sessions

@@ -17,7 +17,7 @@ for session in STUDY.sessions.values():
 
         rule:
             name:
-                f"simulate_{session.name.replace('-', '_')}"
+                f"simulate_{session.name}"
             input:
                 court_yaml=STUDY.court_file(session),
             output:
@@ -50,7 +50,7 @@ for session in STUDY.sessions.values():
 
         rule:
             name:
-                f"simulate_{session.name}_{take.name}".replace("-", "_")
+                f"simulate_{session.name}.{take.name}"  # no name holds a dot
             input:
                 court_yaml=STUDY.court_file(session),
                 body_files=recordings.virtual_body(STUDY),
