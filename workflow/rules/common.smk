@@ -69,7 +69,9 @@ try:
         looks = Remembered(Path(".snakemake") / "courtside" / "recordings.json")
         REMARKS = [f"Remark: {remark}" for remark in recorded.check(STUDY, looks)]
         print(*REMARKS, sep="\n", end="\n" * bool(REMARKS), file=sys.stderr)
-    future_dates.check([CONFIG, paths.EXTERNAL, *(f"data/{name}" for name in STUDY.sessions)])
+    own = [f"data/{name}" for name in STUDY.sessions]
+    own += [path for session in STUDY.sessions.values() for path in session.recordings()]
+    future_dates.check([CONFIG, paths.EXTERNAL, *own])
 except InputError as error:
     sys.exit("\n".join(f"Error: {line}" for line in str(error).splitlines()))
 

@@ -216,6 +216,15 @@ def test_choices_of_images_that_are_the_same_are_made_once(tmp_path):
     assert found == ["global-n11-o0", "global-n11-o1"]
 
 
+def test_recordings_are_those_of_the_user_wherever_they_are():
+    device = sessions.Device("inertial", "/disk/suit.bvh", "p1")
+    videos = {"a": "/disk/a.mp4", "b": "results/external/b.mp4"}
+    take = sessions.Take("t", videos, (), devices={"suit": device})
+    found = session(takes={"t": take}, walks={"w": "photos"}).recordings()
+    assert found[-3:] == ["photos", "/disk/a.mp4", "/disk/suit.bvh"]
+    assert "a.png" in found and "results/external/b.mp4" not in found
+
+
 def test_people_refine_a_calibration_that_the_session_has_where_takes_are_filmed():
     ways = ["file", "file-people", "sfm-n40-people"]
     filmed = {"t": sessions.Take("t", {"a": "a.mp4"}, ())}

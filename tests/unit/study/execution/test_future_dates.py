@@ -25,6 +25,13 @@ def test_files_of_the_past_and_missing_folders_pass(tmp_path):
     assert future_dates.check([tmp_path / "data", tmp_path / "none"]) is None
 
 
+def test_a_file_that_is_named_counts_once(tmp_path):
+    late = dated(tmp_path / "disk" / "late.mp4", time.time() + DAY_S)
+    dated(tmp_path / "disk" / "other.mp4", time.time() + DAY_S)
+    with pytest.raises(InputError, match=r"late\.mp4: expected a date in the past.*in 0 more"):
+        future_dates.check([late, late, tmp_path / "disk" / "missing.mp4"])
+
+
 def test_the_file_furthest_ahead_is_named_and_the_advice_mends_it(tmp_path):
     dated(tmp_path / "data" / "near.mp4", time.time() + DAY_S)
     dated(tmp_path / "data" / "far.mp4", time.time() + 400 * DAY_S)

@@ -228,6 +228,15 @@ class Session:
         shown = [file for file in there if not file.name.startswith(".")]
         return sum(file.suffix.lower() in files.PHOTOS for file in shown)
 
+    def recordings(self) -> list[str]:
+        """Return the files and folders of a user that its videos, photos and devices are in."""
+        static = [camera.static for camera in self.cameras.values()]
+        takes = self.takes.values()
+        filmed = [path for take in takes for path in take.videos.values()]
+        devices = [device.file for take in takes for device in take.devices.values()]
+        named = [*static, *self.walks.values(), *filmed, *devices]
+        return [path for path in named if path and not path.startswith(f"{paths.RESULTS}/")]
+
     def filmed(self) -> list[str]:
         """Return the names of all cameras and walks."""
         return [*self.cameras, *self.walks]

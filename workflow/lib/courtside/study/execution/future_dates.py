@@ -11,16 +11,19 @@ from courtside.study.execution import files
 SLACK_S = 60.0  # by which the clocks of a computer and of a disk in its network may differ
 
 
-def check(folders: Iterable[StrPath]) -> None:
-    """Check that no file below some folders is dated in the future; leave out missing folders.
+def check(named: Iterable[StrPath]) -> None:
+    """Check that no file is dated in the future that is named or below a folder that is.
+
+    Those that are missing are left out.
 
     Snakemake ends a job with an error if what it made is older than what it was made from. An
     `InputError` names the file that is furthest ahead.
     """
-    there = [Path(folder) for folder in folders if Path(folder).is_dir()]
+    there = [path for path in map(Path, dict.fromkeys(named)) if path.exists()]
     latest_s = time.time() + SLACK_S
-    found = (path for folder in there for path in folder.rglob("*") if path.is_file())
-    late = [dated for path in found if (dated := (path.stat().st_mtime, path))[0] > latest_s]
+    every = (path for one in there for path in ([one] if one.is_file() else one.rglob("*")))
+    found = (path for path in every if path.is_file())
+    late = {dated for path in found if (dated := (path.stat().st_mtime, path))[0] > latest_s}
     if not late:
         return
     when_s, path = max(late)
@@ -31,9 +34,9 @@ def check(folders: Iterable[StrPath]) -> None:
     )
 
 
-def _advice(folders: list[Path]) -> str:
+def _advice(there: list[Path]) -> str:
     """Return the command that dates the files today, for PowerShell on Windows."""
-    named = [f"'{folder}'" for folder in folders]
+    named = [f"'{path}'" for path in there]
     if files.WINDOWS:
         return (
             f"Get-ChildItem -LiteralPath {', '.join(named)} -Recurse -File -Force | Where-Object "
