@@ -53,7 +53,7 @@ def jpegs(folder):
 def read_photo(path):
     """Read a photo as a frame of a walk and as a picture to click in."""
     with contextlib.suppress(ValueError):  # the page takes dark ones too
-        page.frame("c", path, jpeg_quality=80)
+        page.frame("c", path)
     found = walk_frames.read_photo(path)
     require(found.dtype == np.uint8 and found.ndim == 3, "a picture of another kind")
     return found

@@ -9,8 +9,7 @@ from courtside.study.execution.script import run
 
 
 def main(
-    pictures, court_yaml, page_html, *, session, names, targets, jpeg_quality, clicks_csv=None,
-    proposals_csv=None, take_pictures=(), take_frames=(),
+    pictures, court_yaml, page_html, *, session, names, targets, clicks_csv=None, proposals_csv=None
 ):  # fmt: skip
     court = court_files.read(court_yaml)
     clicked = clicks.read(clicks_csv, names, court.points) if clicks_csv else {}
@@ -19,15 +18,11 @@ def main(
         clicking_page.frame(
             name,
             path,
-            jpeg_quality=jpeg_quality,
             clicks=clicking_page.by_point(clicked.get(name), court.points),
             proposals=proposed.get(name, {}),
         )
         for name, path in zip(names, pictures, strict=True)
     ]
-    for path, (take, camera, frame_idx) in zip(take_pictures, take_frames, strict=True):
-        which = {"take": take, "frame_idx": frame_idx}
-        frames.append(clicking_page.frame(camera, path, jpeg_quality=jpeg_quality, **which))
     page.write(page_html, clicking_page.build(session, court, frames, targets=targets))
     log.logger.info("%s: %d pictures", page_html, len(frames))
 

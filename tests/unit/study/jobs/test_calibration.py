@@ -146,7 +146,6 @@ def test_clicks_are_saved_where_the_session_says_or_in_its_folder_of_data(job, s
     assert found == {
         "session": "plain-tiny",
         "names": ["side", "back"],
-        "jpeg_quality": None,
         "targets": {"court_points.csv": "results/virtual/plain-tiny/court_points.csv"},
     }
     session = study.sessions["plain-tiny"]

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -53,23 +52,19 @@ def frame(
     camera: str,
     path: StrPath,
     *,
-    jpeg_quality: int | None = None,
     clicks: dict | None = None,
     proposals: dict | None = None,
     **which: Any,
 ) -> Frame:
     """Read a picture to click in, a PNG or JPEG without recognisable faces, else `InputError`.
 
-    `jpeg_quality` from 1 to 100 makes the page smaller; None takes the file as it is. `clicks` and
-    `proposals` are as in `Frame`, `which` are `take` and `frame_idx` of a picture of a take.
+    `clicks` and `proposals` are as in `Frame`, `which` are `take` and `frame_idx` of a picture of a
+    take.
     """
     path = Path(path)
     content = path.read_bytes() if path.is_file() else b""
     image = images.decode(path, content, what="a PNG or JPEG picture", advice="make it again")
     mime = page.PNG if content.startswith(b"\x89PNG") else "image/jpeg"
-    if jpeg_quality is not None:
-        content = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, jpeg_quality])[1].tobytes()
-        mime = "image/jpeg"
     size = image.shape[1::-1]
     return Frame(
         camera, size, content, mime, **which, clicks=clicks or {}, proposals=proposals or {}

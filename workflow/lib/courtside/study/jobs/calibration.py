@@ -303,5 +303,5 @@ def clicking(job: Job) -> dict[str, Any]:
     """Return the settings of the page for clicking."""
     session = job.session
     path = session.unclicked or session.court_points or job.fill(paths.CLICKS)
-    page = {"session": session.name, "names": list(session.cameras), "jpeg_quality": None}
+    page = {"session": session.name, "names": list(session.cameras)}
     return {**page, "targets": {"court_points.csv": path}}
