@@ -248,11 +248,15 @@ def lenses(job: Job) -> list[str]:
 def board_files(job: Job) -> list[str]:
     """Return the files that show a board to all cameras: pictures, videos or its corners."""
     given = job.session.board or {}
-    folders = [*given.get("images", {}).values(), given.get("lenses", "")]
-    found = [path for folder in folders if folder for path in recordings.inside(folder)]
-    lens_file = [given["lenses"]] if Path(given.get("lenses", "")).is_file() else []
+    sources = [*given.get("images", {}).values(), *filter(None, [given.get("lenses")])]
+    found = [path for source in sources for path in _files_of(source)]
     table = [given["corners"]] if "corners" in given else []
-    return [*found, *lens_file, *table, *given.get("videos", {}).values()]
+    return [*found, *table, *given.get("videos", {}).values()]
+
+
+def _files_of(source: str) -> list[str]:
+    """Return the files of a folder, or the file itself."""
+    return [source] if Path(source).is_file() else recordings.inside(source)
 
 
 def board_lenses(job: Job) -> list[str]:
@@ -271,9 +275,7 @@ def board_pictures(job: Job) -> list[str]:
 def wand_files(job: Job) -> list[str]:
     """Return the files of a wand: its markers in the pictures, and lenses."""
     given = job.session.wand or {}
-    lenses = recordings.inside(given["lenses"]) if "lenses" in given else []
-    lens_file = [given["lenses"]] if Path(given.get("lenses", "")).is_file() else []
-    return [given["points"], *lenses, *lens_file]
+    return [given["points"], *(_files_of(given["lenses"]) if "lenses" in given else [])]
 
 
 def wand_lenses(job: Job) -> list[str]:

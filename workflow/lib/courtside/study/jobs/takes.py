@@ -19,7 +19,7 @@ def each_camera(job: Job, pattern: str) -> list[str]:
 
 def every_take(job: Job, pattern: str, **more: str) -> list[str]:
     """Return a file of every take of a session."""
-    return [job.fill(pattern, take=take, **more) for take in job.session.takes]
+    return job.of_each(pattern, take=job.session.takes, **more)
 
 
 def clocks(job: Job, names: Any) -> dict[str, dict]:

@@ -108,15 +108,14 @@ def tabulated_takes(study: Study) -> list[dict[str, Any]]:
     """
     found = []
     for session, take in study.takes():
-        ways = list(product([IMPORTED], ["trc"], take.pose3d))
         fusions, models = session.fusions_of(take), session.parameters["models"]
-        for way in [*ways, *product(session.take_calibrations(), fusions, models)]:
+        ways = dict.fromkeys(product([IMPORTED], ["trc"], take.pose3d), False)
+        ways |= dict.fromkeys(product(session.take_calibrations(), fusions, models), True)
+        for way, own in ways.items():
             labels = {"session": session.name, "take": take.name}
             labels |= dict(zip(WAY, way, strict=True))
-            judged = takes.verdicts(session, take) if way not in ways else []
-            kinds = [(paths.MEASURES, True)] + [(paths.FOOTWORK_MEASURES, False)] * (
-                way not in ways
-            )
+            judged = takes.verdicts(session, take) if own else []
+            kinds = [(paths.MEASURES, True)] + [(paths.FOOTWORK_MEASURES, False)] * own
             for pattern, camera_errors in kinds:
                 measures = pattern.format(**labels)
                 below = measures.removeprefix(f"{paths.RESULTS}/")
