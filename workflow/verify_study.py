@@ -5,8 +5,7 @@ Usage: `python workflow/verify_study.py`.
 It computes again the checksums of raw inputs, artefacts, networks, lock and code, and compares them
 with what the sidecars in results/run say. With `--against OTHER/results` it compares two results
 trees file by file instead: bit-equal, equal within the tolerances of
-courtside/study/provenance/comparison.py, or different. The exit status is 1 if anything is
-otherwise.
+courtside/study/provenance/comparison.py, or different. The exit status is 1 if anything differs.
 
 Two machines that cannot reach each other's files compare checksums: `--write-checksums TABLE.csv`
 on one of them, `--against TABLE.csv` on the other. It counts the files of each stage that are
@@ -35,7 +34,7 @@ RESULTS = Path("results")
 
 
 def main(against):
-    """Return (lines to print, number of files that are otherwise)."""
+    """Return (lines to print, number of files that differ)."""
     check_results()
     if against is None:
         lines, n_faults = verification.report(RESULTS / "run", RESULTS, REPOSITORY)
@@ -63,7 +62,7 @@ def check_results():
 
 
 def numbers_in_short():
-    """Return how many numbers of the documents are stale; other studies than the default have none.
+    """Return how many numbers of the documents are stale; a study other than the default has none.
 
     They are no fault of the results: the documents are of another run.
     """
@@ -71,7 +70,7 @@ def numbers_in_short():
         n_stale = len(numbers.report(RESULTS, REPOSITORY, tables.made(REPOSITORY)))
     except (InputError, OSError) as error:
         return f"{numbers.REGISTER}: not checked, for it is of a full default run: {error}"
-    return f"{numbers.REGISTER}: {n_stale} numbers would be otherwise" + (
+    return f"{numbers.REGISTER}: {n_stale} numbers would change" + (
         "; --numbers lists them" if n_stale else ""
     )
 

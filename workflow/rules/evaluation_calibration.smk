@@ -1,6 +1,7 @@
 """Comparison of calibrations of virtual sessions with the truth.
 
-Only this file and evaluation_takes.smk read truth.
+No method reads truth. The simulation does, and evaluations: this file, evaluation_takes.smk and
+evaluate_networks.
 
 Inputs: ties, truth. Outputs: results/{session}/evaluation/, results/figures/calibration.csv and
 ways.csv.

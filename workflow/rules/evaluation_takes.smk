@@ -1,9 +1,9 @@
 """Comparison of takes of virtual sessions with the truth.
 
-Only this file and evaluation_calibration.smk read truth.
+No method reads truth. The simulation does, and evaluations: this file, evaluation_calibration.smk
+and evaluate_networks.
 
-Inputs: 2D and 3D keypoints, clocks, truth of takes.
-Outputs: results/{session}/evaluation/takes/, results/{session}/takes/{take}/table1/.
+Inputs: 2D and 3D keypoints, clocks, truth of takes. Outputs: results/{session}/evaluation/takes/.
 Steps: evaluate_take, evaluate_reliability, evaluate_clocks, evaluate_kinematics, evaluate_angles,
 evaluate_contacts, evaluate_strokes, evaluate_sources, evaluate_source_angles, evaluate_body_frames,
 evaluate_detection, evaluate_round_trip (table 1), evaluate_fusions (paired differences with

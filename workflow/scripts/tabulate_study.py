@@ -10,7 +10,7 @@ from courtside.study.execution.script import run
 def main(table_csv, *, takes):
     rows = pd.concat([study_table.of_take(**take) for take in takes], ignore_index=True)
     tables.write(table_csv, rows)
-    log.logger.info("%s: %d rows of %d ways and takes", table_csv, len(rows), len(takes))
+    log.logger.info("%s: %d rows of %d tables", table_csv, len(rows), len(takes))
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ KINDS = (
     ("figures", "/figures/", (".png",)),
     ("figures of plans", "/plans/", (".png",)),
     ("skeletons for other programs", "/pose3d", (".trc", ".c3d", ".bvh")),
-    ("skeletons of suits for other programs", "/devices/", (".trc", ".c3d", ".bvh")),
+    ("skeletons of devices for other programs", "/devices/", (".trc", ".c3d", ".bvh")),
     ("calibrated cameras", "/calibration/", ("cameras.toml",)),
     ("measures of takes", "/kinematics/", (".summary.csv",)),
     ("footwork of takes", "/footwork/", (".summary.csv",)),

@@ -35,7 +35,7 @@ class Job:
             who = ", ".join(session.withheld[name])
             raise InputError(
                 f"{session.file}: expected analysis in the consent of {who}, "
-                f"found none: nothing is made of take {name}"
+                f"found none: nothing is made of take {name}; ask for files of other takes"
             )
         return session.takes[name]
 

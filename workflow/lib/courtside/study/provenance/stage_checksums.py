@@ -12,7 +12,7 @@ from courtside.study.provenance import comparison
 STAGES = (
     ("artefacts", "external/*"),
     ("networks", "networks/*"),
-    ("truth of simulations", "virtual/*.npz"),
+    ("truth and halls of simulations", "virtual/*.npz"),
     ("clicks of simulations", "virtual/*.csv"),
     ("films", "virtual/*.mp4"),
     ("other recordings", "virtual/*"),
