@@ -13,7 +13,6 @@ DRAWN = {"figure", "session_figure", "study_figure", "device_figure", "calibrate
 FILES_OF_A_FIGURE = {"pdf", "png", "csv"}
 # Files that a script finds by another one: members of folders, assets, what a simulation writes.
 FOR_SNAKEMAKE = {"assets", "files", "photos", "videos", "boards", "clicks", "devices", "racket"}
-UNGIVEN = {"notes"}  # of the viewer, which can show remarks
 WILDCARDS = {
     *("session", "take", "camera", "person", "device", "source", "model", "calibration"),
     *("mapper", "n_images", "offset", "threads"),
@@ -84,7 +83,7 @@ def test_a_rule_gives_its_script_what_main_takes(path):
             assert given - taken - {"step"} - FOR_SNAKEMAKE == set()
         if not spread:
             assert needed - given - WILDCARDS == set()
-            assert taken - given - WILDCARDS - {"paths"} - UNGIVEN == set()
+            assert taken - given - WILDCARDS - {"paths"} == set()
 
 
 @pytest.mark.parametrize("name", [p.stem for p in SCRIPTS if p.stem.startswith("build_")])
