@@ -58,6 +58,21 @@ def test_without_noise_the_true_cameras_are_found(lenses, wand):
             np.testing.assert_array_equal(camera.dist, true.dist)
 
 
+@pytest.mark.parametrize(
+    ("order", "middle_m", "found"),
+    [([2, 1, 0], 0.2, "66"), ([0, 2, 1], 0.2, "(29|30)"), ([1, 0, 2], 0.2, "-(49|50)"),
+     ([0, 1, 2], 0.23, "33")],
+)  # fmt: skip
+def test_three_markers_in_another_order_or_with_a_wrong_middle_are_refused(order, middle_m, found):
+    wand = replace(THREE, along_m=np.array([0.0, middle_m, 0.6]))
+    refused(
+        rf"wand: expected the middle marker at {100 * middle_m / 0.6:.1f} % of the length from the "
+        rf"first, found it at {found}\d*\.\d %; correct the order of `markers`, or `middle_m`$",
+        seen(swung(THREE.along_m)[:, order]),
+        wand=wand,
+    )
+
+
 def test_errors_are_as_large_as_stated():
     xyz, squares, most = swung(), [], []
     for seed in range(4):

@@ -27,6 +27,7 @@ LEAST_NEAR = 0.7  # ASSUME: share of markers with smaller residuals
 LEAST_PATH = 0.5  # ASSUME: path of a wand over its length, both in a picture
 # ASSUME: least extents of the path along its second and third axes, relative to the first.
 LEAST_EXTENTS = {"on a line": 0.1, "in a plane": 0.03}
+MIDDLE_SHARE, MIDDLE_SIGMAS = 0.01, 5.0  # ASSUME: error of the middle marker, over the length
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +77,7 @@ def calibrate(
     """
     _check_path(seen)
     cameras = start.guess(wand, seen, sizes, lenses)
+    _check_middle(wand, start.triangulated(cameras, seen.xy))
     for _ in range(2):  # the second time with all frames that the first cameras agree on
         state = _state(wand, seen, cameras, lenses)
         found = _adjust(state, cameras, lenses)
@@ -151,6 +153,28 @@ def _check_extent(xyz: NDArray) -> None:
                 f"wand: expected movement in all directions, found positions {what}: their extent "
                 f"across it is {100 * extent:.1f} % of their length; {start.HOW}"
             )
+
+
+def _check_middle(wand: Wand, xyz: NDArray) -> None:
+    """Raise an `InputError` if the middle one of three markers (F, 3, 3) is not where stated.
+
+    Its share of the length does not depend on the scale of the cameras.
+    """
+    if len(wand.along_m) < 3:
+        return
+    to_middle, whole = (xyz[:, k] - xyz[:, 0] for k in (1, 2))
+    share = (to_middle * whole).sum(axis=1) / (whole**2).sum(axis=1)
+    share = share[np.isfinite(share)]
+    if not len(share):
+        return
+    stated, found = float(wand.along_m[1]) / wand.length_m, float(np.median(share))
+    spread = float(np.median(np.abs(share - found)))
+    sigma = timing.MEDIAN_SIGMA * spread / np.sqrt(len(share))
+    if abs(found - stated) > max(MIDDLE_SHARE, MIDDLE_SIGMAS * sigma):
+        raise InputError(
+            f"wand: expected the middle marker at {100 * stated:.1f} % of the length from the "
+            f"first, found it at {100 * found:.1f} %; correct the order of `markers`, or `middle_m`"
+        )
 
 
 def _check_sync(seen: Seen, cameras: Sequence[Camera], xyz: NDArray) -> None:
