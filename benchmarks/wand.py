@@ -166,7 +166,7 @@ def easywand(folder):
     for known, lens in ((lenses, "stated"), ({}, "found")):
         found = calibration.calibrate(wand, seen, sizes, lenses=known)
         summary = wand_quality.summary(found, wand, seen, set(known))
-        varies = 100 * summary["length_mm"]["standard_deviation"] / (1000 * wand.length_m)
+        varies = 100 * summary["length_mm"]["spread"] / (1000 * wand.length_m)
         px = "/".join(f"{value:.1f}" for value in summary["rms_px"].values())
         row = f"`easywand-3cams`: a wand clicked in {len(seen.frames)} frames, lenses {lens}"
         yield row, f"markers {px} px; its length varies by {varies:.2f} %", len(seen.frames)

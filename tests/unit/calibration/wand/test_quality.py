@@ -24,7 +24,7 @@ def test_numbers_by_camera():
         assert np.mean(list(report[key].values())) == pytest.approx(value, abs=near)
     assert max(report["place_sigma_mm"].values()) < 5
     assert report["length_mm"]["n"] > 100
-    assert abs(report["length_mm"]["mean"]) < 0.3
+    assert abs(report["length_mm"]["median"]) < 0.3
     (world,) = report["warnings"]
     assert world.startswith("wand: the origin is the middle of the wand's path")
 
@@ -58,6 +58,12 @@ def test_a_wand_of_another_length_has_a_warning_by_clicked_points():
     shorter = replace(WAND, along_m=0.98 * WAND.along_m, sigma_m=1e-3)
     warnings = summary(seen(swung()), wand=shorter, clicks=floor_points())["warnings"]
     assert any("by the clicked points; measure it" in line for line in warnings)
+
+
+def test_markers_that_scatter_by_several_px_have_a_warning():
+    warnings = summary(seen(swung(), sigma_px=3.3))["warnings"]
+    (line,) = [line for line in warnings if "sigma" in line]
+    assert line.startswith("wand: expected markers with a sigma below 3 px, found 3.")
 
 
 def test_a_path_in_the_middle_of_the_picture_has_a_warning_if_the_lens_is_unknown():

@@ -17,6 +17,7 @@ MOST_FACTOR = 2.0  # scatter of blocks of time, relative to single frames
 LATE, LATE_SIGMAS = 0.03, 5.0  # delay of a camera, frames, and in its standard deviations
 LEAST_PATH = 0.3  # extent of the path in a picture of an unknown lens, of the diagonal
 LONGER_SIGMAS = 4.0  # error of the stated length by clicked points, in its standard deviations
+MOST_SIGMA_PX = 3.0  # of a marker
 
 
 def summary(found: Found, wand: Wand, seen: Seen, known: set[str]) -> dict[str, Any]:
@@ -25,8 +26,8 @@ def summary(found: Found, wand: Wand, seen: Seen, known: set[str]) -> dict[str, 
     By camera: number of frames, `rms_px` per axis without wrong markers, the share of these
     (`wrong_percent`) of the markers that another camera sees, standard deviations of the position
     (mm) and of an estimated lens, and the delay in frames (`late_frames`). `length_mm` is the error
-    of the wand's length where two cameras or more see both ends: median (`mean`), 1.4826 times
-    the median absolute deviation (`standard_deviation`), number.
+    of the wand's length where two cameras or more see both ends: `median`, `spread` (1.4826
+    times the median absolute deviation), number.
     """
     off = found.error_px
     fine = np.abs(off).max(axis=-1) < WRONG_SIGMAS * found.adjusted.sigma_px
@@ -52,7 +53,7 @@ def summary(found: Found, wand: Wand, seen: Seen, known: set[str]) -> dict[str, 
             one |= {"k1": float(camera.dist[0]), "k1_sigma": float(sigma[LENS.index("k1")])}
         for key, value in one.items():
             report.setdefault(key, {})[camera.name] = value
-    report["warnings"] = _warnings(found, wand, seen, known, late, late_sigma)
+    report["warnings"] = _warnings(found, wand) + _of_cameras(found, seen, known, late, late_sigma)
     return report
 
 
@@ -75,10 +76,10 @@ def _length_mm(found: Found, wand: Wand) -> dict[str, float | int]:
     off = 1000 * (apart[np.isfinite(apart)] - wand.length_m)
     middle = float(np.median(off)) if len(off) else np.nan
     spread = 1.4826 * float(np.median(np.abs(off - middle))) if len(off) else np.nan
-    return {"mean": middle, "standard_deviation": spread, "n": len(off)}
+    return {"median": middle, "spread": spread, "n": len(off)}
 
 
-def _warnings(found: Found, wand: Wand, seen: Seen, known: set[str], late, sigma) -> list[str]:
+def _warnings(found: Found, wand: Wand) -> list[str]:
     lines = []
     if not found.stated:
         lines.append(
@@ -86,6 +87,29 @@ def _warnings(found: Found, wand: Wand, seen: Seen, known: set[str], late, sigma
             f"runs from camera {found.cameras[0].name} to {found.cameras[1].name}; set `floor` to "
             "frames in which the wand lies on the floor, or click court points"
         )
+    if found.adjusted.sigma_px > MOST_SIGMA_PX:
+        lines.append(
+            f"wand: expected markers with a sigma below {MOST_SIGMA_PX:g} px, found "
+            f"{found.adjusted.sigma_px:.1f} px; check the markers in the file, and `lenses`"
+        )
+    if found.adjusted.factor > MOST_FACTOR:
+        lines.append(
+            f"wand: residuals of neighbouring frames are correlated (factor "
+            f"{found.adjusted.factor:.1f} of the variance); check that the videos are "
+            "synchronised, and that the tracker follows the markers"
+        )
+    longer = found.adjusted.state.length
+    if abs(longer) > LONGER_SIGMAS * wand.sigma_m / wand.length_m:
+        lines.append(
+            f"wand: expected a length of {1000 * wand.length_m:.1f} mm, found "
+            f"{1000 * wand.length_m * np.exp(longer):.1f} mm by the clicked points; measure it "
+            "between the markers' centres"
+        )
+    return lines
+
+
+def _of_cameras(found: Found, seen: Seen, known: set[str], late, sigma) -> list[str]:
+    lines = []
     for camera, frames, spread in zip(found.cameras, late, sigma, strict=True):
         if abs(frames) > LATE and abs(frames) > LATE_SIGMAS * spread:
             lines.append(
@@ -101,17 +125,4 @@ def _warnings(found: Found, wand: Wand, seen: Seen, known: set[str], late, sigma
                 f"camera {camera.name}: the wand's path extends over {100 * extent:.0f} % of the "
                 "picture's diagonal, too little for its lens; give `lenses`, or fill the picture"
             )
-    if found.adjusted.factor > MOST_FACTOR:
-        lines.append(
-            f"wand: residuals of neighbouring frames are correlated (factor "
-            f"{found.adjusted.factor:.1f} of the variance); check that the videos are "
-            "synchronised, and that the tracker follows the markers"
-        )
-    longer = found.adjusted.state.length
-    if abs(longer) > LONGER_SIGMAS * wand.sigma_m / wand.length_m:
-        lines.append(
-            f"wand: expected a length of {1000 * wand.length_m:.1f} mm, found "
-            f"{1000 * wand.length_m * np.exp(longer):.1f} mm by the clicked points; measure it "
-            "between the markers' centres"
-        )
     return lines
