@@ -159,15 +159,8 @@ def _started(
     network = problem.with_points(
         network, np.zeros((len(rows), 3)), seen.camera[rows], np.arange(len(rows)), xy[rows]
     )
-    widths = np.array([camera.size[0] for camera in known])
-    centres = np.array([[(length - 1) / 2 for length in camera.size] for camera in known])
-    mean, spread = network.lens.copy(), np.full(network.lens.shape, np.inf)
-    mean[:, LENS.index("aspect")] = 1.0
-    mean[:, 2:4], spread[:, 2:4] = centres, CENTRE_SHARE * widths[:, None]
-    mean[:, 4:] = 0.0
-    for key, value in SPREAD.items():
-        spread[:, LENS.index(key)] = value
-    network = replace(network, lens_mean=mean, lens_sigma=spread)
+    sizes = [camera.size for camera in known]
+    network = selection.with_lens_priors(network, sizes, SPREAD, CENTRE_SHARE)
     active = np.zeros(network.n_columns, dtype=bool)
     for c in range(len(known)):
         active[IMAGE * c : IMAGE * c + len(POSE)] = True

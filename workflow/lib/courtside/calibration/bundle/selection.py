@@ -215,6 +215,27 @@ def of_cameras(known: Sequence[Camera]) -> Network:
     )
 
 
+def with_lens_priors(
+    network: Network,
+    sizes: Sequence[tuple[int, int]],
+    spread: Mapping[str, float],
+    centre_share: float,
+) -> Network:
+    """Return a network with priors of usual lenses: square pixels, centred, without distortion.
+
+    Standard deviations are `spread` by name of `problem.LENS`, and of the principal point
+    `centre_share` of the picture's width; `sizes` are those of the pictures by lens, px.
+    """
+    mean, sigma = network.lens.copy(), np.full(network.lens.shape, np.inf)
+    mean[:, problem.LENS.index("aspect")] = 1.0
+    mean[:, 2:4] = [[(length - 1) / 2 for length in size] for size in sizes]
+    sigma[:, 2:4] = [[centre_share * width] for width, _ in sizes]
+    mean[:, 4:] = 0.0
+    for key, value in spread.items():
+        sigma[:, problem.LENS.index(key)] = value
+    return replace(network, lens_mean=mean, lens_sigma=sigma)
+
+
 def fixed_cameras(
     network: Network, fixed: Mapping[str, int], sizes: Mapping[str, tuple[int, int]]
 ) -> list[Camera]:

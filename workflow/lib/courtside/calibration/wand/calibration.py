@@ -224,8 +224,10 @@ def _state(
     image, point = np.nonzero(np.isfinite(xy[..., 0]))
     network = selection.of_cameras(_without(cameras, lenses))
     network = problem.with_points(network, xyz[known], image, point, xy[image, point])
+    sizes, spread = [camera.size for camera in cameras], points_alone.SPREAD
+    network = selection.with_lens_priors(network, sizes, spread, points_alone.CENTRE_SHARE)
     sigma = wand.sigma_m / wand.length_m
-    state = State(_with_prior(network, cameras), _bodies(wand, xyz), 0.0, sigma).placed()
+    state = State(network, _bodies(wand, xyz), 0.0, sigma).placed()
     return _in_front(state)
 
 
@@ -257,18 +259,6 @@ def _without(cameras, lenses) -> list[Camera]:
     return [
         replace(camera, dist=np.zeros(5)) if camera.name in lenses else camera for camera in cameras
     ]
-
-
-def _with_prior(network, cameras: Sequence[Camera]):
-    """Return a network with the priors of lenses of `points_alone`."""
-    mean, sigma = network.lens.copy(), np.full(network.lens.shape, np.inf)
-    mean[:, LENS.index("aspect")] = 1.0
-    mean[:, 2:4] = [[(length - 1) / 2 for length in camera.size] for camera in cameras]
-    sigma[:, 2:4] = [[points_alone.CENTRE_SHARE * camera.size[0]] for camera in cameras]
-    mean[:, 4:] = 0.0
-    for key, value in points_alone.SPREAD.items():
-        sigma[:, LENS.index(key)] = value
-    return replace(network, lens_mean=mean, lens_sigma=sigma)
 
 
 def _in_front(state: State) -> State:
