@@ -159,6 +159,23 @@ def test_clicks_have_the_variances_of_the_cameras_where_they_stand():
     assert np.linalg.norm(np.subtract(centres[-1], true), axis=1).max() < 0.1
 
 
+def test_clicks_have_the_loss_that_is_stated_for_them():
+    """A wrong click moves the cameras only if the loss of clicks is wide."""
+    points = floor_points()
+    court, marked = points.args
+    marked = {name: px.copy() for name, px in marked.items()}
+    marked["c0"][4] += 40
+    most = []
+    for click_loss in (3.0, 1e6):
+        clicks = partial(points.func, court, marked, **WEIGHTS | {"click_loss": click_loss})
+        found = calibrate(seen(swung()), lenses=LENSES, clicks=clicks)
+        off = [
+            a.centre_in_world - b.centre_in_world for a, b in zip(found.cameras, RIG, strict=True)
+        ]
+        most.append(np.linalg.norm(off, axis=1).max())
+    assert most[0] < 5e-3 < 10e-3 < most[1]
+
+
 def test_clicked_points_show_that_y_of_the_markers_runs_up():
     xyz = swung()
     upside = seen(xyz)

@@ -3,7 +3,8 @@
 A body is the wand in one frame, or a single point: a marker whose partners are hidden, or a clicked
 point. Bodies are eliminated from the normal equations, so that the cost is linear in frames. One
 more unknown is the ratio of the true length of the wand to the stated one; the uncertainty of the
-stated length is its prior. Residuals have Cauchy weights; their scale is wide at first.
+stated length is its prior. Residuals have Cauchy weights; their scale is wide at first. Clicks keep
+their own sigma and scale.
 """
 
 from dataclasses import dataclass, replace
@@ -85,20 +86,23 @@ class _Normal:
 def adjust(state: State, active: NDArray, of_wand: NDArray) -> Adjusted:
     """Adjust the `active` columns (K,) of the cameras, and all bodies.
 
-    `of_wand` (M,) selects the views whose sigma is estimated from residuals; others keep theirs.
+    `of_wand` (M,) selects the views whose sigma is estimated from residuals. Others keep theirs,
+    and their loss, which is wide at first, too.
     """
     columns = np.append(active, state.length_sigma > 0)
     redundancy = _redundancy(state.bodies, int(columns.sum()), int(of_wand.sum()))
     sigma_px = _sigma(state, of_wand, redundancy)
+    loss = np.where(of_wand, CAUCHY, state.network.loss_scale)
     for widened in (*WIDENED, *[1.0] * ROUNDS):
-        state = _minimised(_weighted(state, of_wand, sigma_px, CAUCHY * widened), columns)
+        state = _minimised(_weighted(state, of_wand, sigma_px, loss * widened), columns)
         last, sigma_px = sigma_px, _sigma(state, of_wand, redundancy)
         if widened == 1.0 and abs(sigma_px - last) <= 1e-3 * sigma_px:
             break
-    state = _weighted(state, of_wand, sigma_px, CAUCHY)
+    state = _weighted(state, of_wand, sigma_px, loss)
     factor = _factor_of_blocks(state, columns)
     wide = float(np.sqrt(EFFICIENCY * factor))
-    normal = _normal(_weighted(state, of_wand, wide * sigma_px, CAUCHY / wide), columns, 0.0)
+    loss = np.where(of_wand, loss / wide, loss)
+    normal = _normal(_weighted(state, of_wand, wide * sigma_px, loss), columns, 0.0)
     covariance = np.zeros((len(columns), len(columns)))
     covariance[np.ix_(columns, columns)] = _inverse(state, normal)
     return Adjusted(state, covariance[:-1, :-1], sigma_px, factor)
@@ -127,10 +131,10 @@ def _sigma(state: State, of_wand: NDArray, redundancy: float) -> float:
     return max(LEAST_SIGMA_PX, found)
 
 
-def _weighted(state: State, of_wand: NDArray, sigma_px: float, scale: float) -> State:
-    """Return the state with this sigma of markers, and this Cauchy scale of all views."""
+def _weighted(state: State, of_wand: NDArray, sigma_px: float, loss: NDArray) -> State:
+    """Return the state with this sigma of markers, and these Cauchy scales (M,) of all views."""
     sigma = np.where(of_wand, sigma_px, state.network.sigma_px)
-    network = replace(state.network, sigma_px=sigma, loss_scale=np.full(len(sigma), scale))
+    network = replace(state.network, sigma_px=sigma, loss_scale=loss)
     return replace(state, network=network)
 
 

@@ -269,33 +269,35 @@ def _in_front(state: State) -> State:
 
 
 def _with_clicks(state: State, cameras, lenses, clicks: Clicks) -> State:
-    """Return a state with clicked points as additional bodies."""
+    """Return a state with clicked points as additional bodies, with their own sigma and loss."""
     bodies, network = state.bodies, state.network
     xy = _straight(cameras, lenses, clicks.xy)
     image, point = np.nonzero(np.isfinite(xy[..., 0]))
     used, at = np.unique(point, return_inverse=True)
-    sigma_px = np.sqrt((clicks.alone_px() ** 2).mean(axis=2))  # one for both axes
+    alone_px = clicks.alone_px()
+    sigma_px = np.sqrt((alone_px**2).mean(axis=2))  # one for both axes
+    loss = clicks.loss_scale * float((clicks.sigma_px / alone_px).mean())
     first, blocks = len(bodies.origin), bodies.block.max() + 1
-    none = np.zeros(len(used))
     bodies = Bodies(
         np.concatenate([bodies.origin, clicks.xyz[used]]),
         np.concatenate([bodies.direction, np.tile([1.0, 0.0, 0.0], (len(used), 1))]),
         np.concatenate([bodies.known, clicks.xyz[used]]),
         np.concatenate([bodies.sigma_m, clicks.sigma_m[used]]),
         np.concatenate([bodies.body, first + np.arange(len(used))]),
-        np.concatenate([bodies.along_m, none]),
+        np.concatenate([bodies.along_m, np.zeros(len(used))]),
         np.concatenate([bodies.block, blocks + np.arange(len(used))]),
     )
-    network = replace(
+    both = problem.with_points(
         network,
-        xyz=np.concatenate([network.xyz, clicks.xyz[used]]),
-        xyz_mean=np.concatenate([network.xyz_mean, clicks.xyz[used]]),
-        xyz_sigma=np.concatenate([network.xyz_sigma, none + np.inf]),
-        image_idx=np.concatenate([network.image_idx, image]),
-        point_idx=np.concatenate([network.point_idx, len(network.xyz) + at]),
-        xy=np.concatenate([network.xy, xy[image, point]]),
+        np.concatenate([network.xyz, clicks.xyz[used]]),
+        np.concatenate([network.image_idx, image]),
+        np.concatenate([network.point_idx, len(network.xyz) + at]),
+        np.concatenate([network.xy, xy[image, point]]),
+    )
+    network = replace(
+        both,
         sigma_px=np.concatenate([network.sigma_px, sigma_px[image, point]]),
-        loss_scale=np.concatenate([network.loss_scale, np.full(len(image), np.inf)]),
+        loss_scale=np.concatenate([network.loss_scale, np.full(len(image), loss)]),
     )
     return _in_front(replace(state, bodies=bodies, network=network))
 
