@@ -94,6 +94,11 @@ def test_other_programs_place_the_same_markers(tmp_path, program, text):
     np.testing.assert_allclose(found.xy[:, 1], [[[0, 0], [99, 9]]] * 2)
 
 
+def test_numbers_in_scientific_notation_are_no_header(tmp_path):
+    found = read(tmp_path, "1.0e+00,1e0,1E0,1,1.00e+02,NaN,,1.0e+01\n", program="dltdv8")
+    np.testing.assert_array_equal(found.xy[0, 0], [[0, 0], [np.nan, np.nan]])
+
+
 def test_a_frame_of_empty_cells_is_a_frame_and_an_empty_line_is_none(tmp_path):
     found = read(tmp_path, f"{HEADER}\n1,1,2,2,3,3,4,4\n,,,,,,,\n\n9,1,2,2,3,3,4,4\n\n",
                  program="dltdv8")  # fmt: skip

@@ -199,9 +199,7 @@ def _theirs(path: StrPath, wand: Wand, sizes: Sequence[tuple[int, int]], program
     # A row of empty cells is a frame in which nothing is seen, an empty line is none.
     lines = [row for row in lines if len(row) > 1 or any(row)]
     header = lines[0] if lines else []
-    plain = bool(header) and not any(
-        re.search("[A-Za-z]", re.sub("(?i)nan", "", c)) for c in header
-    )
+    plain = bool(header) and all(_is_number(cell) for cell in header if cell)
     columns = _numbered(wand, len(sizes)) if plain else _named(path, header)
     order = _points(path, wand, columns)
     if sorted({camera for _, camera, _ in columns}) != list(range(1, len(sizes) + 1)):
@@ -221,6 +219,14 @@ def _theirs(path: StrPath, wand: Wand, sizes: Sequence[tuple[int, int]], program
         one[..., 0] -= first_x
         one[..., 1] = height - one[..., 1] if first_y is None else one[..., 1] - first_y
     return xy
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
 
 
 def _named(path: StrPath, header: Sequence[str]) -> list[tuple[str, int, str]]:
