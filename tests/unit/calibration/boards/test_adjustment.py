@@ -48,23 +48,43 @@ def test_without_noise_the_true_cameras_are_found(known):
     assert (spread < 0.1, count > 100) == (True, True)
 
 
+def squares_in_sigmas(found, places):
+    """Return the squared errors of the cameras' positions in their stated errors: 3 on average."""
+    off = []
+    for k, true in enumerate(in_world_of_first(places)):
+        camera = found.cameras[k]
+        at = IMAGE * k + 3 + np.arange(3)
+        by_shift = camera.cam_from_world[:, :3].T
+        covariance = by_shift @ found.covariance[np.ix_(at, at)] @ by_shift.T
+        error = camera.centre_in_world - true.centre_in_world
+        off.append(error @ np.linalg.solve(covariance, error))
+    return off
+
+
 def test_errors_are_as_large_as_stated():
     places = boards_made.places(30, 5)
     off = []
     for seed in range(4):
         seen, found = solved(places, 0.4, seed)
         assert found.sigma_px == pytest.approx(0.4, rel=0.15)
+        assert found.factor < 1.2
         assert adjustment.summary(found, seen, BOARD, stated=True)["warnings"] == []
-        for k, true in enumerate(in_world_of_first(places)):
-            camera = found.cameras[k]
-            at = IMAGE * k + 3 + np.arange(3)
-            by_shift = camera.cam_from_world[:, :3].T
-            covariance = by_shift @ found.covariance[np.ix_(at, at)] @ by_shift.T
-            error = camera.centre_in_world - true.centre_in_world
-            assert np.linalg.norm(error) < 0.05
-            off.append(error @ np.linalg.solve(covariance, error))
-    # 3 degrees of freedom: 3 on average; priors make the stated errors a little large.
-    assert 1.0 < np.mean(off) < 4.5
+        off += squares_in_sigmas(found, places)
+        for camera, true in zip(found.cameras, in_world_of_first(places), strict=True):
+            assert np.linalg.norm(camera.centre_in_world - true.centre_in_world) < 0.05
+    assert 1.0 < np.mean(off) < 4.5  # priors make the stated errors a little large
+
+
+def test_errors_that_corners_of_a_picture_share_are_as_large_as_stated():
+    places, off = boards_made.places(40, 5), []
+    for seed in range(8):
+        seen = boards_made.seen(BOARD, RIG, places, 0.4, seed)
+        shift = np.random.default_rng(100 + seed).normal(0, 1.0, (4, 40, 2))
+        seen = replace(seen, xy=seen.xy + shift[seen.camera, seen.picture])
+        found = adjustment.calibrate(BOARD, seen, SIZES, floor="000")
+        assert 2.0 < found.factor < 8.0
+        off += squares_in_sigmas(found, places)
+    assert 1.5 < np.mean(off) < 3.6
 
 
 def test_misread_corners_do_not_move_the_cameras():

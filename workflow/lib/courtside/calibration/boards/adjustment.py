@@ -38,7 +38,7 @@ LEAST_NEAR = 0.7  # ASSUME: share of the corners, in pictures that two cameras s
 
 # ASSUME: one camera is told whose corners fit worse by this factor, and by more than a pixel.
 MUCH_WORSE, WORSE_PX = 3.0, 1.0
-OUT_OF_STEP = 2.0  # ASSUME: more excess scatter of whole pictures is told; at rest it is about 1
+OUT_OF_STEP = 2.0  # ASSUME: more excess scatter of whole pictures is told; at rest it is 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -309,14 +309,16 @@ def _covariance(state: _State, fixed: _Problem, sigma_px: float) -> tuple[NDArra
 
     Corners of one picture err together where cameras do not film at one time or a picture is
     blurred. The scores of whole pictures scatter then more than independent corners say; their
-    mean excess over all unknowns widens the covariance (a sandwich estimate with one number).
+    mean excess over all unknowns widens the covariance (a sandwich estimate with one number). The
+    slope of a score is the mean of the squared Cauchy weights, that of the information their mean.
     """
     weight = _weight(problem.residuals(state.network), sigma_px)
     normal = _normal(state, fixed, weight, sigma_px, 0.0)
     inverse = np.linalg.inv(normal.information)
     used = len(np.unique(fixed.picture))
     scatter = normal.scores.T @ normal.scores * used / max(used - 1, 1)
-    factor = max(1.0, float(np.trace(inverse @ scatter)) / len(inverse))
+    slope = float((weight**2).mean() / weight.mean())
+    factor = max(1.0, float(np.trace(inverse @ scatter)) / (len(inverse) * slope**2))
     whole = np.zeros((len(fixed.active), len(fixed.active)))
     whole[np.ix_(fixed.active, fixed.active)] = factor * inverse
     return whole, factor
