@@ -75,6 +75,16 @@ def test_pictures_of_two_sizes_are_refused(tmp_path):
         corners.of_pictures({"left": tmp_path, "right": tmp_path}, BOARD)
 
 
+def test_two_pictures_of_one_name_are_refused(tmp_path):
+    image = boards_made.picture(BOARD, boards_made.hall()[0], boards_made.places(1, 1)[0])
+    for name in ("a.png", "a.jpg"):
+        cv2.imwrite(str(tmp_path / name), image)
+    with pytest.raises(
+        InputError, match=r"a\.png: expected one picture of each name, found a\.jpg"
+    ):
+        corners.of_pictures({"c0": tmp_path}, BOARD)
+
+
 @needs_real
 def test_frames_of_real_videos_show_what_the_table_says():
     board = Board.of({"kind": "charuco", "squares": [4, 5], "square_m": 0.054,
@@ -119,6 +129,15 @@ def test_a_real_table_of_caliscope():
         (TABLE.replace("cam_1,3", "cam_1,12"), "line 3: expected corner from 0 to 11, found 12"),
         (TABLE.replace("10.5", "wide"), "line 2: expected x_px as a finite number, found 'wide'"),
         (TABLE.replace("cam_1", "cam_2"), r"camera right \(cam_1\), found none.*name_in_calib"),
+        (
+            TABLE + "7,cam_1,3,30,41\n",
+            "line 5: expected one row for corner 3 of picture 7 in camera cam_1, found a second",
+        ),
+        (
+            "sync_index,cam_id,keypoint_id,img_loc_x,img_loc_y,object_id\n"
+            "7,left,0,1,2,0\n7,1,0,1,2,0\n7,1,0,3,4,1\n",
+            "expected corners of one board, found object_id 0, 1; delete the rows of the others",
+        ),
         (TABLE.split("\n")[0], "expected corners of a board, found none"),
         ("a,b\n1,2\n", "expected the columns picture,camera,corner"),
         ("sync_index,cam_id\n1,2\n", "expected the columns sync_index,cam_id,keypoint_id"),

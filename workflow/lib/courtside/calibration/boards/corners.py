@@ -52,7 +52,13 @@ def of_pictures(folders: Mapping[str, StrPath], board: Board) -> Corners:
 
 def _grey(paths: Sequence[Path], size: list[tuple[int, int]]) -> Iterator[tuple[str, NDArray]]:
     """Yield pictures of one size by name; append the size, px, to the empty list `size`."""
+    by_name: dict[str, Path] = {}
     for path in paths:
+        if by_name.setdefault(path.stem, path) != path:
+            raise InputError(
+                f"{path}: expected one picture of each name, found {by_name[path.stem].name} "
+                "beside it; remove or rename one"
+            )
         image = images.read(path, cv2.IMREAD_GRAYSCALE, advice="delete or replace it")
         size[:] = [chessboard.same_size(path, image, size[0] if size else None)]
         yield path.stem, image
@@ -75,7 +81,8 @@ def of_table(path: StrPath, cameras: Mapping[str, str], board: Board) -> Corners
     """Read corners from a CSV: `OURS`, or `THEIRS` of Caliscope, whose cameras are `cam_<id>`.
 
     `cameras` maps the name in the session to that in the table. Raises `InputError` if a number is
-    invalid, or the table's own coordinates of corners contradict the board.
+    invalid, a corner is given twice, or the table's own coordinates of corners contradict the
+    board.
     """
     try:
         rows, names = table(path, OURS), OURS
@@ -85,6 +92,17 @@ def of_table(path: StrPath, cameras: Mapping[str, str], board: Board) -> Corners
         rows, names = table(path, THEIRS, MORE), THEIRS
     if not rows:
         raise InputError(f"{path}: expected corners of a board, found none; write it again")
+    boards = sorted({row["object_id"] for _, row in rows if "object_id" in row})
+    if len(boards) > 1:
+        raise InputError(
+            f"{path}: expected corners of one board, found object_id {', '.join(boards)[:80]}; "
+            "delete the rows of the others"
+        )
+    return _together(_of_rows(path, rows, names, cameras, board), {})
+
+
+def _of_rows(path: StrPath, rows, names, cameras: Mapping[str, str], board: Board) -> dict:
+    """Return the pictures of each camera that show corners, from the rows of a table."""
     wanted = {theirs: name for name, theirs in cameras.items()}
     found: dict[str, dict[str, tuple[list, list]]] = {name: {} for name in cameras}
     for line, row in rows:
@@ -94,6 +112,11 @@ def of_table(path: StrPath, cameras: Mapping[str, str], board: Board) -> Corners
         where = f"{path}: line {line}"
         corner = _corner(where, names[2], row, board)
         ids, xy = found[name].setdefault(row[names[0]], ([], []))
+        if corner in ids:
+            raise InputError(
+                f"{where}: expected one row for corner {corner} of picture {row[names[0]]} in "
+                f"camera {row[names[1]]}, found a second one; delete one"
+            )
         ids.append(corner)
         xy.append([number(where, key, row[key]) for key in names[3:]])
     seen = {
@@ -106,7 +129,7 @@ def of_table(path: StrPath, cameras: Mapping[str, str], board: Board) -> Corners
                 f"{path}: expected corners of camera {name} ({theirs}), found none; give it its "
                 "`name_in_calibration`"
             )
-    return _together(seen, {})
+    return seen
 
 
 def _corner(where: str, key: str, row: Mapping[str, str], board: Board) -> int:
