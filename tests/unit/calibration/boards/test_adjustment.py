@@ -87,6 +87,19 @@ def test_errors_that_corners_of_a_picture_share_are_as_large_as_stated():
     assert 1.5 < np.mean(off) < 3.6
 
 
+def test_the_error_of_the_boards_size_is_an_error_of_the_scale():
+    places, lenses = boards_made.places(30, 5), {camera.name: camera for camera in RIG}
+    unsure = Board.of(boards_made.CHARUCO | {"square_sigma_m": 0.001})
+    _, exact = solved(places, 0.1, 1, lenses=lenses)
+    seen = boards_made.seen(BOARD, RIG, places, 0.1, 1)
+    found = adjustment.calibrate(unsure, seen, SIZES, floor="000", lenses=lenses)
+    for k, camera in enumerate(found.cameras):
+        at = IMAGE * k + 3 + np.arange(3)
+        more = (found.covariance - exact.covariance)[np.ix_(at, at)]
+        away_m = np.linalg.norm(camera.centre_in_world)
+        assert np.sqrt(np.trace(more)) == pytest.approx(0.01 * away_m, rel=1e-6)
+
+
 def test_misread_corners_do_not_move_the_cameras():
     places = boards_made.places(30, 5)
     seen = boards_made.seen(BOARD, RIG, places, 0.2, 1)

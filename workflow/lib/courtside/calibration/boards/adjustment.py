@@ -3,7 +3,7 @@
 The unknowns are poses and lenses of the cameras (`bundle.problem`) and the pose of the board in
 every picture but one, whose board is the world: z = 0 is its plane. Boards are eliminated, so that
 the cost grows with the number of pictures. Residuals have Cauchy weights. The boards' size is the
-only length.
+only length: its error is added to the covariance.
 """
 
 from collections.abc import Mapping, Sequence
@@ -106,6 +106,7 @@ def calibrate(
     error_px[usable] = off
     _check_rigid(seen, error_px)
     covariance, factor = _covariance(state, fixed, sigma_px)
+    covariance = covariance + _of_size(board, state.network)
     solved = selection.cameras(state.network, seen.cameras, [c.size for c in known])
     if lenses:
         solved = [
@@ -322,6 +323,14 @@ def _covariance(state: _State, fixed: _Problem, sigma_px: float) -> tuple[NDArra
     whole = np.zeros((len(fixed.active), len(fixed.active)))
     whole[np.ix_(fixed.active, fixed.active)] = factor * inverse
     return whole, factor
+
+
+def _of_size(board: Board, network: Network) -> NDArray:
+    """Return the covariance of the network's columns by the error of the board's size."""
+    scaled = np.zeros(network.n_columns)
+    for c, pose in enumerate(network.cam_from_world):
+        scaled[IMAGE * c + 3 : IMAGE * c + len(POSE)] = pose[:, 3]
+    return (board.square_sigma_m / board.square_m) ** 2 * np.outer(scaled, scaled)
 
 
 def summary(found: Found, seen: Corners, board: Board, *, stated: bool) -> dict[str, Any]:

@@ -38,6 +38,7 @@ class Board:
     dictionary: str | None = None  # of markers, as OpenCV calls it
     inverted: bool = False  # whether black and white are exchanged
     legacy: bool = False  # a ChArUco board of OpenCV before 4.6 with an even number of rows
+    square_sigma_m: float = 0.0  # standard deviation of `square_m`, as of all its lengths
 
     @classmethod
     def of(cls, given: Mapping[str, Any]) -> "Board":
@@ -61,6 +62,7 @@ class Board:
             name,
             given.get("inverted", False),
             given.get("legacy", False),
+            float(given.get("square_sigma_m", 0.0)),
         )
         if made.kind == "chessboard" and (columns - rows) % 2 == 0:
             raise InputError(
