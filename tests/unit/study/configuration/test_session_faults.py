@@ -253,6 +253,17 @@ def test_good_sessions_have_no_fault(root, content):
             ["cameras.b: expected `static` or a video in a take"],
         ),
         (
+            BOARDED
+            | {"board": without(BOARD, "lenses")}
+            | {
+                "cameras": {
+                    "a": {"static": "a.mp4", "chessboard": {"images": "a.mp4"}},
+                    "b": {"static": "b.mp4"},
+                }
+            },
+            ["board: expected `chessboard` of every camera or of none, found none for b; add it"],
+        ),
+        (
             RECORDED
             | {"cameras": {"a": {"static": "a.mp4"}}, "takes": {"t": {"videos": {"a": "a.mp4"}}}}
             | {"subjects": {"p1": None}},

@@ -267,8 +267,20 @@ def _board_faults(file: Path, content: Content) -> Iterator[str]:
             f"{where}: expected `dictionary` of its markers, such as DICT_4X4_50, found none; it "
             "stands where the board was printed"
         )
+    if "lenses" not in given:
+        yield from _lens_faults(where, content["cameras"])
     if "corners" in given and "lenses" not in given:
         yield from _unsized(file, content)
+
+
+def _lens_faults(where: str, cameras: Content) -> Iterator[str]:
+    """Yield the fault of a board where some cameras have a lens from a chessboard, others none."""
+    missing = sorted(name for name, one in cameras.items() if not (one or {}).get("chessboard"))
+    if 0 < len(missing) < len(cameras):
+        yield (
+            f"{where}: expected `chessboard` of every camera or of none, found none for "
+            f"{', '.join(missing)}; add it, or give `lenses`"
+        )
 
 
 def _wand_faults(file: Path, content: Content) -> Iterator[str]:
