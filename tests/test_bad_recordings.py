@@ -21,6 +21,7 @@ import yaml
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court import quality
 from courtside.calibration.records import tie_points
+from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import project
 from courtside.records.cameras import clicks
 from courtside.records.truth import session_truth
@@ -166,11 +167,11 @@ def aligned(good, tmp_path, marked, name):
     return json.loads(out[1].read_text())["warnings"]
 
 
-def resected(good, tmp_path, marked, name="known18", court=BADMINTON):
+def resected(good, tmp_path, marked, name="known18", court=BADMINTON, lenses=()):
     points = written(tmp_path, marked, court_files.read(court))
     out = tmp_path / "known.toml", tmp_path / "known.json"
     sigma = {"click_sigma_px": CLICKING["click_sigma_px"]}
-    files = points, court, list(good.static.values()), []
+    files = points, court, list(good.static.values()), list(lenses)
     names = {"cameras": list(good.static), "calibration": name}
     run("resect_cameras", *files, *out, **names, step=sigma)
     return json.loads(out[1].read_text())["warnings"]
@@ -194,6 +195,16 @@ def test_good_recordings_and_clicks_say_nothing(good, clicked, tmp_path):
     assert (found.error, found.warnings, found.is_written) == ("", [], True)
     assert aligned(good, tmp_path, clicked, "sim3-n12") == []
     assert resected(good, tmp_path, clicked) == []
+
+
+def test_a_lens_of_another_picture_size_is_refused(good, clicked, tmp_path):
+    for name in CAMERAS:
+        lens = camera_models.plain(name, (960, 540), 1.0)
+        camera_models.write_toml(tmp_path / f"{name}.toml", [lens], source="chessboard")
+    lenses = [tmp_path / f"{name}.toml" for name in CAMERAS]
+    with pytest.raises(InputError) as error:
+        resected(good, tmp_path, clicked, "known18-board", lenses=lenses)
+    assert_says(str(error.value), ["960x540 px", "camera side", "480x270"])
 
 
 def test_exchanged_camera_files_are_recognised(good, clicked, tmp_path):

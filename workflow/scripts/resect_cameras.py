@@ -32,6 +32,8 @@ def main(
     sizes = {camera: images.read(path).shape[1::-1] for camera, path in pictures.items()}
     lens_of = dict(zip(cameras, lens_toml, strict=False))
     lenses = {camera: camera_models.read_toml(path)[0] for camera, path in lens_of.items()}
+    for camera, lens in lenses.items():
+        camera_models.check_size(lens, sizes[camera], pictures[camera])
     way = known_points.method(calibration, court)
     results = known_points.calibrate(
         way, court, marked, sizes, lenses, click_sigma_px=click_sigma_px
