@@ -1,5 +1,7 @@
 """COLMAP's models: written by hand, by pycolmap, and by ourselves for pycolmap."""
 
+from dataclasses import replace
+
 import numpy as np
 import pycolmap
 import pytest
@@ -73,6 +75,20 @@ def test_the_unit_has_to_be_stated(tmp_path, given):
     np.testing.assert_allclose(
         cameras.project(camera, theirs.POINTS), cameras.project(OURS, theirs.POINTS), atol=1e-6
     )
+
+
+@pytest.mark.parametrize("name", ["right.png", "from the right.png"])
+def test_images_without_their_second_lines_are_refused(tmp_path, name):
+    for file, text in colmap.texts([OURS, replace(OURS, name="right")]).items():
+        text = text.replace("right.png", name)
+        (tmp_path / file).write_text(text)
+    assert len(file_formats.read(tmp_path, "m")) == 2
+    images = (tmp_path / "images.txt").read_text()
+    (tmp_path / "images.txt").write_text(images.replace("\n\n", "\n"))
+    with pytest.raises(
+        InputError, match=r"found: no line, empty or of points, behind left\.png in"
+    ):
+        file_formats.read(tmp_path, "m")
 
 
 @pytest.mark.parametrize(

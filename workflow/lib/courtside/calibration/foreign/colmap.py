@@ -74,13 +74,20 @@ def _text_lenses(text: str) -> Iterator[tuple[int, Lens]]:
 
 
 def _text_images(text: str) -> Iterator[Image]:
-    """Yield the images: every second line, which may be empty, has the points of the one above."""
+    """Yield the images: every second line, which may be empty, has the points of the one above.
+
+    Raises `ValueError` if it is no list of points (x, y and a number each) but another image.
+    """
     lines = iter(text.splitlines())
     for line in lines:
         if line.strip() and not line.startswith("#"):
             fields = line.split(maxsplit=9)
             yield fields[9].strip(), int(fields[8]), [float(value) for value in fields[1:8]]
-            next(lines, "")
+            points = next(lines, "").split()
+            if points and (len(points) % 3 or not points[-1].lstrip("-").isdigit()):
+                raise ValueError(
+                    f"no line, empty or of points, behind {fields[9].strip()} in images.txt"
+                )
 
 
 def _binary_lenses(data: bytes) -> Iterator[tuple[int, Lens]]:
