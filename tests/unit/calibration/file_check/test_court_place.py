@@ -148,6 +148,18 @@ def test_a_file_in_another_frame_is_named():
     assert "turned by 90 degrees and tilted by 0" in judged.warnings[0]
 
 
+def test_half_a_turn_is_told_only_where_lines_show_it():
+    true, turn, file = right_cameras(), np.diag([-1.0, -1.0, 1.0]), []
+    for one in true:
+        pose = one.cam_from_world @ np.vstack([
+            np.column_stack([turn, 2 * MIDDLE * [1, 1, 0]]), [0, 0, 0, 1]
+        ])  # fmt: skip
+        file.append(replace(one, cam_from_world=pose))
+    assert court_place.judge(file, views(true), COURT, either_end=True).warnings == []
+    (line,) = court_place.judge(file, views(true), COURT, either_end=False).warnings
+    assert "its middle is 0.0 m from where figures draw it, turned by 180 degrees" in line
+
+
 def test_one_camera_or_few_points_say_nothing():
     true = right_cameras()
     xy = views(true)

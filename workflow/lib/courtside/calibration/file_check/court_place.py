@@ -319,7 +319,7 @@ def _shared_fault(place: Place) -> str:
     """Return what is wrong with all cameras together, or nothing.
 
     Cameras of another unit or frame agree with one another. Figures draw the court in the frame of
-    the file, so it must be the court's, but for the half turn that leaves its lines as they are.
+    the file, so it must be the court's, but for a half turn that leaves its lines as they are.
     """
     court, world_from_court = place.court, place.world_from_court
     if abs(world_from_court.scale - 1) > MOST_SCALE:
@@ -332,8 +332,9 @@ def _shared_fault(place: Place) -> str:
     middle = np.array([*court.size_m / 2, 0.0])
     away_m = np.linalg.norm(world_from_court.points(middle) - middle)
     turned = world_from_court.rotation
-    about = np.degrees(np.arctan2(turned[1, 0], turned[0, 0])) % 180
-    about = min(about, 180 - about)
+    period = 180 if place.either_end else 360
+    about = np.degrees(np.arctan2(turned[1, 0], turned[0, 0])) % period
+    about = min(about, period - about)
     tilt = np.degrees(np.arccos(np.clip(turned[2, 2], -1, 1)))
     if away_m <= MOST_AWAY_M and max(about, tilt) <= MOST_TURN_DEG:
         return ""
