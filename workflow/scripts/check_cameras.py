@@ -24,7 +24,8 @@ def main(paths, check_json, check_csv, *, names, override, takes, unit=None):
     views = in_calibrated(found, shown, people.xy) if people else []
     joints = residuals.of_people(views) if views else None
     seen = verdict.Seen(static, joints)
-    judged = verdict.judge(found, seen, residuals.height_px(views))
+    person_px = residuals.height_px(views, people.height_px) if people else np.inf
+    judged = verdict.judge(found, seen, person_px)
     for line in judged.warnings:
         log.tell(line, check_json)
     rows = verdict.by_camera(found, seen)

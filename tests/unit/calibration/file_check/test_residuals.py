@@ -70,5 +70,13 @@ def test_the_height_is_that_of_whole_people():
     view = np.zeros((10, 12, 2))
     view[..., 1] = np.linspace(100, 400, 12)
     view[:3, 5] = np.nan
-    assert residuals.height_px([view]) == pytest.approx(300)
-    assert residuals.height_px([np.full((4, 12, 2), np.nan)]) == np.inf
+    assert residuals.height_px([view], np.full((1, 10), 900.0)) == pytest.approx(300)
+    nobody = np.full((4, 12, 2), np.nan)
+    assert residuals.height_px([nobody], np.full((1, 4), 20.0)) == np.inf
+
+
+def test_the_height_of_people_whose_feet_are_hidden_is_that_of_standing_people():
+    view = np.zeros((10, 12, 2))
+    view[:, 10:] = view[7:] = np.nan
+    standing_px = np.where(np.arange(10) < 7, 400.0, 20.0)
+    assert residuals.height_px([view], standing_px[None]) == pytest.approx(312)

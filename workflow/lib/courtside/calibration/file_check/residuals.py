@@ -16,6 +16,7 @@ from courtside.geometry.triangulation import triangulate, triangulate_all
 MOST_POINTS = 200  # ASSUME: of people's joints; more take longer and say the same
 BEHIND_PX = 1e3  # counts as residual of a point behind a camera or where its lens sees nothing
 NEAREST_M = 1e-3  # keeps divisions finite
+FROM_SHOULDERS = 0.78  # ASSUME: height of the shoulders above the ankles, over a person's height
 
 
 class Rays:
@@ -99,10 +100,17 @@ def of_people(views: Sequence[NDArray]) -> NDArray:
     return xy[:, seen[np.round(steps).astype(int)]] if len(seen) else xy[:, :0]
 
 
-def height_px(views: Sequence[NDArray]) -> float:
-    """Return the median height of people in pictures, px, of joints (..., J, 2) of cameras."""
-    heights = []
-    for view in views:
-        whole = view[np.isfinite(view).all(axis=(-2, -1))]
-        heights += list(np.ptp(whole[..., 1], axis=-1).ravel())
-    return float(np.median(heights)) if heights else float("inf")
+def height_px(views: Sequence[NDArray], standing_px: NDArray) -> float:
+    """Return the median height of people, px, from shoulders to ankles; inf without anybody.
+
+    `views` are their joints (T, J, 2) by camera. If no picture shows anybody whole, the height
+    follows from `standing_px` (C, T), that of each person, standing, in each picture.
+    """
+    whole = [view[np.isfinite(view).all(axis=(-2, -1))] for view in views]
+    heights = [np.ptp(view[..., 1], axis=-1) for view in whole]
+    if not any(map(len, heights)):
+        shown = [np.isfinite(view).any(axis=(-2, -1)) for view in views]
+        both = zip(standing_px, shown, strict=True)
+        heights = [FROM_SHOULDERS * each[seen] for each, seen in both]
+    found = np.concatenate([*heights, np.zeros(0)])
+    return float(np.median(found)) if len(found) else float("inf")

@@ -120,7 +120,7 @@ def _mended(cameras, calibrated, seen: Seen, found_again) -> tuple[list[str], li
         for (whole, shown), xy in zip(pairs, seen.xy, strict=True)
     ]
     joints = verdict.Seen(people=residuals.of_people(views))
-    said = verdict.judge(calibrated, joints, residuals.height_px(views))
+    said = verdict.judge(calibrated, joints, residuals.height_px(views, seen.height_px))
     if not said.faults:
         return [], list(cameras)
     lines = [f"{one.what} ({one.advice})" for one in said.faults]
