@@ -138,7 +138,7 @@ def test_qualisys_by_hand(tmp_path):
         ('viewrotation="90"', 'viewrotation="45"', "26580: expected viewrotation"),
         ("<fov_video", "<fov_film", "26580: expected fov_video left"),
         ('right="1919"', 'right="1"', "26580: expected size"),
-        ('active="1"', 'active="0"', "different names, found \\[\\]"),
+        ('active="1"', 'active="0"', "expected cameras, found none"),
     ],
 )
 def test_malformed_qualisys_is_one_line_to_mend(tmp_path, old, new, message):
@@ -421,6 +421,21 @@ def test_lenses_do_not_depend_on_where_their_cameras_stood(tmp_path):
     with pytest.raises(InputError, match="expected it within 300 m"):
         file_formats.read(tmp_path / "mm.toml")
     assert file_formats.known_lenses(tmp_path / "mm.toml", {"a": "left"}, [])["a"].K[0, 0] == 1920
+
+
+@pytest.mark.parametrize("lenses", [False, True])
+def test_a_calibration_without_cameras_is_refused(tmp_path, lenses):
+    (tmp_path / "notes.md").write_text("nothing")
+    (tmp_path / "empty.toml").write_text("")
+    for path, message in (
+        (tmp_path, r"expected Qualisys .* found a folder without them; give one"),
+        (tmp_path / "empty.toml", "expected cameras, found none; export the calibration again"),
+    ):
+        with pytest.raises(InputError, match=message):
+            if lenses:
+                file_formats.known_lenses(path, {"a": "left"}, [])
+            else:
+                file_formats.read(path)
 
 
 def test_renaming_picks_and_orders():

@@ -334,7 +334,7 @@ def test_lengths_are_read_in_the_unit_of_the_file(tmp_path, metadata, metres):
         ("fisheye = false", '[metadata]\nunit = "inch"', "expected unit as one of m, cm, mm"),
         ("fisheye = false", "[metadata]\nunit = 3", "expected unit as one of m, cm, mm"),
         ("fisheye = false", "fisheye = fal", "expected TOML"),
-        ("[cam_0]", "[metadata]", "expected cameras of different names, found \\[\\]"),
+        ("[cam_0]", "[metadata]", "expected cameras, found none; export"),
     ],
 )
 def test_malformed_files_are_one_line_to_mend(tmp_path, old, new, message):

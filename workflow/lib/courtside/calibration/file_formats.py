@@ -212,6 +212,8 @@ def _in_folder(path: Path) -> Found:
     if pickles:
         return [opencap.read(p, _bytes(p), name) for name, p in pickles.items()], None
     files = sorted(file for file in path.iterdir() if file.suffix.lower() in OPENCV_SUFFIXES)
+    if not files:
+        raise known.refused(path, "a folder without them", "give one of these")
     texts = [_text(file) for file in files]
     found = [c for file, text in zip(files, texts, strict=True) for c in opencv.read(file, text)]
     return found, _unit_of(*texts)

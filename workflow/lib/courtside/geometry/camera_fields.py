@@ -92,7 +92,9 @@ def unit_in_metres(where: StrPath, unit: object) -> float:
 def check_distinct(path: StrPath, cameras: Cameras) -> Cameras:
     """Return `cameras`; raise `InputError` if there are none or two have the same name."""
     names = [camera.name for camera in cameras]
-    if not names or len(set(names)) < len(names):
+    if not names:
+        raise InputError(f"{path}: expected cameras, found none; {EXPORT_AGAIN}")
+    if len(set(names)) < len(names):
         raise InputError(
             f"{path}: expected cameras of different names, found {names}; {EXPORT_AGAIN}"
         )
