@@ -33,7 +33,6 @@ STATE_UNIT = (
     "session file"
 )
 FARTHEST_M = 300.0  # ASSUME: no hall is larger: a camera farther away is in mm or cm
-NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
 OPENCV_SUFFIXES = (".yml", ".yaml", ".xml")
 # What to do with files that are recognised and not read.
 OF_THEIA = (
@@ -105,8 +104,7 @@ def rename(found: Iterable[Camera], names: Mapping[str, str]) -> list[Camera]:
     """Pick the cameras of a session from a calibration, under the session's names, in their order.
 
     `names` maps the name in the session to the name in the calibration. Raises `InputError` if the
-    calibration has no such camera, two cameras of the session are the same one, or a name cannot be
-    a file name of the study.
+    calibration has no such camera, or two cameras of the session are the same one.
     """
     by_name = {camera.name: camera for camera in found}
     for ours, theirs in names.items():
@@ -120,11 +118,6 @@ def rename(found: Iterable[Camera], names: Mapping[str, str]) -> list[Camera]:
             raise InputError(
                 f"camera {ours}: expected a camera of its own in the calibration, found {theirs!r} "
                 "given to another as well; correct the session file"
-            )
-        if not NAME.fullmatch(ours):
-            raise InputError(
-                f"camera {ours!r}: expected a name of a-z, 0-9, _ and -, begun with a letter or "
-                "digit, found another; rename it in the session file"
             )
     return [replace(by_name[theirs], name=ours) for ours, theirs in names.items()]
 
