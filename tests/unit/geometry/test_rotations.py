@@ -49,6 +49,8 @@ def test_a_transform_times_its_inverse_is_the_identity():
     b_from_a = np.column_stack([cv2.Rodrigues(np.array([0.3, -1.2, 2.0]))[0], [1.0, -2.0, 3.0]])
     square = [np.vstack([m, [0, 0, 0, 1]]) for m in (b_from_a, rotations.invert(b_from_a))]
     np.testing.assert_allclose(square[0] @ square[1], np.eye(4), atol=1e-14)
+    same = rotations.composed(b_from_a, rotations.invert(b_from_a))
+    np.testing.assert_allclose(same, np.eye(3, 4), atol=1e-14)
 
 
 VECTORS_RNG = np.random.default_rng(0)

@@ -3,7 +3,7 @@
 camera: `Camera`, `plain`, `project`, `undistort`, `crop`, `scaled`, `check_size`, and TOML files
 picture_size: `relation`, `scaled_size`, `advice`: a video's size against the calibrated one
 camera_fields: checked numbers of calibration files (`numbers`, `pose`, `five_coefficients`)
-rotations: `rotation_from_rodrigues`, `rodrigues_from_rotation`, `interpolate`, `invert`
+rotations: `rotation_from_rodrigues`, `rodrigues_from_rotation`, `interpolate`, `invert`, `composed`
 similarity: `Sim3`, `umeyama`, `rigid`, `robust_umeyama`, `kabsch`
 interpolation: `linear`, `between`, `nearest`, `shares`
 boxes: `usual_side`

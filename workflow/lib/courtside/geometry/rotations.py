@@ -57,6 +57,12 @@ def invert(b_from_a: NDArray) -> NDArray:
     return np.column_stack([rotation, -rotation @ b_from_a[:, 3]])
 
 
+def composed(c_from_b: NDArray, b_from_a: NDArray) -> NDArray:
+    """Return `c_from_a` (3, 4) of two rigid transforms (3, 4)."""
+    rotation = c_from_b[:, :3] @ b_from_a[:, :3]
+    return np.column_stack([rotation, c_from_b[:, :3] @ b_from_a[:, 3] + c_from_b[:, 3]])
+
+
 def cross(a: NDArray, b: NDArray) -> NDArray:
     """Return the cross products (..., 3) of vectors (..., 3).
 

@@ -37,8 +37,8 @@ class Poses:
 def flat(board: Board, seen: Corners) -> NDArray:
     """Return which corners (M,) lie on one plane with the others of their picture, bool.
 
-    A misread corner does not; lens distortion bends a board by less than a tenth of a square.
-    Raises `InputError` if most corners do not, because the stated board is then wrong.
+    A misread corner does not; lens distortion is assumed to bend a board by less than a tenth of a
+    square. Raises `InputError` if most corners do not, because the stated board is then wrong.
     """
     found = np.zeros(len(seen.xy), dtype=bool)
     for rows in (view for c in range(len(seen.cameras)) for view in _views(seen, c)):
@@ -99,22 +99,15 @@ def poses(board: Board, seen: Corners, ideal: NDArray, world: str | None) -> Pos
     for (camera, picture), (rows, pose) in views.items():
         if len(rows) > most[picture]:
             most[picture] = len(rows)
-            boards[picture] = product(rotations.invert(from_root[camera]), pose)
+            boards[picture] = rotations.composed(rotations.invert(from_root[camera]), pose)
     at = _world(seen, views, world)
     world_from_root = rotations.invert(boards[at])
     root_from_world = boards[at]
     return Poses(
-        np.stack([product(pose, root_from_world) for pose in from_root]),
-        np.stack([product(world_from_root, one) for one in boards]),
+        np.stack([rotations.composed(pose, root_from_world) for pose in from_root]),
+        np.stack([rotations.composed(world_from_root, one) for one in boards]),
         at,
     )
-
-
-def product(c_from_b: NDArray, b_from_a: NDArray) -> NDArray:
-    """Return `c_from_a` (3, 4) of two rigid transforms (3, 4)."""
-    turned = c_from_b[:, :3] @ b_from_a
-    turned[:, 3] += c_from_b[:, 3]
-    return turned
 
 
 def _views(seen: Corners, camera: int) -> list[NDArray]:
@@ -168,13 +161,13 @@ def _from_root(board: Board, seen: Corners, views: dict[tuple[int, int], View]) 
         a, b = (int(k) for k in np.unravel_index(block.argmax(), block.shape))
         one, other = inside[a], outside[b]
         pairs = [(views[one, p][1], views[other, p][1]) for p in sorted(of[one] & of[other])]
-        found[other] = product(_between(board, pairs), found[one])
+        found[other] = rotations.composed(_between(board, pairs), found[one])
     return [found[c] for c in range(count)]
 
 
 def _between(board: Board, pairs: Sequence[tuple[NDArray, NDArray]]) -> NDArray:
     """Return `other_from_one` of two cameras from the picture that fits most other pictures."""
-    candidates = [product(other, rotations.invert(one)) for one, other in pairs]
+    candidates = [rotations.composed(other, rotations.invert(one)) for one, other in pairs]
     corners = np.column_stack([board.corners, np.ones(len(board.corners))])
     in_one = np.stack([corners @ one.T for one, _ in pairs])
     in_other = np.stack([corners @ other.T for _, other in pairs])

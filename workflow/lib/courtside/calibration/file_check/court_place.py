@@ -236,9 +236,8 @@ def _alone(camera: Camera, view: NDArray, court: Court) -> Sim3 | None:
         return None
     on_court = Camera(camera.name, camera.size, camera.K, camera.dist, found[1])
     cam_from_court = faults.fit(on_court, court.xyz[seen], view[seen], faults.MOVED).cam_from_world
-    world_from_cam = rotations.invert(camera.cam_from_world)
-    rotation = world_from_cam[:, :3] @ cam_from_court[:, :3]
-    return Sim3(1.0, rotation, world_from_cam[:, :3] @ cam_from_court[:, 3] + world_from_cam[:, 3])
+    moved = rotations.composed(rotations.invert(camera.cam_from_world), cam_from_court)
+    return Sim3(1.0, moved[:, :3], moved[:, 3])
 
 
 def _is_enough(seen: NDArray, court: Court) -> bool:

@@ -116,9 +116,8 @@ def _worlds(cameras, points: NDArray, clicks) -> Iterator[Sim3]:
         if fine:
             turn = rotations.rotation_from_rodrigues(vector.ravel())
             world_from_cam = rotations.invert(np.column_stack([turn, shift]))
-            rotation = world_from_cam[:, :3] @ camera.cam_from_world[:, :3]
-            move = world_from_cam[:, :3] @ camera.cam_from_world[:, 3] + world_from_cam[:, 3]
-            yield Sim3(1.0, rotation, move)
+            moved = rotations.composed(world_from_cam, camera.cam_from_world)
+            yield Sim3(1.0, moved[:, :3], moved[:, 3])
     placed = triangulate_all(cameras, xy)
     seen = np.isfinite(placed).all(axis=1)
     if seen.sum() >= 3 and not similarity.is_collinear(points[seen]):

@@ -149,9 +149,7 @@ def _colour_from_depth(bag: Bag, streams: Mapping[str, str]) -> NDArray:
             f"{bag.path}: expected depth and colour placed against one reference, found {to_depth} "
             f"and {to_colour}; {RECORD}"
         )
-    back = rotations.invert(depth_from)
-    rotation = colour_from[:, :3] @ back[:, :3]
-    return np.column_stack([rotation, colour_from[:, :3] @ back[:, 3] + colour_from[:, 3]])
+    return rotations.composed(colour_from, rotations.invert(depth_from))
 
 
 def _follow(
