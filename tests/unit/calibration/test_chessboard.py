@@ -73,6 +73,7 @@ def test_a_drawn_board_gives_its_lens(folder, inner_corners):
     np.testing.assert_allclose(np.diag(lens.K), [600, 600, 1], rtol=0.003)
     np.testing.assert_allclose(lens.K[:2, 2], K[:2, 2], atol=1.5)
     assert lens.K[0, 0] == pytest.approx(600, abs=5 * lens.f_sigma_px)
+    assert lens.f_sigma_px < 1
     # The curve that the two coefficients make, rather than each: within 0.2 px where the corners
     # are.
     radius = np.linspace(0, 0.55, 20)
@@ -136,9 +137,7 @@ def test_boards_held_square_on_do_not_show_the_focal_length(tmp_path):
 def test_faults_of_files_are_one_line(folder, tmp_path):
     with pytest.raises(InputError, match=r"none: expected a folder"):
         chessboard.find(tmp_path / "none", INNER)
-    with pytest.raises(
-        InputError, match=r"expected pictures of a chessboard .*found none; add them"
-    ):
+    with pytest.raises(InputError, match=r"expected pictures of a board .*found none; add them"):
         chessboard.find(tmp_path, INNER)
     with pytest.raises(
         InputError, match=r"inner_corners: expected two different counts .* found \[5, 5\]"

@@ -89,14 +89,12 @@ def pictures_of(folder: StrPath) -> list[Path]:
     folder = Path(folder)
     if not folder.is_dir():
         raise InputError(
-            f"{folder}: expected a folder with pictures of a chessboard, found none; correct "
-            "the path"
+            f"{folder}: expected a folder with pictures of a board, found none; correct the path"
         )
     pictures = [path for path in folder.iterdir() if path.suffix.lower() in PICTURES]
     if not pictures:
         raise InputError(
-            f"{folder}: expected pictures of a chessboard ({' '.join(PICTURES)}), found none; "
-            "add them"
+            f"{folder}: expected pictures of a board ({' '.join(PICTURES)}), found none; add them"
         )
     return sorted(pictures)
 
