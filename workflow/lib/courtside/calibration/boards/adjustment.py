@@ -47,7 +47,6 @@ class Found:
 
     cameras: list[Camera]
     covariance: NDArray  # of the network's columns, as of `records.covariance.of_network`
-    world_from_board: NDArray  # (P, 3, 4)
     world: str  # the picture whose board is the world
     sigma_px: float  # of a corner, along each axis, by the bulk of the residuals
     factor: float  # by which the scatter of whole pictures widens the covariance
@@ -115,7 +114,7 @@ def calibrate(
         ]
         solved = [replace(c, name=name) for c, name in zip(solved, seen.cameras, strict=True)]
     name = seen.pictures[posed.world]
-    return Found(solved, covariance, state.boards, name, sigma_px, factor, error_px)
+    return Found(solved, covariance, name, sigma_px, factor, error_px)
 
 
 def _check_rigid(seen: Corners, error_px: NDArray) -> None:

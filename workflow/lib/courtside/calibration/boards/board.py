@@ -112,9 +112,9 @@ class Board:
     def find(self, image: NDArray) -> tuple[NDArray, NDArray]:
         """Return the numbers (K,) and px (K, 2) of the corners in a grey picture; K may be 0."""
         image = 255 - image if self.inverted else image
-        found = {"charuco": self._charuco, "chessboard": self._chessboard, "tags": self._tags}
-        found["aprilgrid"] = self._tags
-        return found[self.kind](image)
+        if self.kind == "charuco":
+            return self._charuco(image)
+        return self._chessboard(image) if self.kind == "chessboard" else self._tags(image)
 
     @cached_property
     def _printed(self) -> Any:

@@ -44,7 +44,6 @@ class Evidence:
     """Evidence for cameras (B)."""
 
     score: NDArray  # (B,): log likelihood ratio against chance; -1 where too little is in view
-    share: NDArray  # (B,): closeness of ridges to the lines in view, 0..1
     weight: NDArray  # (B, N): px of line that each sample stands for
     close: NDArray  # (B, N): closeness of the nearest ridge at each sample, 0..1
 
@@ -71,7 +70,7 @@ def score(seen: Fields, views: Views, along: Samples, tolerance_px: float) -> Ev
         _score(seen, views[at : at + AT_ONCE], along, tolerance_px)
         for at in range(0, len(views), AT_ONCE)
     ]
-    rows = ("score", "share", "weight", "close")
+    rows = ("score", "weight", "close")
     return Evidence(*(np.concatenate([getattr(part, row) for part in parts]) for row in rows))
 
 
@@ -101,4 +100,4 @@ def _score(seen: Fields, views: Views, along: Samples, tolerance_px: float) -> E
     ratio = share * np.log(share / by_chance) + (1 - share) * np.log((1 - share) / (1 - by_chance))
     ratio *= total / OWN_PX * 1280 / size[0]
     good = (total > LEAST_WIDTHS * size[0]) & (share > by_chance)
-    return Evidence(np.where(good, ratio, -1.0), share, weight, close)
+    return Evidence(np.where(good, ratio, -1.0), weight, close)
