@@ -1,7 +1,9 @@
 """Rules and scripts agree: what a rule names, its script's `main` takes, and vice versa."""
 
 import ast
+import functools
 import re
+from collections import defaultdict
 from pathlib import Path
 
 import pytest
@@ -25,13 +27,14 @@ def test_persons_and_sources_called_by_digits_keep_their_names(kind):
     assert [path.name for path in names if "read_csv(" in path.read_text()] == []  # `tables.read`
 
 
-def rules_of(script):
-    """Return {part: names} of each rule that runs a script."""
-    found = []
+@functools.cache
+def rules_by_script():
+    """Return {script: [{part: names} of each rule that runs it]}."""
+    found = defaultdict(list)
     for path in sorted((ROOT / "workflow" / "rules").glob("*.smk")):
         for block in re.split(r"^ *rule\b.*:\n", path.read_text(), flags=re.M)[1:]:
-            if f"scripts/{script}.py" in block:
-                found.append(names_in(block))
+            for script in set(re.findall(r"scripts/(\w+)\.py", block)):
+                found[script].append(names_in(block))
     return found
 
 
@@ -66,32 +69,37 @@ def arguments_of(path):
     return every, {one.arg for one in (*positional, *keywords)}, main.kwarg is not None
 
 
-@pytest.mark.parametrize("path", SCRIPTS, ids=[path.stem for path in SCRIPTS])
-def test_a_rule_gives_its_script_what_main_takes(path):
+def disagreements(path):
+    """Return what the rules of a script give and its `main` does not take, and vice versa."""
     taken, needed, others = arguments_of(path)
-    found = rules_of(path.stem)
-    assert found
-    for names in found:
+    found = [] if rules_by_script()[path.stem] else ["no rule"]
+    for names in rules_by_script()[path.stem]:
         files = {"paths"} if "paths" in taken else names["input"]
         parameters = names["params"] - {"code", "pin"}
         given = files | names["output"] | parameters
-        assert len(given & taken) == sum(
-            len(p & taken) for p in (files, names["output"], parameters)
-        )
+        if len(given & taken) != sum(len(p & taken) for p in (files, names["output"], parameters)):
+            found.append("one name for two of input, output and params")
         spread = "step" in given and "step" not in taken
         if not others:
-            assert given - taken - {"step"} - FOR_SNAKEMAKE == set()
+            found += [f"{name}: not taken" for name in given - taken - {"step"} - FOR_SNAKEMAKE]
         if not spread:
-            assert needed - given - WILDCARDS == set()
-            assert taken - given - WILDCARDS - {"paths"} == set()
+            found += [f"{name}: not given" for name in needed - given - WILDCARDS]
+            found += [f"{name}: given by no rule" for name in taken - given - WILDCARDS - {"paths"}]
+    return found
 
 
-@pytest.mark.parametrize("name", [p.stem for p in SCRIPTS if p.stem.startswith("build_")])
-def test_a_page_is_built_again_when_its_templates_change(name):
-    assert all("assets" in names["input"] for names in rules_of(name))
+def test_pages_are_built_again_when_their_templates_change():
+    builders = [path.stem for path in SCRIPTS if path.stem.startswith("build_")]
+    given = {name: [one["input"] for one in rules_by_script()[name]] for name in builders}
+    assert [name for name, rules in given.items() if not all("assets" in one for one in rules)] == []
 
 
-@pytest.mark.parametrize("path", SCRIPTS, ids=[path.stem for path in SCRIPTS])
-def test_a_script_ends_with_one_call(path):
-    last = ast.parse(path.read_text()).body[-1]
-    assert ast.unparse(last) == "if __name__ == '__main__':\n    run(main, snakemake)"
+def test_a_rule_gives_its_script_what_main_takes():
+    found = {path.stem: disagreements(path) for path in SCRIPTS}
+    assert {name: lines for name, lines in found.items() if lines} == {}
+
+
+def test_a_script_ends_with_one_call():
+    last = {path.stem: ast.unparse(ast.parse(path.read_text()).body[-1]) for path in SCRIPTS}
+    call = "if __name__ == '__main__':\n    run(main, snakemake)"
+    assert {name: text for name, text in last.items() if text != call} == {}
