@@ -10,10 +10,16 @@ from courtside.calibration.people.relative_poses import Take
 from courtside.geometry.similarity import umeyama
 from courtside.study.errors import InputError
 from fixtures.cameras import corner_cameras
-from fixtures.people import tracks_made
+from fixtures.people import remembered, tracks_made
 
 TRUE = corner_cameras.four_cameras()[:3]
 WALK = tracks_made.persons()
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _remembered():
+    with remembered.essential():
+        yield
 
 
 def posed(cameras, *takes):
