@@ -1,5 +1,6 @@
 """The tables of README.md and docs/measured.md are what the register of numbers gives."""
 
+import functools
 import re
 import subprocess
 import sys
@@ -13,19 +14,24 @@ from fixtures.study import results_made
 
 ROOT = Path(__file__).parents[1]
 MEASURED = r"\d (%|mm|cm|m/s|px|us|s)\b|\d / \d"  # values as tables of results show them
-NUMBERS = study.kept(ROOT)
+
+
+@functools.cache
+def numbers():
+    """Return the register, which takes a while to read: not at the collection of tests."""
+    return study.kept(ROOT)
 
 
 @pytest.mark.parametrize("name", study.DOCUMENTS)
 def test_tables_are_exactly_those_of_the_register(name):
-    assert (ROOT / name).read_text(encoding="utf-8") == study.filled(NUMBERS, ROOT)[name]
+    assert (ROOT / name).read_text(encoding="utf-8") == study.filled(numbers(), ROOT)[name]
 
 
 def test_every_table_of_the_register_is_shown_and_every_view_used():
     texts = [(ROOT / name).read_text(encoding="utf-8") for name in study.DOCUMENTS]
     shown = {name for text in texts for name in markers.names(text)}
     assert shown == set(VIEWS)
-    assert {VIEWS[name].table for name in shown} == {number.table for number in NUMBERS}
+    assert {VIEWS[name].table for name in shown} == {number.table for number in numbers()}
 
 
 def test_the_documents_have_no_table_of_numbers_outside_the_markers():
@@ -36,8 +42,8 @@ def test_the_documents_have_no_table_of_numbers_outside_the_markers():
 
 
 def test_every_number_says_where_it_comes_from():
-    assert len({number.name for number in NUMBERS}) == len(NUMBERS) > 1000
-    for number in NUMBERS:
+    assert len({number.name for number in numbers()}) == len(numbers()) > 1000
+    for number in numbers():
         assert number.origin in register.ORIGINS and number.source and number.sha256
         assert number.command or number.origin in (register.STUDY, register.PUBLISHED)
         assert number.sessions or number.origin != register.STUDY
@@ -45,7 +51,7 @@ def test_every_number_says_where_it_comes_from():
 
 def test_published_numbers_are_those_of_their_tables():
     documents = register.Source(ROOT)
-    for number in NUMBERS:
+    for number in numbers():
         if number.source.startswith("config/"):
             assert number.sha256 == documents.sha256(number.source), number.source
 
@@ -59,7 +65,7 @@ def test_verify_study_lists_the_numbers_that_other_results_change(tmp_path):
     results_made.write(tmp_path / "results")
     done = program("workflow/verify_study.py", "--directory", tmp_path, "--numbers")
     assert (done.returncode, done.stderr) == (1, "")
-    printed = next(n.printed for n in NUMBERS if n.name == WALK)
+    printed = next(n.printed for n in numbers() if n.name == WALK)
     assert f"{WALK}: printed {printed}, would be 0.65" in done.stdout.splitlines()
 
 
