@@ -1,5 +1,6 @@
 """A session of two takes by three fixed cameras, with a calibration: all as it should be."""
 
+import shutil
 from pathlib import Path
 
 import cv2
@@ -88,10 +89,17 @@ class Hall:
         return faults[0]
 
 
-@pytest.fixture
-def hall(tmp_path):
-    made = Hall(tmp_path)
+@pytest.fixture(scope="session")
+def films(tmp_path_factory):
+    """Return a folder with the films of the session, to be copied."""
+    made = Hall(tmp_path_factory.mktemp("films"))
     for take, start in (("serve", 0), ("lob", 7)):
         for camera in CAMERAS:
             made.film(camera, take, start=start)
-    return made
+    return made.root
+
+
+@pytest.fixture
+def hall(films, tmp_path):
+    shutil.copytree(films, tmp_path, dirs_exist_ok=True)
+    return Hall(tmp_path)
