@@ -58,7 +58,7 @@ class Killer:
             main = study_copies.start(root, *AGAIN, *options)
             if not self.disturb(main):
                 return main
-            run("--unlock", root=root)
+            run("--unlock", root=root, anew=True)
 
     def again(self, root, rules, latest):
         """Rerun rules whose jobs had ended before their moments came; kill each, now earlier."""

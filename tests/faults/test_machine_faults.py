@@ -201,7 +201,7 @@ def test_of_two_runs_at_once_the_second_stops(cut, untouched):
     with tries("two runs at once"):
         first = start(cut, "--", *CUT)
         first_job(first, "triangulate")
-        second = run("--", *CUT, root=cut, check=False)
+        second = run("--", *CUT, root=cut, check=False, anew=True)
         assert second.returncode != 0
         assert "Directory cannot be locked" in second.stdout + second.stderr
         assert "--unlock" in second.stdout + second.stderr

@@ -8,9 +8,12 @@ import sys
 from contextlib import contextmanager
 from pathlib import Path
 
+from smoke import forks
+
 ROOT = Path(__file__).parents[2]
 FOLDER = Path("tests") / "smoke"
 TINY = Path("config") / "tiny.yaml"
+TIMEOUT_S = 3600
 MADE_BY = ("Snakefile", "workflow", "config", "profiles", "environment.lock")
 
 
@@ -29,26 +32,30 @@ def copy_repository(root, *further, copy_file=shutil.copy2):
             copy_file(source, target)
 
 
-def run(*options, root=ROOT, check=True, timeout_s=3600):
+def snakemake(*words, root, anew=False):
+    """Run Snakemake in a folder; return the finished process with its whole output.
+
+    `anew` imports all that Snakemake needs, as its user does.
+    """
+    words = ("snakemake", *map(str, words))
+    if forks.POSSIBLE and not anew:
+        return forks.run(*words, cwd=root, timeout_s=TIMEOUT_S)
+    settings = {"capture_output": True, "text": True, "check": False, "timeout": TIMEOUT_S}
+    return subprocess.run([sys.executable, "-m", *words], cwd=root, **settings)
+
+
+def run(*options, root=ROOT, check=True, **settings):
     """Run the tiny study of a repository; return the finished process with its whole output."""
-    command = [sys.executable, "-m", "snakemake", "--directory", str(FOLDER)]
-    command += ["--configfile", str(TINY), *options]
-    done = subprocess.run(
-        command,
-        cwd=root,
-        capture_output=True,
-        text=True,
-        timeout=timeout_s,
-        check=False,
-    )
+    words = ("--directory", FOLDER, "--configfile", TINY, *options)
+    done = snakemake(*words, root=root, **settings)
     if check and done.returncode:
         raise AssertionError(done.stdout + done.stderr)
     return done
 
 
-def planned(*options, root=ROOT):
+def planned(*options, root=ROOT, **settings):
     """Return the number of jobs of each rule that Snakemake would run now."""
-    done = run("-n", *options, root=root)
+    done = run("-n", *options, root=root, **settings)
     table = re.search(r"Job stats:\njob +count\n[- ]+\n(.*?)\n\n", done.stdout + done.stderr, re.S)
     if table is None:
         assert "Nothing to be done" in done.stdout + done.stderr

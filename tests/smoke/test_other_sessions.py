@@ -3,8 +3,6 @@
 import hashlib
 import json
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +21,7 @@ from courtside.study.errors import InputError
 from fixtures.cameras import wands_made
 from fixtures.recordings import onnx_files
 from fixtures.recordings.real_data import REAL, needs_real
-from smoke.snakemake_runs import copy_repository
+from smoke.snakemake_runs import TINY, copy_repository, snakemake
 
 DOOR = REAL / "sfm-door"
 TINY_FEATURES = {"extract_features": {"first_octave": -1}}
@@ -43,15 +41,9 @@ def study(gym, name, session, **settings):
     mine = {"sessions": [name], "variations": [], "plans": []}
     mine |= {"calibrations": ["sfm-n12", "known8"]} | settings
     (gym / "config" / "mine.yaml").write_text(yaml.safe_dump(mine))
-    done = snakemake(gym, "config/mine.yaml")
+    done = snakemake("--configfile", "config/mine.yaml", root=gym)
     assert done.returncode == 0, done.stdout + done.stderr
     return gym / "results" / name
-
-
-def snakemake(gym, configuration, *options):
-    """Run Snakemake in the repository's copy; return the finished process."""
-    command = [sys.executable, "-m", "snakemake", "--configfile", configuration, *map(str, options)]
-    return subprocess.run(command, cwd=gym, capture_output=True, text=True, check=False)
 
 
 @needs_real
@@ -193,7 +185,7 @@ def test_2d_and_3d_of_other_programs_become_skeletons_and_measures(gym):
     take["videos"] = {name: str(walk / "videos" / f"{name}.mp4") for name in names}
     (gym / "config/sessions/walk.yaml").write_text(yaml.safe_dump(session))
     wanted = "results/walk/takes/balancing/pose2d/body25b/cam01.npz"
-    done = snakemake(gym, "config/mine.yaml", "--", wanted)
+    done = snakemake("--configfile", "config/mine.yaml", "--", wanted, root=gym)
     assert done.returncode == 0, done.stdout + done.stderr
     beside = keypoints.read_2d(results / "pose2d/body25b/cam01.npz")
     assert np.array_equal(beside.xy, alone.xy, equal_nan=True)
@@ -214,7 +206,8 @@ def test_an_own_detector_is_checked_and_kept(gym):
     for stated, message in ((sha256, ""), ("0" * 64, f"data/own.onnx: expected sha256 {'0' * 64}")):
         named = {"network": {"file": "data/own.onnx", "sha256": stated}}
         detectors.write_text(before + yaml.safe_dump({"own": entry | named}))
-        done = snakemake(gym, "config/tiny.yaml", "--config", "models=[with-own]", "--", kept)
+        options = ("--config", "models=[with-own]", "--", kept)
+        done = snakemake("--configfile", TINY, *options, root=gym)
         assert (done.returncode == 0) == (not message), done.stdout + done.stderr
         assert message in done.stdout + done.stderr
         assert (gym / kept).exists() == (not message)

@@ -49,7 +49,7 @@ def test_every_rule_of_the_study_ran(tiny_study):
 
 
 def test_a_second_run_has_nothing_to_do(tiny_study):
-    assert planned() == {}
+    assert planned(anew=True) == {}
 
 
 def test_the_skeleton_is_a_person_in_metres(tiny_study):
