@@ -67,13 +67,21 @@ def planned(*options, root=ROOT, **settings):
 @contextmanager
 def changed(path, content=None):
     """Give a file another content, or only another date, for a while."""
-    before, state = path.read_bytes(), path.stat()
-    path.write_bytes(before if content is None else content)
+    state, before = path.stat(), None if content is None else path.read_bytes()
+    _give(path, content)
     try:
         yield
     finally:
-        path.write_bytes(before)
+        _give(path, before)
         os.utime(path, ns=(state.st_atime_ns, state.st_mtime_ns))
+
+
+def _give(path, content):
+    """Give a file a content, or without one the present date."""
+    if content is None:
+        os.utime(path)
+    else:
+        path.write_bytes(content)
 
 
 @contextmanager
