@@ -16,37 +16,14 @@ import time
 from pathlib import Path
 
 import numpy as np
-import onnx
 import onnxruntime
-from onnx import numpy_helper
 
 from many_sessions import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
 from courtside.pose.networks import session
-
-SIZED = {"Reshape": 1, "Resize": 3}  # operators that state sizes: which of their inputs
-
-
-def of_size(path, count):
-    """Return the network for `count` crops, as bytes."""
-    model = onnx.load(str(path))
-    graph = model.graph
-    stated = {
-        node.input[SIZED[node.op_type]]
-        for node in graph.node
-        if node.op_type in SIZED and len(node.input) > SIZED[node.op_type]
-    }
-    for value in graph.initializer:
-        if value.name in stated:
-            sizes = numpy_helper.to_array(value).copy()
-            sizes[0] = count
-            value.CopyFrom(numpy_helper.from_array(sizes, value.name))
-    for value in (*graph.input, *graph.output):
-        value.type.tensor_type.shape.dim[0].dim_value = count
-    del graph.value_info[:]
-    return model.SerializeToString()
+from courtside.pose.networks.batches import of_size
 
 
 def opened(content, provider):

@@ -172,6 +172,21 @@ def test_with_a_flip_test_the_mirror_image_gives_the_mirrored_joints(tmp_path):
     assert np.sin(other.region.angle_rad + pose.region.angle_rad) == pytest.approx(0, abs=1e-4)
 
 
+def test_crops_at_once_give_the_joints_of_each_alone(blazepose_pair):
+    path = blazepose_pair[1].network.path
+    place = blazepose.BlazePoseLandmarks(path, pairs=skeleton.mirror(JOINTS))
+    image = np.random.default_rng(2).integers(0, 255, (300, 320, 3), dtype=np.uint8)
+    image = cv2.GaussianBlur(image, (0, 0), 9)
+    regions = [detector.Region(150, 140, 256), detector.Region(190, 160, 200, 0.4)]
+    alone = [place.estimate(image, region) for region in regions]
+    place.network.at_once = True  # as by an execution provider that gains by it
+    for one, other in zip(place.estimate_each(image, regions), alone, strict=True):
+        np.testing.assert_allclose(one.xy, other.xy, atol=0.01)
+        np.testing.assert_allclose(one.score, other.score, atol=1e-4)
+        np.testing.assert_allclose(one.xyz_in_body, other.xyz_in_body, atol=1e-4)
+    assert set(place.network._of_count) == {4}  # two crops and their mirror images
+
+
 def look(x):
     fraction = np.column_stack([np.full(39, x), np.full(39, 0.25)])
     return fraction, np.full(33, 0.8), 0.9, np.zeros((33, 3))

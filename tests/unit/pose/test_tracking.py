@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from courtside.pose import tracking
-from courtside.pose.detector import Pose, Region
+from courtside.pose.detector import LandmarkNetwork, Pose, Region
 from courtside.records.keypoints import missing_reason
 
 EMPTY = np.zeros((240, 320, 3), np.uint8)
@@ -22,7 +22,7 @@ class Finder:
         return [Region(columns.mean(), rows.mean(), 80.0)] if len(rows) else []
 
 
-class Placer:
+class Placer(LandmarkNetwork):
     """Sees the square when the region holds it."""
 
     n_joints = 3
@@ -38,7 +38,7 @@ class Placer:
         )
 
 
-class Anybody:
+class Anybody(LandmarkNetwork):
     """Sees a person in every region but the largest."""
 
     n_joints = 3

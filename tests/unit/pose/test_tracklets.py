@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from courtside.pose import blazepose, foreground, tracklets
-from courtside.pose.detector import Pose, Region
+from courtside.pose.detector import LandmarkNetwork, Pose, Region
 from courtside.records.keypoints import missing_reason
 from fixtures.recordings import networks
 from fixtures.recordings.real_data import REAL, needs_real
@@ -51,7 +51,7 @@ class Finder:
         return [Region(*centre, 80.0) for centre in blobs(image)]
 
 
-class Placer:
+class Placer(LandmarkNetwork):
     """Sees the square nearest to the region's middle, as a real network takes what is there."""
 
     n_joints = 5

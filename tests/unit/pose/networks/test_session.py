@@ -64,6 +64,39 @@ def test_another_input_is_one_line(tmp_path, shape, kind):
     assert "correct its entry in config/models.yaml" in message
 
 
+def counted(network):
+    """Return a list that notes how many pictures each run of a network gets."""
+    counts, outputs = [], network._outputs
+
+    def noted(session, tensor):
+        counts.append(len(tensor))
+        return outputs(session, tensor)
+
+    network._outputs = noted
+    return counts
+
+
+@pytest.mark.parametrize("at_once", [False, True])
+def test_several_pictures_give_what_each_gives_alone(tmp_path, at_once):
+    network = session.Network(doubled(tmp_path / "n.onnx", ("batch", 3, 8, 8)), SHAPE)
+    assert not network.at_once  # on the processor
+    network.at_once, counts = at_once, counted(network)
+    pictures = [np.full(SHAPE, value, np.float32) for value in (1, 5, 3)]
+    found = network.run_each(pictures)
+    for outputs, picture in zip(found, pictures, strict=True):
+        np.testing.assert_array_equal(outputs, [2 * picture])
+    assert counts == ([3] if at_once else [1, 1, 1])
+
+
+def test_a_network_that_mixes_its_pictures_is_one_line(tmp_path):
+    graph = onnx_files.Graph(["batch", 3, 8, 8])
+    graph.output(graph.add("ReduceSum", "image", graph.ints(0), keepdims=1), "sum")
+    network = session.Network(graph.write(tmp_path / "n.onnx"), SHAPE)
+    network.at_once = True
+    message = line(network.run_each, [np.ones(SHAPE, np.float32)] * 2)
+    assert "expected outputs for 2 pictures at once, found [(1, 3, 8, 8)]" in message
+
+
 def test_outputs_that_are_not_there_are_named(tmp_path):
     message = line(session.Network, doubled(tmp_path / "n.onnx"), SHAPE, outputs=["once", "twice"])
     assert "expected the outputs ['once'], found ['twice']" in message

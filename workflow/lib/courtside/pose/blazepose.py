@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.pose import detector
-from courtside.pose.detector import Pose, Region
+from courtside.pose.detector import LandmarkNetwork, Pose, Region
 from courtside.pose.networks.session import CPU, Network
 from courtside.study.errors import StrPath
 
@@ -131,7 +131,7 @@ def overlap(one: NDArray, many: NDArray) -> NDArray:
     return shared / (np.prod(one[2:4]) + np.prod(many[:, 2:4], axis=1) - shared)
 
 
-class BlazePoseLandmarks:
+class BlazePoseLandmarks(LandmarkNetwork):
     """The landmark network of BlazePose: `pose_landmark_lite`, `_full` or `_heavy`, converted.
 
     Outputs: Identity (39 x 5 landmarks), Identity_1 (presence), Identity_3 (heat maps), Identity_4
@@ -150,16 +150,28 @@ class BlazePoseLandmarks:
     ) -> None:
         shape = (1, LANDMARK_SIDE, LANDMARK_SIDE, 3)
         names = outputs or ("Identity", "Identity_1", "Identity_3", "Identity_4")
-        self.network = Network(onnx_path, shape, outputs=names, providers=providers)
+        self.network = Network(onnx_path, shape, outputs=names, providers=providers, resizable=True)
         self.pairs = pairs
 
-    def estimate(self, image: NDArray, region: Region) -> Pose:
-        """Return the `Pose` of the person in one `Region` of a (H, W, 3) uint8 BGR picture."""
-        patch = detector.cut_out(image, region, LANDMARK_SIDE, cv2.BORDER_REPLICATE)
-        patch = cv2.cvtColor(patch, cv2.COLOR_BGR2RGB)
-        seen = self._look(patch)
+    def estimate_each(self, image: NDArray, regions: Sequence[Region]) -> list[Pose]:
+        """Return the `Pose` of the person in each `Region` of a (H, W, 3) uint8 BGR picture."""
+        patches = [self._patch(image, region) for region in regions]
         if self.pairs is not None:
-            seen = both(seen, mirrored(self._look(cv2.flip(patch, 1)), self.pairs))
+            patches += [cv2.flip(patch, 1) for patch in patches]
+        looks = [_seen(one) for one in self.network.run_each([_tensor(one) for one in patches])]
+        if self.pairs is not None:
+            n = len(regions)
+            pairs = zip(looks[:n], looks[n:], strict=True)
+            looks = [both(one, mirrored(other, self.pairs)) for one, other in pairs]
+        return [self._pose(*pair) for pair in zip(looks, regions, strict=True)]
+
+    @staticmethod
+    def _patch(image: NDArray, region: Region) -> NDArray:
+        patch = detector.cut_out(image, region, LANDMARK_SIDE, cv2.BORDER_REPLICATE)
+        return cv2.cvtColor(patch, cv2.COLOR_BGR2RGB)
+
+    @staticmethod
+    def _pose(seen: Seen, region: Region) -> Pose:
         fraction, score, presence, xyz = seen
         xy = detector.to_picture(fraction, region)
         xyz[:, :2] = detector.rotate(xyz[:, :2], region.angle_rad)
@@ -171,14 +183,18 @@ class BlazePoseLandmarks:
             region=region_from_points(xy[N_JOINTS], xy[N_JOINTS + 1]),
         )
 
-    def _look(self, patch: NDArray) -> Seen:
-        tensor = np.divide(patch, np.float32(255), dtype=np.float32)[None]
-        landmarks, presence, heat_maps, metric = self.network.run(tensor)
-        landmarks = landmarks.reshape(39, 5).astype(float)
-        fraction = refine(landmarks[:, :2] / LANDMARK_SIDE, heat_maps[0])
-        visible, present = sigmoid(landmarks[:N_JOINTS, 3]), sigmoid(landmarks[:N_JOINTS, 4])
-        xyz = metric.reshape(39, 3)[:N_JOINTS].astype(float)
-        return fraction, visible * present, presence.ravel()[0], xyz
+
+def _tensor(patch: NDArray) -> NDArray:
+    return np.divide(patch, np.float32(255), dtype=np.float32)[None]
+
+
+def _seen(outputs: Sequence[NDArray]) -> Seen:
+    landmarks, presence, heat_maps, metric = outputs
+    landmarks = landmarks.reshape(39, 5).astype(float)
+    fraction = refine(landmarks[:, :2] / LANDMARK_SIDE, heat_maps[0])
+    visible, present = sigmoid(landmarks[:N_JOINTS, 3]), sigmoid(landmarks[:N_JOINTS, 4])
+    xyz = metric.reshape(39, 3)[:N_JOINTS].astype(float)
+    return fraction, visible * present, presence.ravel()[0], xyz
 
 
 def mirrored(seen: Seen, pairs: Sequence[int]) -> Seen:

@@ -5,6 +5,7 @@ places the joints in one region, and returns the region to look at in the next f
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -56,14 +57,18 @@ class PersonDetector(Protocol):
         ...
 
 
-class LandmarkNetwork(Protocol):
-    """Places the joints of one person."""
+class LandmarkNetwork:
+    """Places the joints of one person: a subclass has `estimate` or `estimate_each`."""
 
     n_joints: int
 
     def estimate(self, image: NDArray, region: Region) -> Pose:
         """Return the `Pose` of the person in one `Region` of a (H, W, 3) uint8 BGR picture."""
-        ...
+        return self.estimate_each(image, [region])[0]
+
+    def estimate_each(self, image: NDArray, regions: Sequence[Region]) -> list[Pose]:
+        """Return the `Pose` of the person in each `Region` of such a picture."""
+        return [self.estimate(image, region) for region in regions]
 
 
 def around_box(low: NDArray, high: NDArray) -> Region:

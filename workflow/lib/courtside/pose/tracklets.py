@@ -157,12 +157,11 @@ class _Crowd:
 
     def follow(self, image: NDArray) -> None:
         """Find the same bodies in the next picture."""
-        kept, alone = [], {body.row for body in self.bodies if self._is_alone(body)}
-        for body in self.bodies:
-            region = body.pose.region if body.row in alone else body.region
-            pose = self.search.landmarks.estimate(image, region)
-            if pose.presence >= self.search.min_presence:
-                kept.append((body, pose))
+        alone = {body.row for body in self.bodies if self._is_alone(body)}
+        regions = [b.pose.region if b.row in alone else b.region for b in self.bodies]
+        poses = self.search.landmarks.estimate_each(image, regions)
+        found = zip(self.bodies, poses, strict=True)
+        kept = [(b, pose) for b, pose in found if pose.presence >= self.search.min_presence]
         self.lost = [body for body in self.bodies if body not in {b for b, _ in kept}]
         self.bodies = []
         for body, pose in self._without_twins(kept):

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.pose import detector
-from courtside.pose.detector import Pose, Region
+from courtside.pose.detector import LandmarkNetwork, Pose, Region
 from courtside.pose.networks import inputs
 from courtside.pose.networks.boxes import BOX, chosen
 from courtside.pose.networks.inputs import Input, Window
@@ -22,7 +22,7 @@ Found = tuple[NDArray, NDArray, NDArray]  # boxes (N, 4) px, scores (N,), joints
 NEAR = 0.5  # of the region's side: persons with middles further off are somebody else
 
 
-class OneStage:
+class OneStage(LandmarkNetwork):
     """A one-stage network, decoder "rtmo" or "yolo-pose": a detector and a landmark network."""
 
     def __init__(

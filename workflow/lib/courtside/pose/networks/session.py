@@ -7,10 +7,12 @@ with the processor where another one does not open; here that is an error.
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+import numpy as np
 import onnx
 import onnxruntime
 from numpy.typing import NDArray
 
+from courtside.pose.networks import batches
 from courtside.study.errors import InputError, StrPath, reading
 from courtside.study.execution import files
 
@@ -45,8 +47,10 @@ def check_providers(names: Sequence[str], where: str = "detect_pose.providers") 
         )
 
 
-def open_session(path: StrPath, providers: Sequence[str] = CPU) -> onnxruntime.InferenceSession:
-    """Open an ONNX file for inference, on one thread of the processor.
+def open_session(
+    path: StrPath, providers: Sequence[str] = CPU, content: bytes | None = None
+) -> onnxruntime.InferenceSession:
+    """Open an ONNX file, or its changed `content`, for inference, on one thread of the processor.
 
     That is fastest when several files are processed in parallel: idle threads of onnxruntime spin.
     `providers` are tried in order for each operator; the processor comes last. An `InputError` if
@@ -58,7 +62,7 @@ def open_session(path: StrPath, providers: Sequence[str] = CPU) -> onnxruntime.I
     options.log_severity_level = 3
     wanted = [(PROVIDERS[name][0], OPTIONS.get(name, {})) for name in providers]
     with reading(path, "a network that onnxruntime can run", EXPORT, kinds=(Exception,)):
-        session = onnxruntime.InferenceSession(str(path), options, providers=wanted)
+        session = onnxruntime.InferenceSession(content or str(path), options, providers=wanted)
     found = session.get_providers()
     lacking = [name for name in providers if PROVIDERS[name][0] not in found]
     if lacking:
@@ -74,6 +78,9 @@ class Network:
     """An open network with one picture as its only input.
 
     `outputs` are the names of what is computed, all by default; `shape` is that of the input.
+    `resizable` says that `batches.of_size` applies to the file. Several pictures are computed at
+    once where the first provider is not the processor and the network can: on the processor that
+    saves nothing, and the results would depend on their number.
     """
 
     def __init__(
@@ -83,10 +90,14 @@ class Network:
         *,
         outputs: Sequence[str] | None = None,
         providers: Sequence[str] = CPU,
+        resizable: bool = False,
     ) -> None:
-        self.path = path
+        self.path, self.providers = path, providers
         self.session = open_session(path, providers)
         self.input_name = self._input(list(shape))
+        self._of_count: dict[int, onnxruntime.InferenceSession] = {}
+        self.resizable = resizable
+        self.at_once = providers[0] != "cpu" and (resizable or self._open())
         there = [one.name for one in self.session.get_outputs()]
         self.outputs = list(outputs or there)
         missing = [name for name in self.outputs if name not in there]
@@ -105,10 +116,35 @@ class Network:
             )
         return str(self.session.get_inputs()[0].name)
 
+    def _open(self) -> bool:
+        """Return whether the file leaves the number of pictures open."""
+        return not isinstance(self.session.get_inputs()[0].shape[0], int)
+
     def run(self, tensor: NDArray) -> list[NDArray]:
         """Return the outputs for one float32 input."""
+        return self._outputs(self.session, tensor)
+
+    def run_each(self, tensors: Sequence[NDArray]) -> list[list[NDArray]]:
+        """Return the outputs for each of several inputs, each as `run` returns them."""
+        count = len(tensors)
+        if count < 2 or not self.at_once:
+            return [self.run(tensor) for tensor in tensors]
+        found = self._outputs(self._session(count), np.concatenate(tensors))
+        if any(len(one) != count for one in found):
+            raise self.fault(f"outputs for {count} pictures at once", [one.shape for one in found])
+        return [[one[at : at + 1] for one in found] for at in range(count)]
+
+    def _session(self, count: int) -> onnxruntime.InferenceSession:
+        if self._open():
+            return self.session
+        if count not in self._of_count:
+            content = batches.of_size(self.path, count)
+            self._of_count[count] = open_session(self.path, self.providers, content)
+        return self._of_count[count]
+
+    def _outputs(self, session: onnxruntime.InferenceSession, tensor: NDArray) -> list[NDArray]:
         with reading(self.path, "a network that runs", EXPORT, kinds=(Exception,)):
-            return self.session.run(self.outputs, {self.input_name: tensor})
+            return session.run(self.outputs, {self.input_name: tensor})
 
     def fault(self, expected: str, found: object) -> InputError:
         """Return the error that says what its outputs are instead."""

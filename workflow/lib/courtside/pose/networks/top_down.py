@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.pose import detector
-from courtside.pose.detector import Pose, Region
+from courtside.pose.detector import LandmarkNetwork, Pose, Region
 from courtside.pose.networks import peaks
 from courtside.pose.networks.inputs import Input, Window
 from courtside.pose.networks.session import Network
@@ -149,7 +149,7 @@ def check_joints(path: StrPath, found: int, wanted: int) -> None:
         )
 
 
-class TopDown:
+class TopDown(LandmarkNetwork):
     """A landmark network whose outputs are maps of one person.
 
     The person's box times `padding`, brought to the input's aspect, is the crop; without `padding`
@@ -173,14 +173,21 @@ class TopDown:
         self.n_joints, self.presence_joints = n_joints, presence_joints
         self.padding, self.pairs = padding, pairs
 
-    def estimate(self, image: NDArray, region: Region) -> Pose:
-        """Return the `Pose` of the person in one `Region` of a (H, W, 3) uint8 BGR picture."""
-        window = self._window(region)
-        arrays = self._run(window.cut(image))
+    def estimate_each(self, image: NDArray, regions: Sequence[Region]) -> list[Pose]:
+        """Return the `Pose` of the person in each `Region` of a (H, W, 3) uint8 BGR picture."""
+        windows = [self._window(region) for region in regions]
+        looks = self._run([window.cut(image) for window in windows])
         if self.pairs is not None:
-            mirrored = self._run(window.cut(image, mirror=self.maps.mirror(arrays)))
-            mirrored = self.maps.mirrored(mirrored, self.pairs)
-            arrays = [(a + b) / 2 for a, b in zip(arrays, mirrored, strict=True)]
+            pairs = zip(windows, looks, strict=True)
+            again = self._run([w.cut(image, mirror=self.maps.mirror(look)) for w, look in pairs])
+            again = [self.maps.mirrored(look, self.pairs) for look in again]
+            looks = [
+                [(a + b) / 2 for a, b in zip(*both, strict=True)]
+                for both in zip(looks, again, strict=True)
+            ]
+        return [self._pose(*pair) for pair in zip(looks, windows, strict=True)]
+
+    def _pose(self, arrays: Sequence[NDArray], window: Window) -> Pose:
         fraction, score = self.maps.place(arrays)
         xy = window.to_picture(fraction)
         return Pose(
@@ -191,8 +198,9 @@ class TopDown:
             region=around(xy) if self.padding is None else around_person(xy, score),
         )
 
-    def _run(self, patch: NDArray) -> list[NDArray]:
-        return self.maps.read(self.network, self.network.run(self.given.tensor(patch)))
+    def _run(self, patches: Sequence[NDArray]) -> list[list[NDArray]]:
+        found = self.network.run_each([self.given.tensor(patch) for patch in patches])
+        return [self.maps.read(self.network, outputs) for outputs in found]
 
     def _window(self, region: Region) -> Window:
         size, inside = self.given.size, self.maps.ends_inside
