@@ -17,7 +17,7 @@ rule compare_views:
         "results/{session}/logs/compare_views/{take}.{calibration}.{model}.log",
     params:
         code=code("compare_views.py"),
-        fusions=of_job(lambda job: takes.every_fusion(job)[::-1]),
+        fusions=of_job(lambda job: job.every_fusion()[::-1]),
         labels=of_job(
             evaluation.chosen, ("session", "take", "calibration", "model"), stage="pose3d"
         ),

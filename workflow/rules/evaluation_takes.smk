@@ -294,7 +294,7 @@ rule evaluate_fusions:
         "results/{session}/logs/evaluate_fusions/{take}.{stage}.{calibration}.{model}.log",
     params:
         code=code("evaluate_fusions.py"),
-        fusions=of_job(takes.every_fusion),
+        fusions=of_job(Job.every_fusion),
         pairs=of_job(evaluation.pairs),
         labels=of_job(evaluation.chosen, ("session", "take", "stage", "calibration", "model")),
     script:

@@ -183,6 +183,19 @@ def test_a_virtual_take_gets_the_videos_of_all_cameras():
     assert varied.takes == {}
 
 
+def test_a_virtual_device_measures_whom_the_simulation_gives_it_to():
+    players = {"p2": {"body": "m2"}, "p1": {"body": "m1"}}
+    devices = {"suit": {"kind": "inertial", "subject": "p1"}, "depth": {"kind": "rgbd"}}
+    filmed = {"motion": "shot", "seconds": 2, "seed": 1, "players": players, "devices": devices}
+    content = {
+        **VIRTUAL,
+        "subjects": {"p1": None, "p2": None},
+        "takes": {"t1": {"virtual": filmed}},
+    }
+    found = session_files.session("gym", "gym.yaml", content, PARAMETERS).takes["t1"].devices
+    assert {name: device.subject for name, device in found.items()} == {"suit": "p1", "depth": "p2"}
+
+
 def test_a_session_may_override_lists_of_methods():
     content = {**CONTENT, "override": {"fusions": ["two-dlt"]}}
     found = session_files.session(

@@ -3,6 +3,7 @@
 import hashlib
 import json
 import os
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -167,6 +168,23 @@ def test_a_file_that_stays_open_is_told_in_one_line_on_windows(tmp_path, monkeyp
         files.write_json(path, "new")
     assert len(tries) == 3 and "\n" not in str(e.value)
     assert path.read_text() == "old" and list(tmp_path.iterdir()) == [path]
+
+
+def test_a_folder_that_cannot_be_replaced_keeps_its_files(tmp_path, monkeypatch):
+    path = tmp_path / "frames"
+    path.mkdir()
+    (path / "old.png").write_text("old")
+    really = os.replace
+
+    def replace(old, new):
+        if (Path(old) / "new.png").exists():
+            raise PermissionError(13, "The process cannot access the file")
+        really(old, new)
+
+    monkeypatch.setattr(files.os, "replace", replace)
+    with pytest.raises(PermissionError), files.atomic_folder(path) as beside:
+        (beside / "new.png").write_text("new")
+    assert names(path) == ["old.png"] and names(tmp_path) == ["frames"]
 
 
 def test_elsewhere_a_refusal_stays_what_it_is(tmp_path, monkeypatch):

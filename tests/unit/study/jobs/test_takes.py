@@ -81,9 +81,19 @@ def test_a_fusion_is_a_set_of_cameras_and_a_rule(job, name, used, rule):
 def test_fusions_of_a_session_are_the_exported_ones_and_those_compared(job):
     names = ["all-robust", "two-dlt", "halfbody", "three-robust", "three-dlt"]
     one = job(**SHOT, calibration="known18", model="net")
-    assert takes.every_fusion(one) == names
+    assert one.every_fusion() == names
     folder = "results/players-tiny/takes/shot/pose3d/known18"
     assert takes.every_fused(one) == [f"{folder}/{name}/net.npz" for name in names]
+
+
+def test_a_fusion_that_is_exported_and_compared_is_judged_once(job, studies):
+    one = job(
+        studies(compared_fusions=["two-dlt", "all-robust"]),
+        **SHOT,
+        calibration="known18",
+        model="net",
+    )
+    assert one.every_fusion().count("all-robust") == 1
 
 
 def test_fusions_of_a_take_are_those_of_cameras_that_see_it(job, study):
@@ -92,13 +102,13 @@ def test_fusions_of_a_take_are_those_of_cameras_that_see_it(job, study):
     apart = {**session.takes, "shot": replace(session.takes["shot"], videos=seen)}
     of = replace(study, sessions={session.name: replace(session, takes=apart)})
     one = job(of, **SHOT, calibration="known18", model="blazepose-full")
-    compared = [name for name in takes.every_fusion(one) if name not in session.fusions()]
-    assert "all-robust" in takes.every_fusion(one)
+    compared = [name for name in one.every_fusion() if name not in session.fusions()]
+    assert "all-robust" in one.every_fusion()
     assert not {"two-dlt", "halfbody"} & set(compared)
-    assert set(figures.fused_cameras(one)) == set(takes.every_fusion(one))
+    assert set(figures.fused_cameras(one)) == set(one.every_fusion())
     assert set(map(tuple, figures.fused_cameras(one).values())) == {("oblique", "mirror")}
     assert {way["labels"]["fusion"] for way in takes.judged(one)} == {"all-robust"}
-    assert {fusion for _, fusion in one.judged_stages()} == set(takes.every_fusion(one))
+    assert {fusion for _, fusion in one.judged_stages()} == set(one.every_fusion())
     with pytest.raises(InputError, match=r"takes\.shot: expected enough .* halfbody .*, found obl"):
         takes.fusion(job(of, **SHOT, fusion="halfbody"))
 

@@ -240,13 +240,16 @@ def _virtual(name: str, content: Content) -> Content:
 
 def _virtual_take(session: str, take: str, made: Content, cameras: Iterable[str]) -> Content:
     known, endings = {"session": session, "take": take}, {"inertial": "bvh", "rgbd": "bag"}
-    devices = {name: endings[device["kind"]] for name, device in made.get("devices", {}).items()}
+    devices = {}
+    for name, device in made.get("devices", {}).items():
+        suffix = endings[device["kind"]]
+        file = paths.VIRTUAL_DEVICE.format(name=name, suffix=suffix, **known)
+        # As in the simulation, a device measures the first of the players unless it says whom.
+        subject = device.get("subject", next(iter(made["players"])))
+        devices[name] = {"file": file, "subject": subject}
     return {
         "videos": _films(paths.VIRTUAL_FILM, made.get("cameras", cameras), **known),
-        "devices": {
-            name: {"file": paths.VIRTUAL_DEVICE.format(name=name, suffix=suffix, **known)}
-            for name, suffix in devices.items()
-        },
+        "devices": devices,
     }
 
 

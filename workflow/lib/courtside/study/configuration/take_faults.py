@@ -153,7 +153,7 @@ def find(
     if "rate_hz" in take and ("videos" in take or "pose2d" not in take):
         yield (
             f"{where}.rate_hz: expected it of a take with keypoints and no videos only, found it; "
-            "remove it: videos state their own"
+            "remove it"
         )
     start_s, stop_s = take.get("trim_s", (0, 1))
     if start_s >= stop_s:
@@ -193,8 +193,10 @@ def _device_faults(
     where: str, take: Content, cameras: Content, subjects: Collection[str]
 ) -> Iterator[str]:
     """Check the devices of a take, recorded or virtual."""
-    devices = {**take.get("devices", {}), **(take.get("virtual") or {}).get("devices", {})}
-    worn = {device.get("subject", next(iter(subjects))) for device in devices.values()}
+    made = take.get("virtual", {})
+    devices = {**take.get("devices", {}), **made.get("devices", {})}
+    first = next(iter(made.get("players", subjects)))
+    worn = {device.get("subject", first) for device in devices.values()}
     if len(worn) > 1:
         yield (
             f"{where}.devices: expected one subject for all, found {sorted(worn)}; make a take "

@@ -54,7 +54,12 @@ def atomic_folder(path: StrPath) -> Iterator[Path]:
         yield temporary
         if path.exists():  # a folder that is not empty cannot be renamed over
             _rename(path, old)
-        _rename(temporary, path)
+        try:
+            _rename(temporary, path)
+        except (OSError, InputError):  # on Windows, a program may have one of its files open
+            if old.exists():
+                _rename(old, path)
+            raise
     finally:
         for rest in (temporary, old):
             shutil.rmtree(rest, ignore_errors=True)

@@ -8,7 +8,6 @@ from courtside.study.configuration.sessions import Session, Study
 from courtside.study.jobs import calibration
 from courtside.study.jobs.calibration import CLICK_KEYS
 from courtside.study.jobs.job import Job
-from courtside.study.jobs.takes import every_fusion
 from courtside.study.methods import Calibration
 from courtside.study.targets.calibration import racket_models
 from courtside.study.targets.together import EvaluatedTake
@@ -108,7 +107,7 @@ def fitted_files(study: Study, model: str) -> list[str]:
 
 def pairs(job: Job) -> list[tuple[str, str]]:
     """Return the pairs of fusions of a session that are compared."""
-    return [pair for pair in PAIRS if set(pair) <= set(every_fusion(job))]
+    return [pair for pair in PAIRS if set(pair) <= set(job.every_fusion())]
 
 
 def chosen(job: Job, names: Iterable[str], **more: str) -> dict[str, str]:

@@ -121,4 +121,4 @@ def fig05_sources(study: Study) -> list[dict[str, Any]]:
 def fused_cameras(job: Job) -> dict[str, tuple[str, ...]]:
     """Return the cameras of a take of every way to fuse views."""
     session, take = job.session, job.take
-    return {name: session.fused_cameras_of(take, name) for name in takes.every_fusion(job)}
+    return {name: session.fused_cameras_of(take, name) for name in job.every_fusion()}

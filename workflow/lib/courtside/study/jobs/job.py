@@ -96,10 +96,16 @@ class Job:
 
         Every stage and fusion; the model's joints of the fusions that are exported.
         """
-        session, take, stages = self.session, self.take, self.stages()
-        fusions = session.fusions_of(take) + session.fusions_of(take, "compared_fusions")
+        stages = self.stages()
         more = self.study.written_stages(self["model"])[len(stages) :]
-        return [*product(stages, fusions), *product(more, session.fusions_of(take))]
+        exported = self.session.fusions_of(self.take)
+        return [*product(stages, self.every_fusion()), *product(more, exported)]
+
+    def every_fusion(self) -> list[str]:
+        """Return all ways to fuse views that a take has, each once, the exported ones first."""
+        session, take = self.session, self.take
+        both = session.fusions_of(take) + session.fusions_of(take, "compared_fusions")
+        return list(dict.fromkeys(both))
 
     def demand(self, word: str) -> None:
         """Stop, with one line, where persons of its files have not agreed to something."""

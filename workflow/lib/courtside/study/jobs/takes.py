@@ -86,15 +86,9 @@ def fusion(job: Job) -> dict[str, Any]:
     return {"used": list(used), "rule": Fusion.parse(name).rule}
 
 
-def every_fusion(job: Job) -> list[str]:
-    """Return all ways to fuse views that a take has, the exported ones first."""
-    session, take = job.session, job.take
-    return session.fusions_of(take) + session.fusions_of(take, "compared_fusions")
-
-
 def every_fused(job: Job, pattern: str = paths.POSE3D) -> list[str]:
     """Return a file of every way to fuse views."""
-    return job.of_each(pattern, fusion=every_fusion(job))
+    return job.of_each(pattern, fusion=job.every_fusion())
 
 
 def sexes(job: Job) -> dict[str, str | None]:
