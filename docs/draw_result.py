@@ -86,7 +86,7 @@ def show(axis, one, points, frame, drawn):
 def stand(axis, points, frame, drawn):
     """Draw the skeleton in space, with the ellipsoids of the limb joints, on the court."""
     xyz, names = points.xyz[0, frame], points.joints.tolist()
-    covariance = points.covariance_2d[0, frame] + np.nan_to_num(points.covariance_camera[0, frame])
+    covariance = points.covariance[0, frame]
     onto = SIGHT.seen(np.eye(3))  # (3, 2): the world's axes on the drawing
     for at in [names.index(joint) for joint in drawn.joints if joint in names]:
         values, vectors = np.linalg.eigh(onto.T @ covariance[at] @ onto)

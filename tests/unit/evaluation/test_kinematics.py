@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 
 from courtside.evaluation import kinematics
+from courtside.records import tables
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import derived_joints
 from fixtures.people import walker
@@ -102,11 +103,16 @@ def test_errors_of_all_angles_are_those_of_the_table():
     assert np.sqrt(np.mean(error**2)) == pytest.approx(np.sqrt(np.mean(one_side["rmse_deg"] ** 2)))
 
 
-def test_times_rounded_beyond_the_truth_count_as_its_end():
-    real = truth()
-    frames, summary = measured(real)
-    late = frames.assign(time_s=frames["time_s"] + 5e-7)
-    assert errors(real, late, summary)["distance_error_percent"] == pytest.approx(2, abs=1e-3)
+@pytest.mark.parametrize("last", [59, 719])  # their times are rounded up: 1.96667 and 23.9667 s
+def test_times_rounded_beyond_the_truth_count_as_its_end(tmp_path, last):
+    real = truth(seconds=last / 30, rate_hz=30)
+    frames, summary = measured(real, step=1)
+    tables.write(tmp_path / "frames.csv", frames)
+    kept = pd.read_csv(tmp_path / "frames.csv")
+    assert kept["time_s"].iloc[-1] > real.time_s[-1]
+    found = errors(real, kept, summary)
+    assert found["distance_error_percent"] == pytest.approx(2, abs=0.02)
+    assert found["n"] == last + 1
 
 
 def test_frames_beyond_the_truth_or_missing_give_no_distance():

@@ -19,7 +19,7 @@ from courtside.records.keypoints.derived_joints import DerivedJoints
 from courtside.records.keypoints.keypoints import Keypoints3D
 
 FINE = 10  # ASSUME: true points per frame, for the length of the true path; chords err little
-CLOSE_S = 1e-6  # times of measures are rounded to this
+CLOSE_S = 1e-4  # times in tables are rounded to half of this or less
 COLUMNS = [
     "person", "point", "n", "seconds", "distance_m", "true_distance_m", "distance_error_percent",
     "distance_sigma_percent", "position_median_mm", "position_p95_mm", "speed_rmse_m_s",
@@ -91,7 +91,7 @@ def distances(errors: pd.DataFrame) -> tuple[NDArray, NDArray]:
 
 
 def _inside(part: pd.DataFrame, path: "scipy.interpolate.CubicSpline") -> pd.DataFrame:
-    return part[part["time_s"].between(path.x[0], path.x[-1])]
+    return part[part["time_s"].between(path.x[0] - CLOSE_S, path.x[-1] + CLOSE_S)]
 
 
 def _speed_errors(
