@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from courtside.pages.report import facts as report_facts
@@ -35,6 +36,15 @@ def test_persons_called_by_digits_keep_their_names(tmp_path):
         path.write_text(path.read_text().replace("p1,", "01,"))
     facts = report_facts.of_take(files)
     assert list(facts["persons"]) == list(facts["left_out"]) == ["01"]
+
+
+@pytest.mark.parametrize(("persons", "shown"), [(["p1"], ["p1"]), (["p1", "p2", "all"], ["all"])])
+def test_errors_are_of_all_persons_together_or_of_the_only_one(tmp_path, persons, shown):
+    row = {"stage": "pose3d", "fusion": "all-robust", "joint": "limbs", "median_mm": 40.0}
+    table = pd.DataFrame([row | {"person": person} for person in persons])
+    table.to_csv(tmp_path / "errors.csv", index=False)
+    facts = report_facts.of_take({"errors": str(tmp_path / "errors.csv")})
+    assert [row["person"] for row in facts["truth"]] == shown
 
 
 def test_a_take_without_files_is_empty():

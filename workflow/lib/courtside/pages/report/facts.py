@@ -54,7 +54,9 @@ def of_take(files: dict) -> dict:
     text = Path(files["shake"]).read_text(encoding="utf-8") if files.get("shake") else ""
     facts["shake"] = [line.strip() for line in text.splitlines() if line.strip()]
     facts["devices"] = _rows(files, "checks", ("source", "status"))
-    facts["truth"] = _rows(files, "errors", ("stage", "fusion", "person", "joint", "median_mm"))
+    errors = _rows(files, "errors", ("stage", "fusion", "person", "joint", "median_mm"))
+    # Of one person alone there are no rows of all.
+    facts["truth"] = [row for row in errors if row["person"] == "all"] or errors
     facts["quality"] = _verdicts(**files["quality"]) if files.get("quality") else []
     facts["true_paths"] = _rows(files, "kinematics", ("person", "point", "distance_error_percent"))
     return facts
