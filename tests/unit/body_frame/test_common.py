@@ -119,6 +119,12 @@ def test_the_counterpart_has_the_frame_of_the_same_t_pose():
         common.counterpart(made[0], spells, CARRIED_BY, [100.0, 101.0])
 
 
+def test_a_t_pose_that_nobody_performed_has_no_counterpart():
+    _, made, happened = take()
+    with pytest.raises(InputError, match="d415-rgb: expected a T-pose .* rest poses .*; film one"):
+        common.counterpart(made[0], happened["d415-rgb"].tposes, CARRIED_BY, np.full(2, np.nan))
+
+
 def test_frames_that_nobody_performed_are_left_out():
     _, made, happened = take()
     motion = made[0]

@@ -105,9 +105,14 @@ def counterpart(
     """Return the body frame of the true motion at the T-pose of another source.
 
     The motion, whose T-poses are `spells` and whose joints `carried_by` weighs, and the other
-    T-pose's start and end (2,) are on the reference clock. An `InputError` if it shows no T-pose
-    then.
+    T-pose's start and end (2,) are on the reference clock, NaN if nobody performed it. An
+    `InputError` then, or if the motion shows no T-pose at that time.
     """
+    if not np.isfinite(tpose_s).all():
+        raise InputError(
+            f"{motion.source}: expected a T-pose that the sources perform, found only rest poses "
+            "of their own models; film one"
+        )
     best = max(spells, key=lambda spell: _overlap(spell, tpose_s))
     if _overlap(best, tpose_s) < SAME_S:
         raise InputError(
