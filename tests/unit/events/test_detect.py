@@ -109,6 +109,16 @@ def test_a_device_that_shows_nothing_has_a_row_that_says_so():
     assert "expected a T-pose" in row["why"]
 
 
+def test_a_source_without_wrists_has_a_row_that_names_them():
+    (rgb, _), lost = devices()[1], ["left_wrist", "right_wrist"]
+    kept = ~np.isin(rgb.joints, lost)
+    bare = device_takes.of(rgb.xyz[:, kept], rgb.time_s, joints=rgb.joints[kept])
+    found = detect.detect([bare])
+    assert "missing: ['left_wrist', 'right_wrist']" in found["d415-rgb"].fault
+    assert detect.wrists([bare]).distance_m.isna().all()
+    assert detect.events(found).event.tolist() == ["none"]
+
+
 def test_wrists_are_as_far_apart_as_they_are():
     take, motions = devices()
     motions[0].performed[:5] = False

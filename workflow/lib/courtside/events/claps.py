@@ -48,10 +48,12 @@ def find(motion: DeviceMotion, spells: Sequence[TPose]) -> tuple[list[Clap], lis
     """Find every time at which the hands come together: the claps, and the others with a reason.
 
     `spells` are the T-poses of this motion in order of time; each counts its first clap only. Both
-    lists are in order of time.
+    lists are in order of time, and empty without T-poses.
     """
+    if not spells:
+        return [], []
     after, taken = [], []
-    bend_deg = tpose.measure(motion)["bend_deg"] if spells else np.empty(0)
+    bend_deg = tpose.measure(motion)["bend_deg"]
     for number, spell in enumerate(spells):
         stop_s = spell.stop_s + MOST_S
         if number + 1 < len(spells):
@@ -90,16 +92,16 @@ def separation(motion: DeviceMotion, spell: TPose) -> NDArray:
 
 
 def wrist_distance(motion: DeviceMotion) -> NDArray:
-    """Return the distance of the wrists in space, (T,) m."""
+    """Return the distance of the wrists in space, (T,) m; NaN if the motion lacks one."""
+    if not {"left_wrist", "right_wrist"} <= set(motion.joints):
+        return np.full(len(motion.time_s), np.nan)
     return np.linalg.norm(motion.joint("left_wrist") - motion.joint("right_wrist"), axis=1)
 
 
 def _together(motion: DeviceMotion, spells: Sequence[TPose]) -> list[float]:
     """Return when the wrists come within `CLOSE` of their distance in the T-poses."""
     apart = wrist_distance(motion)
-    span_m = (
-        np.median([np.nanmedian(apart[spell.frames]) for spell in spells]) if spells else np.nan
-    )
+    span_m = np.median([np.nanmedian(apart[spell.frames]) for spell in spells])
     close = (apart < CLOSE * span_m) & motion.performed
     starts, last_s = [], -np.inf
     for first, stop in filtering.runs(close):
