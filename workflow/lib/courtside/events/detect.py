@@ -79,8 +79,9 @@ def _with_claps(source: str, found: Mapping[str, Events], devices: Mapping[str, 
     return replace(own, claps=claps)
 
 
-EVENT_COLUMNS = ["source", "event", "number", "time_s", "own_time_s", "uncertainty_s"]
-EVENT_COLUMNS += ["used", "why"]
+EVENT_COLUMNS = [
+    "source", "event", "number", "time_s", "own_time_s", "uncertainty_s", "used", "why",
+]  # fmt: skip
 
 
 def wrists(
