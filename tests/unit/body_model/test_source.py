@@ -34,6 +34,15 @@ def test_joints_that_the_model_has_not_are_left_out():
     assert found.xyz.shape[2] == len(found.joints) == len(points.joints) - 1
 
 
+def test_the_middle_of_the_hips_has_not_the_error_of_a_hip():
+    points = record()
+    joints = points.joints.copy()
+    joints[joints.tolist().index("left_heel")] = "mid_hip"
+    found = source.observed(replace(points, joints=joints), SIGMA_M)
+    at = found.joints.tolist().index("mid_hip")
+    assert np.isnan(found.covariance_network[0, :, at]).all()
+
+
 def test_even_times_stay_as_they_are():
     points = record()
     assert source.even(points) is points

@@ -134,6 +134,7 @@ def is_free(shape: Shape) -> NDArray:
 
     All but limb joints and what `with_feet` placed.
     """
+    # `mid_hip` reads as a hip: it is not free, but the origin of the pelvis.
     names = np.array([joint.partition("_")[2] for joint in shape.joints])
     placed = np.isin(names, ["heel", *TOES]) & shape.places.any(axis=1)
     return ~np.isin(names, list(segments.ORIGINS)) & ~placed

@@ -7,7 +7,7 @@ import numpy as np
 
 from courtside.body_model import segments
 from courtside.geometry import interpolation
-from courtside.records.keypoints import missing_reason
+from courtside.records.keypoints import missing_reason, skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
 
 EVEN_S = 5e-5  # ASSUME: a deviation from uniform times that has no effect
@@ -24,7 +24,7 @@ def observed(points: Keypoints3D, sigma_m: Mapping[str, float]) -> Keypoints3D:
     points = even(points)
     on = [at for at, joint in enumerate(points.joints.tolist()) if segments.segment_of(joint)]
     points = points.some_joints(on)
-    parts = [joint.partition("_")[2] for joint in points.joints.tolist()]
+    parts = [skeleton.without_side(joint) for joint in points.joints.tolist()]
     stated = np.isin(parts, list(sigma_m))[:, None, None] & np.ones((3, 3), bool)
     variance = np.square([sigma_m.get(part, 0.0) for part in parts])[:, None, None] * np.eye(3)
     known = np.isfinite(points.xyz).all(axis=-1)[..., None, None]
