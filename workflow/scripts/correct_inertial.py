@@ -41,7 +41,7 @@ def main(
     motion, vision = device_motion.read(device_npz), device_motion.read(vision_npz)
     _, clocks = sync.read(sync_json)
     used = {name: clocks.get(name, ABSENT) for name in (device, vision_device)}
-    if fault := sync.fault_line(sync_json, used):
+    if fault := sync.fault_line(sync_json, used, "device"):
         raise InputError(fault)
     own, theirs = used[device], used[vision_device]
     corrected, report = correction.correct(

@@ -79,6 +79,8 @@ def test_a_doubtful_clock_is_named_with_its_offsets():
     sure = {name: CLOCKS[name] for name in "ab"}
     assert all(clock.usable for clock in sure.values())
     assert clocks.fault_line("take rally", sure) == ""
+    device = clocks.fault_line("take rally", CLOCKS, "device")
+    assert device.startswith("take rally: device c: expected")
 
 
 def test_clocks_that_somebody_states_are_used():

@@ -76,15 +76,18 @@ def stated(numbers: Mapping[str, Mapping[str, Any]]) -> dict[str, Clock]:
     return {name: Clock(**clock, note="stated by the session") for name, clock in numbers.items()}
 
 
-def fault_line(where: StrPath, clocks: Mapping[str, Clock]) -> str:
-    """Return a line, begun with `where`, on the first clock that may not be used; empty if none."""
-    for camera, clock in clocks.items():
+def fault_line(where: StrPath, clocks: Mapping[str, Clock], what: str = "camera") -> str:
+    """Return a line on the first clock that may not be used; empty if none.
+
+    It begins with `where`; `what` the clocks are of.
+    """
+    for name, clock in clocks.items():
         if not clock.usable:
             others = ", ".join(f"{at:.3f}" for at in clock.candidates_s)
             found = f"{clock.status} ({clock.note})" if clock.note else clock.status
             found += f", possible offsets {others} s" if others else ""
             return (
-                f"{where}: camera {camera}: expected a clock that the recording determines, "
+                f"{where}: {what} {name}: expected a clock that the recording determines, "
                 f"found {found}; {NOT_USED}"
             )
     return ""
