@@ -14,11 +14,10 @@ from courtside.records.keypoints.skeleton import SEGMENTS, TOES
 BEST = 0.5  # share of the frames, those of least uncertainty, that a length is the median of
 LUMBAR = 0.2  # ASSUME: height of the joint of pelvis and thorax, share of the trunk's length
 STERNUM_M = 0.02  # ASSUME: of the clavicle's inner end from the middle plane
-# ASSUME: of a length that the median does not lessen: joints err alike in all frames
-# (`joint_correction.LENGTH_SIGMA`).
+# ASSUME: standard deviation of a median length, as a share of it: joints err alike in all frames,
+# so more frames do not reduce it (`joint_correction.LENGTH_SIGMA`).
 SYSTEMATIC = 0.04
-# Share of body height, men and women together (Winter 2009, fig. 4.1; hips, shoulders: ASSUME),
-# which counts the less the more of a length a take shows.
+# Share of body height, men and women together (Winter 2009, fig. 4.1; hips, shoulders: ASSUME).
 OF_HEIGHT = {
     "thigh": 0.245, "shank": 0.246, "upper_arm": 0.186, "forearm": 0.146,
     "hips": 0.12, "shoulders": 0.2, "trunk": 0.288,

@@ -49,7 +49,7 @@ class Hop:
 def find(points: Keypoints3D, person: int) -> list[Hop] | None:
     """Return the hops of a person, by the person's index, from filtered skeletons.
 
-    None: they cannot be seen, without heels or at a low frame rate.
+    None: they cannot be seen, without heels, at a low frame rate or in fewer than `LEAST_FRAMES`.
     """
     names = points.joints.tolist()
     feet = [points_of(names, side) for side in FEET]

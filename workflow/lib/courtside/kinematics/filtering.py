@@ -1,6 +1,6 @@
 """Fill short gaps in 3D keypoints, leave out uncertain frames, filter series without delay.
 
-Every function returns a new record; the raw one is not changed.
+Nothing is changed in place.
 """
 
 from dataclasses import replace

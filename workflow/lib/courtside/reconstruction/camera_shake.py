@@ -22,7 +22,7 @@ from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError, StrPath
 from courtside.study.execution import log
 
-# ASSUME: tremor of a mounted camera changes little over longer gaps than this, s.
+# ASSUME: over gaps up to this, s, the tremor of a mounted camera is nearly linear.
 LONGEST_GAP_S = 0.2
 SAME_FRAME = 0.25  # share of a frame: a keypoint time this close to a row's time is that row
 PROBE_PX = 20.0  # distance from the centre at which the rotation is read: small against the lens

@@ -27,7 +27,7 @@ def join(strokes: pd.DataFrame, events: pd.DataFrame) -> pd.DataFrame:
     `strokes` are of `courtside.strokes.detect.table`, `events` have the columns `person`, `event`,
     `start_s`, `start_sigma_s`, `stop_s`, `stop_sigma_s`. Intervals end when the split step lands
     and when the first foot leaves the floor after that, or after the stroke without a split step.
-    Empty: there was none before the opponent's next stroke or within `LATEST_S`. Sigmas take the
+    Empty: there was none before the next stroke (of anybody) or within `LATEST_S`. Sigmas take the
     errors of both ends as independent.
     """
     rows = []
