@@ -11,8 +11,11 @@ from courtside.study.execution.script import run
 def main(paths, pdf, png, csv):
     points = keypoints.read_3d(paths.pose3d)
     seen = footage.read(paths.cameras, paths.pose2d, paths.people, paths.sync)
-    views = [resampling.nearest(one.view, points.time_s, one.clock)[0] for one in seen]
-    rows = visibility.table(points, views)
+    scores = {
+        one.camera.name: one.view.score[:, resampling.nearest(one.view, points.time_s, one.clock)]
+        for one in seen
+    }
+    rows = visibility.table(points, scores)
     style.save(visibility.draw(rows, skeleton.read(paths.skeleton)), rows, pdf, png, csv)
 
 

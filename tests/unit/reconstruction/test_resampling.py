@@ -99,7 +99,5 @@ def test_a_parabola_between_frames_is_met_exactly_and_beside_a_gap_by_a_line():
 def test_the_nearest_frames_are_taken_by_the_cameras_own_clock():
     keypoints = view(np.arange(30) / 30)
     clock = Clock(offset_s=0.5, drift_ppm=1000.0)
-    found, own_s = resampling.nearest(keypoints, np.array([0.0, 0.1, 0.21]), clock)
-    np.testing.assert_allclose(own_s, [15 / 30, 18 / 30, 21 / 30])
-    np.testing.assert_array_equal(found.xy, keypoints.xy[:, [15, 18, 21]])
-    assert found.time_s.tolist() == [0.0, 0.1, 0.21]
+    found = resampling.nearest(keypoints, np.array([0.0, 0.1, 0.21]), clock)
+    assert found.tolist() == [15, 18, 21]

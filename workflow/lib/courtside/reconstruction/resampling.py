@@ -1,7 +1,6 @@
 """Resampling of keypoints from cameras with their own clocks to common, uniform times."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,17 +68,9 @@ def resample_all(
     return xy, score
 
 
-def nearest(view: Keypoints2D, time_s: NDArray, clock: Clock) -> tuple[Keypoints2D, NDArray]:
-    """Return a camera's frames nearest to times (T,) of the reference clock, not interpolated.
-
-    The view gets these times. The second result (T,) tells when the frames were taken, on the
-    camera's own clock: to find them in its video.
-    """
-    own = np.asarray(clock.from_reference(time_s))
-    at = interpolation.nearest(view.time_s, own, "left")
-    fields = ("xy", "score", "reason", "xyz_in_body", "clothing")
-    per_frame = {key: getattr(view, key)[:, at] for key in fields}
-    return replace(view, time_s=np.asarray(time_s, dtype=float), **per_frame), view.time_s[at]
+def nearest(view: Keypoints2D, time_s: NDArray, clock: Clock) -> NDArray:
+    """Return a camera's frames (T,) nearest to times (T,) of the reference clock."""
+    return interpolation.nearest(view.time_s, clock.from_reference(time_s), "left")
 
 
 def _cubic(values, known, left, right, share, longest_s) -> NDArray:

@@ -1,20 +1,23 @@
 """The network's confidence over time, and the number of views behind each joint."""
 
+from collections.abc import Mapping
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from courtside.figures.style import style
-from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D
+from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.keypoints.skeleton import Skeleton
 
 A_ROW = 6  # cameras in the legend
 
 
-def table(points: Keypoints3D, views: list[Keypoints2D]) -> pd.DataFrame:
+def table(points: Keypoints3D, scores: Mapping[str, NDArray]) -> pd.DataFrame:
     """Return scores and numbers of views over time; empty if a camera saw nothing.
 
-    `views` are at the times of the points (`resampling.nearest`).
+    `scores` (P, T, J) are of each camera at the times of the points.
     """
     n_persons, n_frames, n_joints = points.n_views.shape
     columns = {
@@ -23,8 +26,7 @@ def table(points: Keypoints3D, views: list[Keypoints2D]) -> pd.DataFrame:
         "joint": np.tile(points.joints, n_persons * n_frames),
         "n_views": points.n_views.ravel(),
     }
-    for view in views:
-        columns[f"score_{view.camera}"] = view.score.ravel()
+    columns |= {f"score_{camera}": score.ravel() for camera, score in scores.items()}
     return pd.DataFrame(columns)
 
 

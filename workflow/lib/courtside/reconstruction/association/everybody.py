@@ -38,7 +38,7 @@ def find(seen: Sequence[Footage], joints: Skeleton, court: Court | None) -> tupl
     scale.check([one.camera for one in seen], xy, names)
     mirror = [chosen.index(joints.mirror()[joint]) for joint in chosen]
     worn = [
-        resampling.nearest(v, time_s, c)[0].clothing for v, c in zip(views, clocks, strict=True)
+        v.clothing[:, resampling.nearest(v, time_s, c)] for v, c in zip(views, clocks, strict=True)
     ]
     try:
         found = associate.associate(
