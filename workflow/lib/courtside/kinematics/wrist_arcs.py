@@ -88,20 +88,12 @@ def arcs(body: BodyMotion) -> list[Arc]:
 
 def paths(found: Sequence[Arc]) -> pd.DataFrame:
     """Return the points of arcs as a table: side, time_s, x, z, off_arc, off_circle; body units."""
-    tables = [
-        pd.DataFrame(
-            {
-                "side": arc.side,
-                "time_s": arc.time_s,
-                "x": arc.path[:, 0],
-                "z": arc.path[:, 1],
-                "off_arc": arc.off_arc,
-                "off_circle": arc.off_circle,
-            }
-        )
+    rows = [
+        (arc.side, *values)
         for arc in found
+        for values in zip(arc.time_s, *arc.path.T, arc.off_arc, arc.off_circle, strict=True)
     ]
-    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=PATHS)
+    return pd.DataFrame(rows, columns=PATHS)
 
 
 def distortion(found: Sequence[Arc]) -> pd.DataFrame:
