@@ -46,10 +46,8 @@ def keypoints_used(
     `views` and `clocks` are in the order of `points.cameras`; sides are exchanged where it says so.
     """
     xy, score = resampling.resample_all(views, clocks, points.time_s)
-    swapped, mirror = np.moveaxis(points.swapped, -1, 0), np.array(skeleton.mirror())
-    for person in range(xy.shape[1]):
-        xy[:, person] = left_right.apply_swaps(xy[:, person], swapped[:, person], mirror)
-        score[:, person] = left_right.apply_swaps(score[:, person], swapped[:, person], mirror)
+    swapped, mirror = np.moveaxis(points.swapped, -1, 0), skeleton.mirror()
+    xy, score = (left_right.apply_swaps(each, swapped, mirror) for each in (xy, score))
     return xy, score
 
 

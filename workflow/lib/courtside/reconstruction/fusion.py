@@ -106,12 +106,11 @@ def _fix_sides(cameras, xy, score, skeleton, limit_px) -> tuple[NDArray, NDArray
     groups = [[skeleton.index(j) for j in g] for g in skeleton.side_groups()]
     swapped = np.zeros(score.shape, dtype=bool)
     for person in range(score.shape[1]):
-        most = {"max_error_px": np.median(limit_px[:, person], axis=1)}
+        most_px = np.median(limit_px[:, person], axis=1)
         swapped[:, person] = left_right.swapped_views(
-            cameras, xy[:, person], score[:, person], mirror, groups, **most
+            cameras, xy[:, person], score[:, person], mirror, groups, max_error_px=most_px
         )
-        xy[:, person] = left_right.apply_swaps(xy[:, person], swapped[:, person], mirror)
-        score[:, person] = left_right.apply_swaps(score[:, person], swapped[:, person], mirror)
+    xy, score = (left_right.apply_swaps(each, swapped, mirror) for each in (xy, score))
     return xy, score, swapped
 
 

@@ -212,9 +212,9 @@ def disagreement(
 
 
 def apply_swaps(values: NDArray, swapped: NDArray, mirror: Sequence[int] | NDArray) -> NDArray:
-    """Exchange left and right of values (C, T, J, ...) where `swapped` (C, T, J)."""
+    """Exchange left and right of values (..., J, ...) where `swapped` (..., J)."""
     shaped = swapped.reshape(swapped.shape + (1,) * (values.ndim - swapped.ndim))
-    return np.where(shaped, values[:, :, np.asarray(mirror)], values)
+    return np.where(shaped, np.take(values, mirror, axis=swapped.ndim - 1), values)
 
 
 class _Views:
