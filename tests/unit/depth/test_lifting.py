@@ -216,13 +216,3 @@ def test_every_skeleton_can_be_lifted(path):
     assert skin.get("mid_hip", 0.09) == lifting.SKIN_TO_JOINT_M["hip"]
     assert skin.get("left_big_toe", 0.02) == lifting.SKIN_TO_JOINT_M["foot_index"]
     assert skin.get("left_jaw_1", 0.01) == lifting.OTHERS_M
-
-
-def test_several_people_or_standing_clocks_are_refused(still):
-    xyz, pictures = still
-    keypoints = view(xyz)
-    two = replace(keypoints, xy=np.repeat(keypoints.xy, 2, axis=0))
-    stopped = replace(keypoints, time_s=np.zeros(N))
-    for wrong in (two, stopped):
-        with pytest.raises(ValueError, match="one person"):
-            lift(wrong, pictures)

@@ -26,19 +26,14 @@ SKIN_TO_JOINT_M = {
     "hip": 0.09,
     "knee": 0.055,
     "ankle": 0.035,
-    "pinky": 0.01,
-    "index": 0.01,
-    "thumb": 0.01,
     "heel": 0.03,
     "foot_index": 0.02,
     "big_toe": 0.02,
-    "small_toe": 0.01,
-    "ear": 0.01,
     "neck": 0.06,
     "head_top": 0.08,
     "mid_hip": 0.09,
 }
-OTHERS_M = 0.01  # ASSUME: what has no entry are points of hands and face: thin, or on the skin
+OTHERS_M = 0.01  # ASSUME: what has no entry (fingers, small toe, ear) is thin, or on the skin
 ON_SKIN = ("nose", "eye", "eye_inner", "eye_outer", "mouth")
 # ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
 LEAST_RADIUS_M = 0.02  # of the limb at a joint, for the size of its window
@@ -75,15 +70,12 @@ def lift_take(
     The motion is in the colour camera's axes (x right, y down, z forward), metres. The reason is
     `NO_DEPTH` if there is no depth or another part of the body is in front, else that of the 2D
     joint. Beside it, the standard deviation (T, J) m of the depth along the camera's axis, by the
-    noise of one pixel alone. A `ValueError` if the view has not one person or its times do not
-    increase; an `InputError` if a joint is not in a given `skin_m`.
+    noise of one pixel alone. An `InputError` if a joint is not in a given `skin_m`.
 
     Each joint has up to three candidate surfaces: the nearest one whose joint keeps the lengths of
     the bones (medians over the take) is used, from the trunk outwards. A joint without one is
     missing: only the surface that covers it is visible.
     """
-    if len(view.xy) != 1 or (np.diff(view.time_s) <= 0).any():
-        raise ValueError("expected keypoints of one person at increasing times")
     names = list(map(str, view.joints))
     sampling = sampling or Sampling()
     skin = by_joint(names, skin_m)
@@ -94,8 +86,8 @@ def lift_take(
     z, z_body = _sampled(sampler, xy, view.time_s, depth_frames)
     joints_at = _behind_skin(rig.colour, xy, z, skin)
     chain = _chain(names, bones, is_trunk)
-    radius_px = radius_m * rig.colour.K[0, 0]
-    xyz, depth = _placed(joints_at, xy, z, z_body, radius_px, chain, is_trunk)
+    radius_px_m = radius_m * rig.colour.K[0, 0]  # px at a depth of 1 m
+    xyz, depth = _placed(joints_at, xy, z, z_body, radius_px_m, chain, is_trunk)
     xyz = _drawn_back(xyz, names, beyond_m or {})
     missing = np.isnan(xyz[..., 0]) & (view.reason[0] == missing_reason.OK)
     motion = DeviceMotion(
@@ -110,14 +102,14 @@ def lift_take(
     return motion, sampler.sigma_z(depth)
 
 
-def _placed(joints_at, xy, z, z_body, radius_px, chain, is_trunk) -> tuple[NDArray, NDArray]:
+def _placed(joints_at, xy, z, z_body, radius_px_m, chain, is_trunk) -> tuple[NDArray, NDArray]:
     """Return the joints (T, J, 3) on their surfaces, and the depths (T, J) of these."""
     lengths = _lengths(joints_at[:, :, 0], chain)
     xyz = np.full((*xy.shape[:2], 3), np.nan)
     depth = np.full(xy.shape[:2], np.nan)
     for t in range(len(xy)):
         chosen = _choose(joints_at[t], z[t], z_body[t], chain, lengths, is_trunk)
-        _uncover(chosen, xy[t], z[t], radius_px, chain, is_trunk)
+        _uncover(chosen, xy[t], z[t], radius_px_m, chain, is_trunk)
         for joint, surface in chosen.items():
             xyz[t, joint], depth[t, joint] = joints_at[t, joint, surface], z[t, joint, surface]
     return xyz, depth
@@ -247,7 +239,7 @@ def _choose(joints_at, z, z_body, chain, lengths, is_trunk) -> dict[int, int]:
     return chosen
 
 
-def _uncover(chosen, xy, z, radius_px, chain, is_trunk) -> None:
+def _uncover(chosen, xy, z, radius_px_m, chain, is_trunk) -> None:
     """Remove joints of the trunk that a limb covers in the picture at the depth seen there."""
     limbs = [
         (a, b) for a, b in chain if b in chosen and a in chosen and not (is_trunk[a] or is_trunk[b])
@@ -257,7 +249,7 @@ def _uncover(chosen, xy, z, radius_px, chain, is_trunk) -> None:
             along = xy[b] - xy[a]
             share = np.clip((xy[joint] - xy[a]) @ along / max(along @ along, 1e-9), 0, 1)
             z_limb = (1 - share) * z[a, chosen[a]] + share * z[b, chosen[b]]
-            wide = (1 - share) * radius_px[a] + share * radius_px[b]
+            wide = (1 - share) * radius_px_m[a] + share * radius_px_m[b]
             over = np.linalg.norm(xy[a] + share * along - xy[joint]) <= wide / z_limb
             if over and abs(z_limb - z[joint, chosen[joint]]) <= COVERED_M:
                 chosen.pop(joint)

@@ -1,12 +1,15 @@
 """The main person of a single camera, and the network's own estimate of the metric body."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints2D
+
+FIELDS = ("xy", "score", "reason", "xyz_in_body", "clothing")  # of each tracklet
 
 
 def main_person(view: Keypoints2D) -> Keypoints2D:
@@ -15,26 +18,20 @@ def main_person(view: Keypoints2D) -> Keypoints2D:
     The nearest is the one whose joints span most of the picture: single-view sessions have one
     subject. The tracklet is unseen where there is nobody.
     """
-    n_people, n_frames, n_joints = view.score.shape
+    n_people, n_frames = view.score.shape[:2]
     if n_people == 0:
-        empty = np.full((1, n_frames, n_joints), np.nan)
-        unseen = np.full(empty.shape, missing_reason.UNSEEN, dtype=view.reason.dtype)
-        return replace(
-            view,
-            xy=np.repeat(empty[..., np.newaxis], 2, axis=-1),
-            score=empty,
-            reason=unseen,
-            xyz_in_body=np.repeat(empty[..., np.newaxis], 3, axis=-1),
-            clothing=np.full((1, n_frames, 2, 3), np.nan),
-        )
+        empty: dict[str, Any] = {
+            key: np.full((1, *getattr(view, key).shape[1:]), np.nan) for key in FIELDS
+        }
+        empty["reason"] = np.full_like(empty["score"], missing_reason.UNSEEN, view.reason.dtype)
+        return replace(view, **empty)
     known = np.isfinite(view.xy)
     low = np.where(known, view.xy, np.inf).min(axis=2)
     high = np.where(known, view.xy, -np.inf).max(axis=2)
     span = np.where(high >= low, high - low, -1.0).max(axis=-1)
     who = span.argmax(axis=0)
     at = np.arange(n_frames)
-    fields = ("xy", "score", "reason", "xyz_in_body", "clothing")
-    return replace(view, **{key: getattr(view, key)[who, at][np.newaxis] for key in fields})
+    return replace(view, **{key: getattr(view, key)[who, at][np.newaxis] for key in FIELDS})
 
 
 def landmarks(source: str, view: Keypoints2D) -> DeviceMotion:
