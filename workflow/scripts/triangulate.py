@@ -6,7 +6,7 @@ import numpy as np
 
 from courtside.calibration.records import covariance
 from courtside.reconstruction import error_signs, joint_correction, joint_errors, resampling
-from courtside.reconstruction import fusion as camera_error
+from courtside.reconstruction import fusion as fusing
 from courtside.records.cameras import footage
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution import log
@@ -25,7 +25,7 @@ def main(paths, pose3d_npz, *, sex_of, fusion, recorded, **options):
         own = [seen[name] for name in names]
         cameras, views = [one.camera for one in own], [one.view for one in own]
         clocks = [one.clock for one in own]
-        found = camera_error.triangulate_take(
+        found = fusing.triangulate_take(
             cameras, views, joints, list(sex_of), clocks=clocks, time_s=time_s, rule=rule, **options
         )
         if rule == "robust" and paths.errors:
@@ -35,11 +35,11 @@ def main(paths, pose3d_npz, *, sex_of, fusion, recorded, **options):
             found = joint_errors.state(found, model, signs, recorded=recorded)
         report(found)
         if shared:
-            found = camera_error.with_cameras(found, cameras, shared.of(names).of_columns())
+            found = fusing.with_cameras(found, cameras, shared.of(names).of_columns())
         return found
 
     halves = [fuse((used[0], side), "dlt") for side in used[1:]] if rule == "halfbody" else []
-    points = camera_error.merge(*halves, used) if halves else fuse(used, rule)
+    points = fusing.merge(*halves, used) if halves else fuse(used, rule)
     if paths.offsets:
         table = joint_correction.read(paths.offsets)
         cameras = [one.camera for one in seen.values()]
