@@ -11,10 +11,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-BALL, HINGES = (
-    "ball",
-    "hinges",
-)  # a free rotation; one about a fixed axis and then one about another
+BALL = "ball"  # a free rotation
+HINGES = "hinges"  # a turn about a fixed axis, then one about another
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.calibration.people.views import Seen, joined
 from courtside.reconstruction import person_height, resampling
@@ -43,11 +44,18 @@ def of_footage(names: Sequence[str], seen: Sequence[Footage]) -> Seen:
     height_px = person_height.in_pictures(cameras, xy, score, skeleton.JOINTS)
     n_people, n_times = score.shape[1:3]
     rows = [names.index(camera.name) for camera in cameras]
-    whole = {"xy": xy, "score": score, "height_px": height_px}
-    for key, values in whole.items():
-        flat = values.reshape(len(cameras), n_people * n_times, *values.shape[3:])
-        fill = person_height.LEAST_PX if key == "height_px" else np.nan
-        whole[key] = np.full((len(names), *flat.shape[1:]), fill)
-        whole[key][rows] = flat
     track, when = np.repeat(np.arange(n_people), n_times), np.tile(time_s, n_people)
-    return Seen(**whole, track=track, time_s=when)
+    return Seen(
+        xy=_by_camera(xy, rows, len(names), np.nan),
+        score=_by_camera(score, rows, len(names), np.nan),
+        height_px=_by_camera(height_px, rows, len(names), person_height.LEAST_PX),
+        track=track,
+        time_s=when,
+    )
+
+
+def _by_camera(values: NDArray, rows: Sequence[int], count: int, fill: float) -> NDArray:
+    """Return values (C, P, T, ...) as (count, P T, ...): of cameras `rows`, else `fill`."""
+    whole = np.full((count, values.shape[1] * values.shape[2], *values.shape[3:]), fill)
+    whole[rows] = values.reshape(len(rows), *whole.shape[1:])
+    return whole

@@ -18,7 +18,7 @@ ARM_S, TRUNK_S = 0.1, 0.17
 
 @dataclass(frozen=True, eq=False)
 class Arm:
-    """One wrist over time (T frames), lengths as shares of `Signals.size_m`."""
+    """One wrist over time (T frames); reach and height are shares of `Signals.size_m`."""
 
     wrist: Fit  # in the world, metres
     from_waist: Fit  # the wrist against the waist, metres
