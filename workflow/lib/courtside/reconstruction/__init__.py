@@ -3,12 +3,13 @@
 resampling: `common_times`, `resample`, `nearest`: each camera's clock applied
 common_views: `of_takes`: limb joints of everybody in several takes
 lost_cameras: `recover`: cameras in which nobody is associated, found again by people
-self_calibration: `tracks`, `guess`, `seen`: takes for a calibration from people alone
+self_calibration: `calibrate` (the entry), `tracks`, `guess`, `seen`: takes for a calibration from
+    people alone
 person_height: `in_pictures`: the height of a person in each picture, for limits in shares of it
 left_right: `swapped_views`, `apply_swaps`: sides that a network confused
 fusion: `triangulate_take`, `merge`, `with_cameras`: half bodies, the cameras' covariance
 camera_shake: `steady`, `put_back`, `read_as_filmed`: shake removed from keypoints, and put back for
-    pictures; `find`, `say`: knocks described
+    pictures; `still`, `knocked`: tables of it; `find`, `say`: knocks described
 offset_vectors: `every`, `of_body`, `of_views`, `views`, `names`: what joint offsets consist of
 joint_correction: `estimate`, `correct`: a network's joint offsets; `keep`: constant limb lengths;
     `correct_then_filter`, `offsets`

@@ -26,7 +26,7 @@ def in_pictures(
     it, it is interpolated. Where they never do, it is the usual extent of the keypoints in each
     picture. Neither posture nor a view that tracks somebody else changes this height.
     """
-    extent_px = extents(xy)
+    extent_px = np.maximum(boxes.usual_side(xy), LEAST_PX)
     trunk = [list(joints).index(joint) for joint in limbs.TRUNK if joint in joints]
     height_px = np.broadcast_to(extent_px[..., None], score.shape[:3]).copy()
     for person in range(score.shape[1] if trunk else 0):
@@ -40,14 +40,6 @@ def in_pictures(
             focal_px = epipolar.focal_px(camera)
             height_px[view, person] = STATURE_M * focal_px / np.maximum(depth_m, NEAREST_M)
     return np.maximum(height_px, LEAST_PX)
-
-
-def extents(xy: NDArray) -> NDArray:
-    """Return the usual extent (C, P) px of keypoints (C, P, T, J, 2): of box sides, the longer.
-
-    Its median over the frames; `LEAST_PX` where a view never shows the person.
-    """
-    return np.maximum(boxes.usual_side(xy), LEAST_PX)
 
 
 def _middle(

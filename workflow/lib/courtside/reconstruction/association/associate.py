@@ -88,7 +88,8 @@ def associate(
     net = court.net["y_m"] if court is not None and court.net else None
     piece = _pieces(rows, found, instants)
     chosen = linking.link(found, piece, time_s[instants], _slots(rows), net, looks)
-    ray = (chosen >= 0) & found.is_ray[chosen] if len(found.instant) else chosen >= 0
+    is_ray = found.is_ray[chosen] if len(found.instant) else np.zeros_like(chosen, bool)
+    ray = (chosen >= 0) & is_ray
     seen_alone, chosen = np.where(ray, chosen, -1), np.where(ray, -1, chosen)
     order = np.argsort(-(chosen >= 0).sum(axis=1), kind="stable")
     order = order[(chosen[order] >= 0).any(axis=1)]

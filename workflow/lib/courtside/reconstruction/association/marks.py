@@ -51,12 +51,13 @@ def locate(
     one = by_name[sighting.camera]
     _inside(sighting, one.tracklets)
     person = _person(sighting, found.index[sighting.camera], one.tracklets)
-    start_s, time_s, stop_s = (
+    time_s = float(one.clock.to_reference(sighting.time_s))
+    start_s, stop_s = (
         None if t is None else float(one.clock.to_reference(t))
-        for t in (sighting.from_s, sighting.time_s, sighting.to_s)
+        for t in (sighting.from_s, sighting.to_s)
     )
     at = subjects.index(sighting.subject)
-    return Mark(at, person, float(time_s or 0.0), start_s, stop_s, sighting.where)
+    return Mark(at, person, time_s, start_s, stop_s, sighting.where)
 
 
 def _inside(sighting: Sighting, view: Keypoints2D) -> None:
