@@ -33,7 +33,7 @@ def together(off_s, land_s, ahead=0.0, late=0.0):
     ],
 )
 def test_both_feet_that_leave_and_land_together(feet, event):
-    steps, events = kinds.tables({"p1": (feet, 0.9)})
+    steps, events = kinds.tables({"p1": (feet, 0.9, None)})
     assert steps.kind.tolist() == ["stand", "stand", event, event]
     assert events.event.tolist() == [event]
     last, first = events.iloc[0].start_s, events.iloc[0].stop_s
@@ -43,7 +43,7 @@ def test_both_feet_that_leave_and_land_together(feet, event):
 
 def test_a_hop_is_a_split_step_once_even_where_the_stances_show_it():
     feet, hop = together(1.0, 1.2), Hop(1.0, 0.01, 1.2, 0.01)
-    steps, events = kinds.tables({"p1": (feet, 0.9)}, {"p1": [hop]})
+    steps, events = kinds.tables({"p1": (feet, 0.9, [hop])})
     assert steps.kind.tolist() == ["stand", "stand", "split_step", "split_step"]
     (row,) = events.to_dict("records")
     assert (row["event"], row["start_s"], row["stop_s"]) == ("split_step", 1.0, 1.2)
@@ -51,17 +51,17 @@ def test_a_hop_is_a_split_step_once_even_where_the_stances_show_it():
 
 
 def test_where_hops_were_looked_for_no_other_flight_is_a_split_step():
-    _, events = kinds.tables({"p1": (together(1.0, 1.2), 0.9)}, {"p1": []})
+    _, events = kinds.tables({"p1": (together(1.0, 1.2), 0.9, [])})
     assert "split_step" not in set(events.event)
     assert events.event.tolist() == ["step", "step"]
-    _, events = kinds.tables({"p1": (together(1.0, 1.2), 0.9)}, {"p1": None})
+    _, events = kinds.tables({"p1": (together(1.0, 1.2), 0.9, None)})
     assert events.event.tolist() == ["split_step"]
 
 
 def test_running_feet_take_steps():
     left = [stance(NAN, 0.5), stance(0.85, 1.1, 0, 1.2), stance(1.45, NAN, 0, 2.4)]
     right = [stance(NAN, 0.8, 0, 0.6), stance(1.15, 1.4, 0, 1.8)]
-    steps, events = kinds.tables({"p1": ({"left": left, "right": right}, 0.9)})
+    steps, events = kinds.tables({"p1": ({"left": left, "right": right}, 0.9, None)})
     assert set(events.event) == {"step"}
     assert events.foot.tolist() == ["left", "right", "left"]
     assert np.isnan(steps.onset_s.iloc[0])
@@ -75,7 +75,7 @@ def test_running_feet_take_steps():
 def test_a_lunge_lands_far_from_the_other_foot_and_both_stand(apart, stays, leg_m, kind):
     left = [stance(NAN, 1.0 + stays)]
     right = [stance(NAN, 0.7), stance(1.0, 1.0 + stays + 0.1, 0, apart)]
-    steps, events = kinds.tables({"p1": ({"left": left, "right": right}, leg_m)})
+    steps, events = kinds.tables({"p1": ({"left": left, "right": right}, leg_m, None)})
     assert steps[steps.foot == "right"].kind.tolist() == ["stand", kind]
     assert events.event.tolist() == [kind]
 
@@ -84,7 +84,7 @@ def test_a_first_landing_is_a_step_and_stances_that_a_gap_cuts_keep_their_place(
     early = Stance(0.2, 0.01, NAN, NAN, np.zeros(2), 0.01, 0.9, (0.0, 0.8))
     cut = Stance(NAN, NAN, NAN, NAN, np.zeros(2), 0.01, 0.9, (1.0, 1.5))
     late = Stance(2.0, 0.01, 2.5, 0.01, np.zeros(2), 0.01, 0.9, (1.8, 2.7))
-    steps, events = kinds.tables({"p1": ({"left": [early, cut, late], "right": []}, 0.9)})
+    steps, events = kinds.tables({"p1": ({"left": [early, cut, late], "right": []}, 0.9, None)})
     assert steps.kind.tolist() == ["step", "stand", "step"]
     assert steps.onset_s.tolist() == pytest.approx([0.2, NAN, 2.0], nan_ok=True)
     assert events.empty  # of neither is known when the foot left
@@ -93,7 +93,7 @@ def test_a_first_landing_is_a_step_and_stances_that_a_gap_cuts_keep_their_place(
 def test_a_stance_that_a_gap_cuts_is_no_lunge_of_the_other_foot():
     left = [replace(stance(NAN, NAN), seen_s=seen_s) for seen_s in ((0.0, 1.1), (2.0, 2.5))]
     right = [stance(NAN, 0.7), stance(1.0, 2.1, 0, 1.1)]
-    steps, _ = kinds.tables({"p1": ({"left": left, "right": right}, 0.9)})
+    steps, _ = kinds.tables({"p1": ({"left": left, "right": right}, 0.9, None)})
     assert "lunge" not in set(steps.kind)
     assert steps.loc[steps.foot == "left", "seen_until_s"].tolist() == [1.1, 2.5]
 
@@ -101,7 +101,7 @@ def test_a_stance_that_a_gap_cuts_is_no_lunge_of_the_other_foot():
 def test_no_swing_and_no_flight_goes_across_a_gap():
     feet = together(1.0, 1.2)
     feet["left"][1] = replace(feet["left"][1], seen_s=(1.1, 5.0))
-    _, events = kinds.tables({"p1": (feet, 0.9)})
+    _, events = kinds.tables({"p1": (feet, 0.9, None)})
     assert events[["event", "foot"]].to_numpy().tolist() == [["step", "right"]]
 
 
@@ -109,11 +109,11 @@ def test_a_split_step_lands_where_the_feet_stand_then():
     feet = together(1.0, 1.2, ahead=0.5)
     unseen = replace(stance(NAN, NAN, 3.0), seen_s=(0.0, 0.2))
     feet["left"] = [unseen, replace(feet["left"][0], seen_s=(0.4, 5.0)), feet["left"][1]]
-    _, events = kinds.tables({"p1": (feet, 0.9)}, {"p1": [Hop(1.0, 0.01, 1.2, 0.01)]})
+    _, events = kinds.tables({"p1": (feet, 0.9, [Hop(1.0, 0.01, 1.2, 0.01)])})
     assert events.loc[events.event == "split_step", "y_m"].tolist() == [0.5]
 
 
 def test_nobody_has_no_steps():
-    steps, events = kinds.tables({"p1": ({"left": [], "right": []}, NAN)})
+    steps, events = kinds.tables({"p1": ({"left": [], "right": []}, NAN, None)})
     assert steps.empty
     assert events.empty

@@ -29,7 +29,7 @@ def run(n=5, stride_m=1.2, x=3.0, y=1.0, late_s=0.0):
 
 
 def values(feet, lines=None):
-    return measures.summary(*kinds.tables({"p1": (feet, 0.9)}), lines).set_index("measure")
+    return measures.summary(*kinds.tables({"p1": (feet, 0.9, None)}), lines).set_index("measure")
 
 
 def test_counts_and_times_of_a_run():

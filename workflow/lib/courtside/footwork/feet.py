@@ -21,16 +21,15 @@ def find(
     n_people, n_frames = points.xyz.shape[:2]
     probability = np.full((n_people, n_frames, 2, 3), np.nan)
     floor = np.full((n_people, 2, 2), np.nan)
-    people, hopped = {}, {}
+    people = {}
     for at, person in enumerate(points.person_id.tolist()):
         feet, own = {}, hops.find(points, at)
-        hopped[person] = own
         for foot, side in enumerate(footwork.FEET):
             found, floor[at, foot] = tracks.tracks(points, at, side, cutoff_hz)
             stood, known = stances.of_tracks(found, n_frames)
             feet[side] = hops.cut(stood, own or ())
             probability[at, :, foot] = hops.lifted(points.time_s, known, feet[side], own or ())
-        people[person] = feet, leg_length(points, at)
+        people[person] = feet, leg_length(points, at), own
     contacts = footwork.Contacts(
         points.person_id,
         np.array(footwork.FEET),
@@ -39,7 +38,7 @@ def find(
         probability[..., 1:],
         floor,
     )
-    return contacts, *kinds.tables(people, hopped)
+    return contacts, *kinds.tables(people)
 
 
 def leg_length(points: Keypoints3D, person: int) -> float:

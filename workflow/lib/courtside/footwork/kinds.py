@@ -22,20 +22,18 @@ LUNGE_LEGS, LUNGE_S = 0.9, 0.2
 
 
 def tables(
-    people: Mapping[str, tuple[Feet, float]],
-    hopped: Mapping[str, Sequence[Hop] | None] | None = None,
+    people: Mapping[str, tuple[Feet, float, Sequence[Hop] | None]],
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Return the steps and the events of a take: rows of `records.footwork`.
 
-    `people` gives by person the stances of both feet, and the length of the leg (m; NaN: unknown,
-    and no stance is called a lunge), `hopped` the hops, which are split steps: then no other flight
-    is one. Where it is None or missing, flights of the stances alone are.
+    `people` gives by person the stances of both feet, the length of the leg (m; NaN: unknown, and
+    no stance is called a lunge), and the hops, which are split steps: then no other flight is one.
+    Where these are None, flights of the stances alone are.
     """
     steps: list[tuple] = []
     events: list[tuple] = []
-    for person, (feet, leg_m) in people.items():
+    for person, (feet, leg_m, looked) in people.items():
         kinds: dict[tuple[str, int], str] = {}
-        looked = (hopped or {}).get(person)
         hops = looked or ()
         flights = [
             one
