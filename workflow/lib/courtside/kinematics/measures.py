@@ -80,10 +80,6 @@ class _Take:
     how: Filter
     field: Field | None
 
-    def of(self, points: Keypoints3D, key: str) -> NDArray:
-        """Return a value of this person's joints (T, J, ...)."""
-        return getattr(points, key)[self.person]
-
 
 def size(
     vectors: NDArray, covariance: NDArray, axes: slice = path_length.SPACE
@@ -221,7 +217,7 @@ def _camera_fields(take: _Take, position: NDArray) -> list[NDArray]:
 def _network_parts(take: _Take, weights: NDArray) -> dict[float, NDArray]:
     """Return what the network's errors add to a mean of joints, as `_parts`, all scales at 1."""
     cutoffs_hz, used = np.asarray(take.how.cutoff_hz), weights != 0
-    sigma = weights * np.sqrt(shared_errors.variances(take.of(take.raw, "covariance_network")))
+    sigma = weights * np.sqrt(shared_errors.variances(take.raw.covariance_network[take.person]))
     alike = shared_errors.alike(take.raw.joints.tolist())
     each = sigma * (sigma @ alike)  # what errors have in common counts half for each
     return {
@@ -234,8 +230,8 @@ def _network_parts(take: _Take, weights: NDArray) -> dict[float, NDArray]:
 def _combined(
     take: _Take, points: Keypoints3D, weights: NDArray
 ) -> tuple[NDArray, NDArray, NDArray]:
-    xyz, covariance, reason = (take.of(points, key) for key in ("xyz", "covariance_2d", "reason"))
-    return derived_joints.combine(xyz, covariance, reason, weights)
+    xyz, covariance = points.xyz[take.person], points.covariance_2d[take.person]
+    return derived_joints.combine(xyz, covariance, points.reason[take.person], weights)
 
 
 def _noise(take: _Take, weights: NDArray) -> Noise:
@@ -248,7 +244,7 @@ def _noise(take: _Take, weights: NDArray) -> Noise:
 def _parts(take: _Take, weights: NDArray) -> dict[float, NDArray]:
     """Return the raw covariance (T, 3, 3) of the joints of a mean that share a cut-off, by it."""
     cutoffs_hz = np.asarray(take.how.cutoff_hz)
-    raw, parts = take.of(take.raw, "covariance_2d"), {}
+    raw, parts = take.raw.covariance_2d[take.person], {}
     for cutoff_hz in np.unique(cutoffs_hz[weights != 0]):
         used = np.flatnonzero((cutoffs_hz == cutoff_hz) & (weights != 0))
         parts[float(cutoff_hz)] = np.einsum("j,tjkl->tkl", weights[used] ** 2, raw[:, used])
