@@ -7,7 +7,6 @@ import pytest
 
 from courtside.kinematics import filtering, skeleton_filter
 from courtside.records.keypoints import missing_reason
-from courtside.study.errors import InputError
 from fixtures.people import footwork
 from fixtures.people.waves import RATE_HZ, record, wave
 
@@ -42,13 +41,6 @@ def test_runs_are_filtered_apart():
     assert np.isnan(smoothed.xyz[0, 300]).all()
     assert np.abs(smoothed.xyz[0, :300] - xyz[:300]).max() < 0.1
     assert np.abs(smoothed.xyz[0, 301:] - xyz[301:]).max() < 0.1
-
-
-def test_a_cutoff_above_half_the_rate_is_one_line():
-    with pytest.raises(InputError, match=r"60 Hz.*found 40 Hz"):
-        skeleton_filter.smooth(record(wave(1.0)), [40.0], 4)
-    with pytest.raises(InputError, match="even number"):
-        skeleton_filter.smooth(record(wave(1.0)), [6.0], 3)
 
 
 def test_the_raw_record_is_not_touched():

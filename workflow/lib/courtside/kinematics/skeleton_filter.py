@@ -7,7 +7,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from courtside.kinematics import filtering, noise_propagation
 from courtside.records.keypoints.keypoints import Keypoints3D
-from courtside.study.errors import InputError
 
 
 def prepare(raw: Keypoints3D, max_gap_s: float) -> Keypoints3D:
@@ -18,22 +17,13 @@ def prepare(raw: Keypoints3D, max_gap_s: float) -> Keypoints3D:
     return filtering.fill_gaps(filtering.leave_out_uncertain(raw), max_gap_s)
 
 
-def check_cutoff(highest_hz: float, rate_hz: float) -> None:
-    """Raise `InputError` if a filter has its cut-off at half the frame rate or above."""
-    if highest_hz >= rate_hz / 2:
-        raise InputError(
-            f"filter_motion.cutoff_hz: expected less than half the frame rate ({rate_hz:g} Hz), "
-            f"found {highest_hz:g} Hz; lower it for this session, under override in its file"
-        )
-
-
 def smooth(points: Keypoints3D, cutoff_hz: ArrayLike, order: int) -> Keypoints3D:
     """Remove noise with a zero-lag Butterworth low-pass filter, each joint with its own cut-off.
 
     `points` are of `prepare`, with uniform times. `cutoff_hz` (J,) is the -3 dB frequency of the
     whole, forwards and backwards, filter, below half the frame rate; `order` its effective order,
-    of which each pass has half, even; else an `InputError`. Runs of finite values are filtered one
-    by one, and the same values stay missing; runs of one or two frames stay as they are.
+    of which each pass has half, even. Runs of finite values are filtered one by one, and the same
+    values stay missing; runs of one or two frames stay as they are.
     `covariance_2d` is that of the filtered noise, by the noise model of each joint's own path
     (`noise_propagation.estimate`); it stays unknown where it was, as in filled gaps.
     `covariance_network` grows where the filter spreads larger errors of neighbouring frames
@@ -64,15 +54,10 @@ def smooth(points: Keypoints3D, cutoff_hz: ArrayLike, order: int) -> Keypoints3D
 
 def smooth_xyz(points: Keypoints3D, cutoff_hz: ArrayLike, order: int) -> NDArray:
     """Return the positions (P, T, J, 3) m of `smooth` alone, in a fraction of its time."""
-    if order < 2 or order % 2:
-        raise InputError(
-            f"filter_motion.order: expected an even number of 2 or more, found {order}"
-        )
     xyz = points.xyz.copy()
     if len(points.time_s) < 2:
         return xyz
     each_hz = np.broadcast_to(np.asarray(cutoff_hz, dtype=float), points.joints.shape)
-    check_cutoff(float(each_hz.max()), points.rate_hz)
     for one_hz in np.unique(each_hz):
         joints = np.flatnonzero(each_hz == one_hz)
         for person in range(len(xyz)):
