@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from courtside.kinematics import filtering, measures, shared_errors, skeleton_filter
-from courtside.kinematics.noise_propagation import Noise
 from courtside.reconstruction import joint_correction
 from courtside.records.keypoints import derived_joints, missing_reason
 from fixtures.people import footwork, walker
@@ -85,16 +84,14 @@ def test_points_are_where_they_are_defined():
 
 
 @pytest.mark.parametrize("memory_s", [0.0, 0.08])
-@pytest.mark.parametrize("noise_known", [True, False], ids=["noise_known", "found"])
-def test_sigmas_hold_ninety_percent(memory_s, noise_known):
+def test_sigmas_hold_ninety_percent(memory_s):
     time_s, xyz = circling(rate_hz=30.0, seconds=20.0)
-    how = measures.Filter(CUTOFFS_HZ, noise=Noise(memory_s) if noise_known else None)
-    clean = measured(footwork.record(xyz, time_s, TINY_M, 0.0, np.random.default_rng(9)), how)
+    clean = measured(footwork.record(xyz, time_s, TINY_M, 0.0, np.random.default_rng(9)))
     inside = {"speed": [], "acceleration": [], "position": [], "angle": []}
     for seed in range(4):
         rng = np.random.default_rng(seed)
         record = footwork.record(xyz, time_s, [0.012, 0.02, 0.015], memory_s, rng)
-        person = measured(record, how)
+        person = measured(record)
         for name, point in person.points.items():
             truth = clean.points[name]
             speed, sigma = measures.size(point.velocity, point.covariance[1])

@@ -5,19 +5,22 @@ import pytest
 
 from courtside.kinematics import filtering, noise_propagation, path_length
 from courtside.kinematics.noise_propagation import Noise
+from courtside.kinematics.path_length import Others
 from fixtures.people import footwork
 
 SECONDS = 24
+MODEL_BIAS = 1.0, 0.15
 
 
 def covariance(n_frames, sigma_m):
     return np.broadcast_to(np.eye(3) * sigma_m**2, (n_frames, 3, 3))
 
 
-def measure(xyz, stated, rate_hz, noise, cutoff_hz, order, *axes):
-    """Measure a raw path after one filter."""
+def measure(xyz, stated, rate_hz, noise, cutoff_hz, order, axes=path_length.SPACE):
+    """Measure a raw path after one filter, without other errors than its noise."""
     path = filtering.zero_lag(xyz, rate_hz, cutoff_hz, order)
-    return path_length.measure(path, {cutoff_hz: stated}, rate_hz, noise, order, *axes)
+    parts, none = {cutoff_hz: stated}, Others({}, noise, np.zeros((len(path), 3, 0)))
+    return path_length.measure(path, parts, rate_hz, noise, order, axes, MODEL_BIAS, none)
 
 
 def arc(xyz):

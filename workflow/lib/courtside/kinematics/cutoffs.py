@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from courtside.kinematics import filtering
 from courtside.records import tables
@@ -35,14 +35,13 @@ class Choice:
 
 
 def candidates(rate_hz: float) -> NDArray:
-    """Return the default candidates (N,) Hz: from 1 Hz to 0.45 of the frame rate, at most 20 Hz."""
+    """Return the candidates (N,) Hz: from 1 Hz to 0.45 of the frame rate, at most 20 Hz."""
     return np.arange(1.0, min(HIGHEST * rate_hz, 20.0) + 1e-9, STEP_HZ)
 
 
 def choose_cutoff(
     xyz: NDArray,
     rate_hz: float,
-    candidates_hz: ArrayLike | None = None,
     order: int = 4,
     *,
     place: str = "filter_motion.cutoff_hz",
@@ -50,10 +49,9 @@ def choose_cutoff(
     """Choose by residual analysis the lowest cut-off that removes no more motion than noise passes.
 
     `xyz` (T, ..., 3) are raw paths of one group of joints, short gaps filled, NaN in gaps; with
-    fewer than 30 known frames, or at a rate that allows no candidate, an `InputError`.
-    `candidates_hz` (N,) rise, below half the frame rate; the lowest or highest is the result where
-    none fits. `order` is the effective order of the filter, `place` what the error names: file and
-    key.
+    fewer than 30 known frames, or at a rate that allows no candidate, an `InputError`. The lowest
+    or highest of `candidates` is the result where none fits. `order` is the effective order of the
+    filter, `place` what the error names: file and key.
 
     Winter 2009, sec. 2.2.4.3 fits a straight line to the tail of the residual over the cut-off and
     takes the cut-off whose residual equals the line's value at 0 Hz, the noise. That tail is
@@ -67,7 +65,7 @@ def choose_cutoff(
     as motion, and the cut-off becomes higher. A take that is mostly slow gets a low cut-off, which
     blunts its few fast moments: state a number where peaks matter.
     """
-    candidates_hz = candidates(rate_hz) if candidates_hz is None else np.asarray(candidates_hz)
+    candidates_hz = candidates(rate_hz)
     lines = np.reshape(xyz, (len(xyz), -1, 3))
     n_known = np.count_nonzero(np.any(np.isfinite(lines).all(axis=2), axis=1))
     if n_known < MIN_FRAMES:

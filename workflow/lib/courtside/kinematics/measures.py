@@ -36,7 +36,6 @@ class Filter:
 
     cutoff_hz: NDArray  # (J,): -3 dB frequency of the whole zero-lag filter for each joint
     order: int = 4  # its effective order
-    noise: Noise | None = None  # of the keypoints; estimated from each path where None
 
 
 @dataclass(frozen=True, eq=False)
@@ -235,8 +234,6 @@ def _combined(
 
 
 def _noise(take: _Take, weights: NDArray) -> Noise:
-    if take.how.noise is not None:
-        return take.how.noise
     xyz, covariance, _ = _combined(take, take.raw, weights)
     return noise_propagation.estimate(xyz, covariance, take.raw.rate_hz)
 

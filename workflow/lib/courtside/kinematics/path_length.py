@@ -14,8 +14,6 @@ SLOWER = 2.0  # the true speed is taken from a path filtered at the cut-off divi
 SUBTRACTED = 0.5  # share of the noise's variance taken from the square of that speed: `measure`
 MEMORIES_S = (0.0, 0.01, 0.02, 0.04, 0.08, 0.16)  # ASSUME: tried for the largest bias
 INDEPENDENT_AFTER = 4.0  # memories: the correlation is below exp(-4) = 2 %
-# ASSUME: mean and standard deviation of a bias over the one that its noise model predicts.
-MODEL_BIAS = (1.0, 0.15)
 GROUND = slice(0, 2)  # x and y
 SPACE = slice(0, 3)
 
@@ -77,9 +75,9 @@ def measure(
     rate_hz: float,
     noise: Noise,
     order: int,
-    axes: slice = SPACE,
-    model_bias: tuple[float, float] = MODEL_BIAS,
-    others: Others | None = None,
+    axes: slice,
+    model_bias: tuple[float, float],
+    others: Others,
 ) -> Distance:
     """Return the length of a filtered path.
 
@@ -141,7 +139,7 @@ def _velocity_spreads(parts, known, noise, rate_hz, order) -> dict[float, NDArra
 
 def _scatter_of_others(others, true, known, used, weight_s, axes, filters) -> float:
     """Return the variance, m2, of a path's length by the noise of `others`."""
-    if others is None or not any(np.any(part[known] > 0) for part in others.parts.values()):
+    if not any(np.any(part[known] > 0) for part in others.parts.values()):
         return 0.0
     spreads = _velocity_spreads(others.parts, known, others.noise, *filters)
     spreads = {at: np.nan_to_num(spread[used]) for at, spread in spreads.items()}
@@ -152,7 +150,7 @@ def _scatter_of_others(others, true, known, used, weight_s, axes, filters) -> fl
 
 def _camera_sigma(others, velocity, weight_s, used, axes) -> float:
     """Return the standard deviation, m, of a path's length by what all its frames share."""
-    if others is None or not others.field.shape[-1]:
+    if not others.field.shape[-1]:
         return float("nan")
     velocity, field = velocity[:, axes], others.field[used][:, axes]
     size = np.linalg.norm(velocity, axis=1, keepdims=True)

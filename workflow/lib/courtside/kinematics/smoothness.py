@@ -9,21 +9,19 @@ from courtside.geometry.interpolation import linear
 from courtside.kinematics.wrist_arcs import Arc
 from courtside.records.keypoints.body_motion import BodyMotion
 
-# Defaults of the authors' own code (references in `sparc`).
+# Of the authors' own code (references in `sparc`).
 CUTOFF_HZ = 10.0
-THRESHOLD = 0.05
+THRESHOLD = 0.05  # share of the spectrum at 0 Hz
 PADDING = 4  # powers of two by which the spectrum is made finer
 
 
-def sparc(
-    speed: ArrayLike, rate_hz: float, *, cutoff_hz: float = CUTOFF_HZ, threshold: float = THRESHOLD
-) -> float:
+def sparc(speed: ArrayLike, rate_hz: float) -> float:
     """Return the spectral arc length of a speed profile (T,), no unit; nearer to 0 is smoother.
 
     The speed, in any unit, is of one movement from rest to rest. A single minimum-jerk reach has
     -1.41. Neither amplitude nor duration changes the value, as long as the spectrum ends below the
-    cut-off. Frequencies do not count beyond `cutoff_hz`, nor beyond the last that reaches
-    `threshold`, a share of the spectrum at 0 Hz. ValueError if a value is missing or nothing moves.
+    cut-off. Frequencies do not count beyond `CUTOFF_HZ`, nor beyond the last that reaches
+    `THRESHOLD`. ValueError if a value is missing or nothing moves.
 
     Balasubramanian, Melendez-Calderon & Burdet 2012; with the adaptive limit of Balasubramanian,
     Melendez-Calderon, Roby-Brami & Burdet 2015. Noise counts as unsmooth: compare sources at one
@@ -35,8 +33,8 @@ def sparc(
     count = 2 ** (int(np.ceil(np.log2(len(speed)))) + PADDING)
     hz = np.fft.rfftfreq(count, 1 / rate_hz)
     spectrum = np.abs(np.fft.rfft(speed, count))
-    spectrum = spectrum[hz <= cutoff_hz] / spectrum[0]
-    used = np.flatnonzero(spectrum >= threshold)
+    spectrum = spectrum[hz <= CUTOFF_HZ] / spectrum[0]
+    used = np.flatnonzero(spectrum >= THRESHOLD)
     part = spectrum[used[0] : used[-1] + 1]
     if len(part) < 2:
         raise ValueError("expected a spectrum wider than one line, found a steady speed")
