@@ -37,17 +37,17 @@ def fill_gaps(points: Keypoints3D, max_gap_s: float) -> Keypoints3D:
     return replace(points, xyz=xyz, reason=reason)
 
 
-def leave_out_uncertain(points: Keypoints3D, times: float = UNCERTAIN_TIMES) -> Keypoints3D:
+def leave_out_uncertain(points: Keypoints3D) -> Keypoints3D:
     """Leave out frames that are far more uncertain than the rest of the take.
 
     For each joint, its stated standard deviation over its own median in the take; a frame is left
-    out (reason UNCERTAIN) where the median of this ratio over the joints exceeds `times`. This
-    happens where few cameras see a person, and from nearly one side.
+    out (reason UNCERTAIN) where the median of this ratio over the joints exceeds
+    `UNCERTAIN_TIMES`. This happens where few cameras see a person, and from nearly one side.
     """
     sigma = np.sqrt(np.trace(points.covariance_2d, axis1=-2, axis2=-1))
     stated = np.ma.masked_invalid(sigma)
     ratio = np.ma.median(stated / np.ma.median(stated, axis=1, keepdims=True), axis=2)
-    dropped = (ratio.filled(0.0) > times)[..., None] & np.isfinite(points.xyz[..., 0])
+    dropped = (ratio.filled(0.0) > UNCERTAIN_TIMES)[..., None] & np.isfinite(points.xyz[..., 0])
     return points.without(dropped)
 
 
