@@ -12,6 +12,7 @@ from courtside.geometry import epipolar
 from courtside.geometry.camera import Camera
 from courtside.records.devices import clocks
 from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.statistics import autocorrelation
 from courtside.study.errors import InputError
@@ -29,7 +30,6 @@ KNOWN_DRIFT = 0.5  # share of the prior: a larger uncertainty means a mostly ass
 READOUT_SPREAD_S = 0.01  # ASSUME: rolling shutters need up to about 20 ms from top to bottom
 SMOOTHING = 0.85  # of the longest frame interval: less would bias offsets to half frames
 REFERENCE = Clock(status="reference", note="the take's clock")
-PARTS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
 
 
 def synchronise(
@@ -108,7 +108,7 @@ def _evidence(views, cameras, min_score) -> Epipolar | Speeds:
     step_s = max(float(np.median(np.diff(view.time_s))) for view in views)
     tracks = []
     for at, view in enumerate(views):
-        joints = [name.endswith(PARTS) for name in view.joints]
+        joints = [name.endswith(skeleton.LIMBS) for name in view.joints]
         joints = joints if any(joints) else [True] * len(joints)
         xy = np.where(view.score[..., None] >= min_score, view.xy, np.nan)[:, :, joints]
         xy = xy if len(xy) else np.full((1, *xy.shape[1:]), np.nan)
@@ -228,13 +228,12 @@ class Placed:
     """Coarse offset `offset_s` of one camera, to the step of the scan.
 
     `candidates_s` are other offsets that the recording does not rule out, `distinct` the standard
-    deviations between the best offset and the next one, `through` the cameras it was compared with.
+    deviations between the best offset and the next one.
     """
 
     offset_s: float
     candidates_s: tuple[float, ...]
     distinct: float
-    through: tuple[int, ...]
 
 
 def place(
@@ -249,7 +248,7 @@ def place(
     """
     count = int(np.ceil(max_offset_s / step_s))
     offsets_s = step_s * np.arange(-count, count + 1)
-    placed = {0: Placed(0.0, (), np.inf, ())}
+    placed = {0: Placed(0.0, (), np.inf)}
     losses: dict[int, dict[int, NDArray]] = {camera: {} for camera in range(1, n_cameras)}
     while losses:
         for camera, known in losses.items():
@@ -277,7 +276,7 @@ def choose(offsets_s: NDArray, losses: Mapping[int, NDArray]) -> Placed:
     loss = np.concatenate(list(losses.values()))
     curve = _curve(loss)
     if not np.isfinite(curve).any():
-        return Placed(np.nan, (), -np.inf, tuple(losses))
+        return Placed(np.nan, (), -np.inf)
     order = minima(curve, max(1, round(SEPARATE_S / (offsets_s[1] - offsets_s[0]))))
     best, others = order[0], order[1 : 2 * MOST_CANDIDATES + 1]
     margins = np.array([_margin(loss[:, best], loss[:, other]) for other in others])
@@ -286,7 +285,6 @@ def choose(offsets_s: NDArray, losses: Mapping[int, NDArray]) -> Placed:
         float(offsets_s[best]),
         tuple(float(offsets_s[at]) for at in near[:MOST_CANDIDATES]),
         float(margins.min(initial=99.0)),
-        tuple(losses),
     )
 
 

@@ -27,11 +27,6 @@ class Track:
     step_s: float
     values: NDArray
 
-    @property
-    def stop_s(self) -> float:
-        """Time of the last value."""
-        return self.start_s + self.step_s * (self.values.shape[1] - 1)
-
 
 def build(time_s: NDArray, values: NDArray, sigma_s: float) -> Track:
     """Smooth tracks with a Gaussian.
