@@ -87,8 +87,8 @@ def _row(
     if row["n_subjects"] < min_subjects:
         return row | {"verdict": UNKNOWN, "sentence": f"unknown for {name}: too few repeats"}
     found = limits(part["subject"], part["second"] - part["first"])
-    change, interval, _ = smallest_detectable_change(part["subject"], part["first"])
-    second, _, _ = smallest_detectable_change(part["subject"], part["second"])
+    change, interval = smallest_detectable_change(part["subject"], part["first"])
+    second, _ = smallest_detectable_change(part["subject"], part["second"])
     row |= {"bias": found.bias}
     row |= _with_interval("lower", found.lower, found.lower_interval)
     row |= _with_interval("upper", found.upper, found.upper_interval)
@@ -152,8 +152,6 @@ class Limits:
     upper: float
     lower_interval: tuple[float, float]  # 95 % confidence interval of `lower`
     upper_interval: tuple[float, float]  # 95 % confidence interval of `upper`
-    n_subjects: int
-    n: int  # differences of all subjects together
 
 
 def limits(subject: ArrayLike, difference: ArrayLike) -> Limits:
@@ -184,8 +182,6 @@ def limits(subject: ArrayLike, difference: ArrayLike) -> Limits:
         upper=float(bias + half),
         lower_interval=(float(bias - half - outer), float(bias - half + inner)),
         upper_interval=(float(bias + half - inner), float(bias + half + outer)),
-        n_subjects=n_subjects,
-        n=total,
     )
 
 
@@ -225,12 +221,11 @@ def _margins(count: NDArray, mean: NDArray, within: float) -> tuple[float, float
 
 def smallest_detectable_change(
     subject: ArrayLike, value: ArrayLike
-) -> tuple[float, tuple[float, float], int]:
+) -> tuple[float, tuple[float, float]]:
     """Find the smallest change of one subject that repeats alone do not explain.
 
     `subject` (N,) are labels, `value` (N,) those of one method. Return the change, 1.96 sqrt(2)
-    times the standard error of measurement; its 95 % confidence interval; and its degrees of
-    freedom, repeats less subjects.
+    times the standard error of measurement, and its 95 % confidence interval.
 
     The standard error of measurement is the standard deviation between repeats of one subject,
     pooled (Bland & Altman 1996, BMJ 312:1654; de Vet et al. 2006, Health Qual Life Outcomes 4:54).
@@ -243,4 +238,4 @@ def smallest_detectable_change(
     interval = [
         change * np.sqrt(freedom / scipy.stats.chi2.ppf(at, freedom)) for at in (1 - tail, tail)
     ]
-    return float(change), (float(interval[0]), float(interval[1])), freedom
+    return float(change), (float(interval[0]), float(interval[1]))

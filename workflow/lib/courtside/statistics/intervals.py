@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 REPLICATES = 1000
 LEVEL = 0.95
+SEED = 0  # any; fixed so that an interval is repeatable
 
 
 def bootstrap(
@@ -17,7 +18,6 @@ def bootstrap(
     *,
     level: float = LEVEL,
     replicates: int = REPLICATES,
-    seed: int = 0,
 ) -> tuple[float, float]:
     """Return the interval of the average over halls of the averages within, by bootstrap.
 
@@ -35,7 +35,7 @@ def bootstrap(
         hall.pivot(index="structure", columns=["session", "draw"], values="value").to_numpy()
         for _, hall in known.groupby("hall", dropna=False)
     ]
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(SEED)
     picked = rng.integers(len(grids), size=(replicates, len(grids)))
     within = np.empty(picked.shape)
     with warnings.catch_warnings():  # of resamples in which every trial failed

@@ -1,7 +1,5 @@
 """Changes of a measure from session to session, and the tables that hold it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np
