@@ -21,9 +21,15 @@ def shown(motions, owners):
     return detect.of_devices(detect.detect(motions), owners)
 
 
-def solve(*motions, **options):
-    happened = shown(motions, device_takes.each_its_own(motions))
-    return device_sync.synchronise(list(motions), happened, **options)
+def solve(*motions, devices=None, known=None, latency=None, happened=None):
+    own = device_takes.each_its_own(motions)
+    return device_sync.synchronise(
+        list(motions),
+        happened or shown(motions, own),
+        devices=own | (devices or {}),
+        known=known or {},
+        latency=latency or {},
+    )
 
 
 def worst_s(reference, found, true):
@@ -122,7 +128,7 @@ def test_without_claps_of_one_source_clocks_are_unknown_and_it_is_named(still):
     motions = [device_takes.device(rng, take, **CAMERAS), device_takes.mocopi(rng, take)]
     happened = shown(motions, device_takes.each_its_own(motions))
     happened[still] = replace(happened[still], claps=[])
-    clock = device_sync.synchronise(motions, happened)["mocopi"].clock
+    clock = solve(*motions, happened=happened)["mocopi"].clock
     assert clock.status == "unknown" and not clock.usable
     assert clock.note == f"no clap of {still}"
 

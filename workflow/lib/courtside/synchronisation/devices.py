@@ -56,26 +56,24 @@ def synchronise(
     motions: Sequence[DeviceMotion],
     happened: Mapping[str, Events],
     *,
-    devices: Mapping[str, str] | None = None,
-    known: Mapping[str, Clock] | None = None,
-    latency: Mapping[str, tuple[float, float]] | None = None,
+    devices: Mapping[str, str],
+    known: Mapping[str, Clock],
+    latency: Mapping[str, tuple[float, float]],
 ) -> dict[str, Found]:
     """Find the clock of every source against the first one's.
 
     `happened` holds the events of every source, `devices` its device: sources of one device share
-    its clock, and without `devices` each is its own. Clocks `known` against the reference are used
-    as they are. The stated delay of a source (`latency`, with its standard deviation, s) is
-    reported, not subtracted: places must be compared at the times of the same event. An
-    `InputError` if the claps of a source cannot be paired with those of the reference, or leave its
-    clock uncertain.
+    its clock. Clocks `known` against the reference are used as they are. The stated delay of a
+    source (`latency`, with its standard deviation, s) is reported, not subtracted: places must be
+    compared at the times of the same event. An `InputError` if the claps of a source cannot be
+    paired with those of the reference, or leave its clock uncertain.
     """
     reference, *others = motions
-    devices, known, latency = devices or {}, known or {}, latency or {}
     found = {reference.source: Found(Clock(status="reference", note="the take's clock"), [])}
     for motion in others:
         if motion.source in known:
             found[motion.source] = Found(known[motion.source], [])
-        elif _device(devices, motion) == _device(devices, reference):
+        elif devices[motion.source] == devices[reference.source]:
             clock = Clock(note="one device with the reference: one clock")
             found[motion.source] = Found(clock, [])
         elif still := [m.source for m in (reference, motion) if not happened[m.source].claps]:
@@ -104,19 +102,15 @@ def checks(found: Mapping[str, Found]) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def _device(devices: Mapping[str, str], motion: DeviceMotion) -> str:
-    return devices.get(motion.source, motion.source)
-
-
 def _shared(found, motions, devices) -> dict[str, Found]:
     """Give the sources of one device the surest of their clocks."""
     surest: dict[str, str] = {}
     for motion in motions:
-        device = _device(devices, motion)
+        device = devices[motion.source]
         best = surest.get(device, motion.source)
         own, other = (found[source].clock.uncertainty_s for source in (motion.source, best))
         surest[device] = motion.source if own < other else best
-    taken = {motion.source: surest[_device(devices, motion)] for motion in motions}
+    taken = {motion.source: surest[devices[motion.source]] for motion in motions}
     return {source: found[taken.get(source, source)] for source in found}
 
 
