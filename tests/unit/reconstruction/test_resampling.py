@@ -27,7 +27,7 @@ def view(time_s, clock=None):
 def test_gaps_in_2d_are_not_bridged():
     keypoints = view(np.arange(10) / 60)
     keypoints.xy[0, 5] = np.nan
-    xy, score = resampling.resample(keypoints, np.arange(20) / 120)
+    xy, score = resampling.resample(keypoints, np.arange(20) / 120, Clock())
     assert np.isnan(xy[0, 9:12]).all()
     assert np.isnan(score[0, 9:12]).all()
     assert np.isfinite(xy[0, :9]).all()
@@ -35,7 +35,7 @@ def test_gaps_in_2d_are_not_bridged():
 
 def test_a_dropped_frame_is_a_gap():
     time_s = np.delete(np.arange(10) / 60, [4, 5])
-    xy, _ = resampling.resample(view(time_s), np.arange(10) / 60)
+    xy, _ = resampling.resample(view(time_s), np.arange(10) / 60, Clock())
     assert np.isnan(xy[0, 4:6]).all()
     assert np.isfinite(np.delete(xy[0], [4, 5], axis=0)).all()
 
@@ -74,7 +74,7 @@ def test_common_times_are_what_two_cameras_share():
 def test_times_of_a_container_that_keeps_milliseconds_have_the_rate_of_the_frames(rate_hz):
     """At 60 Hz most intervals are 17 ms: as a step they would be 58.8 Hz, away from the frames."""
     keypoints = view(np.round(np.arange(300) / rate_hz, 3))
-    time_s = resampling.common_times([keypoints, keypoints])
+    time_s = resampling.common_times([keypoints, keypoints], [Clock(), Clock()])
     assert len(time_s) == 300
     np.testing.assert_allclose(time_s, np.arange(300) / rate_hz, atol=5e-4)
 
@@ -84,13 +84,13 @@ def test_a_parabola_between_frames_is_met_exactly_and_beside_a_gap_by_a_line():
     keypoints = view(np.arange(12) / 30)
     keypoints.xy[:] = (500 * keypoints.time_s**2)[None, :, None, None]
     middle = (np.arange(11) + 0.5) / 30
-    xy, _ = resampling.resample(keypoints, middle)
+    xy, _ = resampling.resample(keypoints, middle, Clock())
     error = xy[0, :, 0, 0] - 500 * middle**2
     line = 500 * 2 / 30**2 / 8
     np.testing.assert_allclose(error[1:-1], 0, atol=1e-9)
     np.testing.assert_allclose(error[[0, -1]], line, atol=1e-9)
     keypoints.xy[0, 5] = np.nan
-    xy, _ = resampling.resample(keypoints, middle)
+    xy, _ = resampling.resample(keypoints, middle, Clock())
     error = xy[0, :, 0, 0] - 500 * middle**2
     assert np.isnan(error[[4, 5]]).all()
     np.testing.assert_allclose(error[[3, 6]], line, atol=1e-9)

@@ -222,7 +222,7 @@ def left_out(
     closest in the median over the whole take. Where several tracklets belong to one person, the one
     closest in the median comes first: frames do not choose a tracklet of their own.
     """
-    xy, _ = resampling.resample(view, points.time_s, clock)
+    xy, _ = resampling.resample(view, points.time_s, clock or Clock())
     names = list(map(str, view.joints))
     at = [names.index(joint) if joint in names else -1 for joint in map(str, points.joints)]
     xy = np.where((np.array(at) >= 0)[:, None], xy[:, :, at], np.nan)

@@ -15,13 +15,12 @@ RATE_TOLERANCE = 1e-3
 LONGEST_STEP = 1.5
 
 
-def common_times(views: Sequence[Keypoints2D], clocks: Sequence[Clock] | None = None) -> NDArray:
+def common_times(views: Sequence[Keypoints2D], clocks: Sequence[Clock]) -> NDArray:
     """Return uniform times (T,) of a take on the reference clock.
 
     They have the frame interval of the first camera and cover the span that at least two
-    cameras share. Without clocks, all agree.
+    cameras share.
     """
-    clocks = clocks or [Clock()] * len(views)
     on_reference = [c.to_reference(v.time_s) for c, v in zip(clocks, views, strict=True)]
     first = sorted(time_s[0] for time_s in on_reference)
     last = sorted((time_s[-1] for time_s in on_reference), reverse=True)
@@ -31,9 +30,7 @@ def common_times(views: Sequence[Keypoints2D], clocks: Sequence[Clock] | None = 
     return start + step_s * np.arange(int(np.floor((stop - start) / step_s + RATE_TOLERANCE)) + 1)
 
 
-def resample(
-    view: Keypoints2D, time_s: NDArray, clock: Clock | None = None
-) -> tuple[NDArray, NDArray]:
+def resample(view: Keypoints2D, time_s: NDArray, clock: Clock) -> tuple[NDArray, NDArray]:
     """Return one camera's xy (P, T, J, 2) and score (P, T, J) at times (T,) of the reference clock.
 
     They are NaN where a neighbouring frame is missing: gaps are not bridged. The score is the lower
@@ -41,7 +38,7 @@ def resample(
     1974), a line where the outer ones are missing: at 30 frames per second the line alone is 3 cm
     off at the turning point of a wrist with 200 m/s2.
     """
-    own, known = (clock or Clock()).from_reference(time_s), view.time_s
+    own, known = clock.from_reference(time_s), view.time_s
     step_s = float(np.median(np.diff(known))) if len(known) > 1 else 1.0
     left = np.clip(np.searchsorted(known, own, side="right") - 1, 0, len(known) - 1)
     right = np.minimum(left + 1, len(known) - 1)
