@@ -9,6 +9,7 @@ from fixtures.people import moving_model
 
 MODEL = segments.model()
 HZ = np.full(len(MODEL.sigma), 8.0)
+HOW = moving_model.RATE_HZ, 6, None  # rate, most steps, no feet held
 
 
 def data(points, sigma_m=0.002):
@@ -25,7 +26,7 @@ def test_exact_joints_are_fitted_from_a_wrong_start():
     true = moving_model.moving()
     points = moving_model.points(true)
     found = fit.fit(
-        MODEL, moving_model.body(), data(points), shaken(true), HZ, moving_model.RATE_HZ
+        MODEL, moving_model.body(), data(points), shaken(true), HZ, *HOW
     )
     for name, within_deg in (("left_tibia", 1.0), ("right_forearm", 2.0)):
         at = moving_model.column(name)
@@ -36,7 +37,7 @@ def test_exact_joints_are_fitted_from_a_wrong_start():
 def test_the_stated_covariance_holds_the_errors_of_noise():
     true = moving_model.moving(90)
     one, body = data(moving_model.points(true, noise_m=0.02), 0.02), moving_model.body()
-    found = fit.fit(MODEL, body, one, true, 4 * HZ, moving_model.RATE_HZ)
+    found = fit.fit(MODEL, body, one, true, 4 * HZ, *HOW)
     spread = fit.spread(MODEL, body, one, found)
     at = [moving_model.column(f"{side}_tibia") for side in ("left", "right")]
     error = found.angle[:, at] - true.angle[:, at]
@@ -51,7 +52,7 @@ def test_wrong_lengths_are_mended_by_what_all_frames_say():
     one, body = data(moving_model.points(true)), moving_model.body()
     at = moving_model.NAMES.index("left_tibia")
     wrong = replace(body, offsets=body.offsets + 0.02 * body.by_length[0])  # of both thighs
-    found = fit.fit(MODEL, wrong, one, true, HZ, moving_model.RATE_HZ)
+    found = fit.fit(MODEL, wrong, one, true, HZ, *HOW)
     mended = fit.lengthened(MODEL, wrong, one, found, moving_model.RATE_HZ)
     assert abs(wrong.offsets[at, 1] - body.offsets[at, 1]) > 0.019
     assert abs(mended.offsets[at, 1] - body.offsets[at, 1]) < 0.004
@@ -91,7 +92,7 @@ def test_a_knee_does_not_bend_backwards_and_a_lost_limb_is_uncertain():
     information = one.information.copy()
     information[20:40, lost] = 0.0
     one = replace(one, information=information)
-    found = fit.fit(MODEL, body, one, true, HZ, moving_model.RATE_HZ)
+    found = fit.fit(MODEL, body, one, true, HZ, *HOW)
     spread = fit.spread(MODEL, body, one, found)
     elbow = moving_model.column("left_forearm")
     sigma = np.degrees(np.sqrt(spread.total[:, elbow, elbow]))
@@ -104,7 +105,7 @@ def test_clavicles_that_nothing_shows_rise_with_the_arms():
     true, body = moving_model.moving(3), moving_model.body()
     none = data(moving_model.points(true))
     none = replace(none, information=np.zeros_like(none.information))
-    found = fit.fit(MODEL, body, none, true, HZ, moving_model.RATE_HZ, 20)
+    found = fit.fit(MODEL, body, none, true, HZ, moving_model.RATE_HZ, 20, None)
     for side, sign in (("left", 1), ("right", -1)):
         lift = np.degrees(found.angle[:, moving_model.column(f"{side}_clavicle")])
         np.testing.assert_allclose(lift, sign * (90 + 18) / 6, atol=0.5)
@@ -127,7 +128,7 @@ def test_time_grows_linearly_with_frames():
     def seconds(n_frames):
         true = moving_model.moving(n_frames)
         points, before = moving_model.points(true), time.process_time()
-        fit.fit(MODEL, moving_model.body(), data(points), true, HZ, moving_model.RATE_HZ)
+        fit.fit(MODEL, moving_model.body(), data(points), true, HZ, *HOW)
         return time.process_time() - before
 
     seconds(30)

@@ -313,7 +313,7 @@ def test_unknown_frames_hide_no_knock_and_make_none():
     assert round(found.time_s * 30) == 120
     shake[names] = np.nan
     assert camera_shake.find(CAMERA_KNOCKS, shake) == []
-    assert np.isnan(camera_shake.tremor_px(shake))
+    assert np.isnan(camera_shake.tremor_px(shake, []))
     (line,) = camera_shake.say(CAMERA_KNOCKS, shake, PLAYER)
     assert "no frame shows enough background" in line
 
@@ -328,7 +328,7 @@ def test_tremor_does_not_count_knocks():
     assert camera_shake.tremor_px(shake, camera_shake.find(CAMERA_KNOCKS, shake)) == pytest.approx(
         0.5, rel=0.1
     )
-    assert camera_shake.tremor_px(shake) > 2
+    assert camera_shake.tremor_px(shake, []) > 2
 
 
 def test_millimetres_at_the_player_are_pixels_times_depth_over_focal_length():

@@ -98,8 +98,8 @@ def fit(
     start: Pose,
     cutoff_hz: NDArray,
     rate_hz: float,
-    steps: int = 6,
-    held: Held | None = None,
+    steps: int,
+    held: Held | None,
 ) -> Pose:
     """Return the most probable poses, after at most so many steps.
 

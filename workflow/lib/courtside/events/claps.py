@@ -172,7 +172,7 @@ def _bent(motion: DeviceMotion, near: int, bend_deg: NDArray) -> str:
 
 
 def _fitted(motion, spell, number, apart, near_s) -> Clap | NoClap:
-    usual_s = SMOOTHINGS_S.get(motion.kind, contact_time.USUAL_S)
+    usual_s = SMOOTHINGS_S[motion.kind]
     noise = contact_time.Noise.of(apart[spell.frames])
     least_m = max(REBOUND * np.nanmedian(apart[spell.frames]), REBOUND_NOISE * noise.sd)
     parted = _parted(motion.time_s, apart, near_s) > least_m

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from pandas import DataFrame
 
 from courtside.geometry import camera as camera_models
-from courtside.geometry import interpolation, rotations
+from courtside.geometry import epipolar, interpolation, rotations
 from courtside.geometry.camera import Camera
 from courtside.records.cameras import footage, shake_table
 from courtside.records.cameras.footage import Footage
@@ -233,7 +233,7 @@ def find(camera: Camera, table: DataFrame) -> list[Knock]:
     if len(table) < 2:
         return []
     turns = camera_turns(camera, table)
-    level = turns * np.diag(camera.K)[:2].mean()
+    level = turns * epipolar.focal_px(camera)
     step_s = np.median(np.diff(table.time_s))
     n, least = (max(2, round(length / step_s)) for length in (WINDOW_S, LEAST_S))
     sigma_px = np.median(table.sigma_px)
@@ -257,7 +257,7 @@ def find(camera: Camera, table: DataFrame) -> list[Knock]:
     return [_knock(table, turns, split, n) for split in sorted(splits)]
 
 
-def tremor_px(table: DataFrame, knocks: Sequence[Knock] = ()) -> float:
+def tremor_px(table: DataFrame, knocks: Sequence[Knock]) -> float:
     """Return the root mean square, px per axis, of the shift about its median between knocks."""
     parts = _parts(table, knocks)
     off = [part - np.median(part, axis=0) for part in parts]
@@ -273,7 +273,7 @@ def mm_at(camera: Camera, xyz: NDArray, table: DataFrame) -> NDArray:
 def mm_per_px(camera: Camera, xyz: NDArray) -> float:
     """Return the length, mm, of a pixel at a place (3,) m in world: depth / focal length."""
     depth = camera.cam_from_world[2] @ np.r_[np.asarray(xyz, float), 1.0]
-    return float(1000 * depth / np.diag(camera.K)[:2].mean())
+    return float(1000 * depth / epipolar.focal_px(camera))
 
 
 def say(camera: Camera, table: DataFrame, xyz: NDArray) -> list[str]:

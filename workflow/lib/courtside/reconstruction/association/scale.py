@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from courtside.geometry.camera import Camera, project
 from courtside.geometry.camera_fields import METRES
 from courtside.geometry.triangulation import triangulate_all
+from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
 
-ENDS = ("left_shoulder", "right_shoulder", "left_hip", "right_hip")
 # ASSUME: lengths of trunks of people from children on, and the one that a unit is guessed by; a
 # median over many views is nearer to the true one than the limits are.
 TRUNK_M = (0.25, 0.9)
@@ -30,7 +30,7 @@ def trunks(cameras: Sequence[Camera], xy: Sequence[NDArray], names: Sequence[str
     `xy` has the tracklets (P, T, J, 2) of each camera at common times, distorted px, NaN where
     missing; `names` are those of the joints.
     """
-    ends = [names.index(name) for name in ENDS]
+    ends = [names.index(name) for name in skeleton.TRUNK]
     at = np.unique(np.linspace(0, xy[0].shape[1] - 1, MOST_INSTANTS).astype(int))
     found: list[NDArray] = []
     for one, other in combinations(range(len(cameras)), 2):
@@ -47,7 +47,7 @@ def trunks(cameras: Sequence[Camera], xy: Sequence[NDArray], names: Sequence[str
 
 
 def _ends(joints: NDArray, ends: Sequence[int]) -> NDArray:
-    """Return the middles of shoulders and of hips, (T, 2, 2) px; `ends` are those of `ENDS`."""
+    """Return the middles of shoulders and of hips, (T, 2, 2) px; `ends` are of `skeleton.TRUNK`."""
     return joints[:, list(ends)].reshape(len(joints), 2, 2, 2).mean(axis=2)
 
 
