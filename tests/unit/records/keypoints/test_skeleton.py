@@ -124,3 +124,10 @@ def test_bones_are_given_by_position_too():
     assert [(found.joints[a], found.joints[b]) for a, b in found.bone_indices()] == list(
         found.bones
     )
+
+
+def test_heel_and_toe_are_found_by_any_name_of_the_toe_or_not_at_all():
+    assert skeleton.heel_and_toe(["left_big_toe", "left_ankle", "left_heel"], "left") == [2, 0]
+    assert skeleton.heel_and_toe(("right_heel", "right_foot_index"), "right") == [0, 1]
+    assert skeleton.heel_and_toe(["left_heel", "right_big_toe"], "left") == []
+    assert skeleton.heel_and_toe(["left_foot_index"], "left") == []

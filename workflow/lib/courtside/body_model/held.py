@@ -10,7 +10,7 @@ from courtside.body_model import pose as poses
 from courtside.body_model.pose import Pose
 from courtside.body_model.segments import SIDES, Model
 from courtside.body_model.shape import Shape
-from courtside.records.keypoints.skeleton import TOES
+from courtside.records.keypoints import skeleton
 
 # Chosen on `players-dev`: held by 0.005, ankles err more around landings; by 0.05, standing feet
 # move twice as far.
@@ -42,13 +42,12 @@ def of_contacts(
     their heights of the flat foot: of `records.footwork.Contacts`, NaN where unknown. What two
     frames say counts with the probability that the point stands in both.
     """
-    toe = next((name for name in TOES if f"left_{name}" in joints), None)
-    if toe is None or "left_heel" not in joints:
+    feet = [skeleton.heel_and_toe(joints, side) for side in SIDES]
+    if not all(feet):
         return None
-    points = [list(joints).index(f"{side}_{part}") for side in SIDES for part in ("heel", toe)]
     chance = np.nan_to_num(stands).reshape(len(stands), -1)
     return Held(
-        np.array(points),
+        np.concatenate(feet),
         chance[1:] * chance[:-1] * rate_hz / DRIFT_M**2,
         chance * np.isfinite(floor_m).ravel() / FLOOR_M**2,
         np.nan_to_num(floor_m).ravel(),

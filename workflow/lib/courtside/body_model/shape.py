@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from courtside.body_model import segments
 from courtside.body_model.segments import SIDES, Model
-from courtside.records.keypoints.skeleton import SEGMENTS, TOES
+from courtside.records.keypoints import skeleton
+from courtside.records.keypoints.skeleton import SEGMENTS
 
 BEST = 0.5  # share of the frames, those of least uncertainty, that a length is the median of
 LUMBAR = 0.2  # ASSUME: height of the joint of pelvis and thorax, share of the trunk's length
@@ -135,7 +136,7 @@ def is_free(shape: Shape) -> NDArray:
     """
     # `mid_hip` reads as a hip: it is not free, but the origin of the pelvis.
     names = np.array([joint.partition("_")[2] for joint in shape.joints])
-    placed = np.isin(names, ["heel", *TOES]) & shape.places.any(axis=1)
+    placed = np.isin(names, ["heel", *skeleton.TOES]) & shape.places.any(axis=1)
     return ~np.isin(names, list(segments.ORIGINS)) & ~placed
 
 
@@ -145,24 +146,23 @@ def with_feet(shape: Shape, place: Mapping[str, NDArray]) -> Shape:
     From the medians of the sides of the triangle of ankle, heel and toe, both feet together. If
     there are no heels, or heels or toes are never seen, points stay at the ankle.
     """
+    feet = [skeleton.heel_and_toe(shape.joints, side) for side in SIDES]
+    if not all(feet):
+        return shape
+    heel, toe = (skeleton.without_side(shape.joints[at]) for at in feet[0])
+    sides = []
+    for one, other in (("ankle", heel), ("ankle", toe), (heel, toe)):
+        apart = [place[f"{side}_{one}"] - place[f"{side}_{other}"] for side in SIDES]
+        length = np.linalg.norm(np.concatenate(apart), axis=1)
+        known = length[np.isfinite(length)]
+        sides.append(float(np.median(known)) if len(known) else np.nan)
+    if not np.isfinite(sides).all():
+        return shape
+    behind = (sides[0] ** 2 - sides[1] ** 2 + sides[2] ** 2) / (2 * sides[2])
+    height = np.sqrt(max(sides[0] ** 2 - behind**2, 0.0))
     places = shape.places.copy()
-    for toe in TOES:
-        if f"left_{toe}" not in shape.joints or "left_heel" not in shape.joints:
-            continue
-        sides = []
-        for one, other in (("ankle", "heel"), ("ankle", toe), ("heel", toe)):
-            apart = [place[f"{side}_{one}"] - place[f"{side}_{other}"] for side in SIDES]
-            length = np.linalg.norm(np.concatenate(apart), axis=1)
-            known = length[np.isfinite(length)]
-            sides.append(float(np.median(known)) if len(known) else np.nan)
-        if not np.isfinite(sides).all():
-            continue
-        behind = (sides[0] ** 2 - sides[1] ** 2 + sides[2] ** 2) / (2 * sides[2])
-        height = np.sqrt(max(sides[0] ** 2 - behind**2, 0.0))
-        for side in SIDES:
-            places[shape.joints.index(f"{side}_heel")] = (-behind, -height, 0)
-            places[shape.joints.index(f"{side}_{toe}")] = (sides[2] - behind, -height, 0)
-        break
+    for of_side in feet:
+        places[of_side] = [(-behind, -height, 0), (sides[2] - behind, -height, 0)]
     return replace(shape, places=places)
 
 

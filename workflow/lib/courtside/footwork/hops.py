@@ -14,9 +14,9 @@ import scipy
 from numpy.typing import NDArray
 
 from courtside.footwork.stances import Stance
-from courtside.footwork.tracks import points_of
 from courtside.kinematics import filtering
 from courtside.records.footwork import FEET
+from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
 
 GRID_HZ = 240.0
@@ -52,7 +52,7 @@ def find(points: Keypoints3D, person: int) -> list[Hop] | None:
     None: they cannot be seen, without heels, at a low frame rate or in fewer than `LEAST_FRAMES`.
     """
     names = points.joints.tolist()
-    feet = [points_of(names, side) for side in FEET]
+    feet = [skeleton.heel_and_toe(names, side) for side in FEET]
     if not all(feet) or len(points.time_s) < LEAST_FRAMES or points.rate_hz < LEAST_HZ:
         return None
     hips = [names.index(f"{side}_hip") for side in FEET]

@@ -1,7 +1,7 @@
 """Position, velocity and height of heel and toe of one foot, between frames too, with variances."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy
@@ -41,14 +41,6 @@ class Track:
         return self.variance * (2 * np.pi * self.cutoff_hz) ** 2 / 3
 
 
-def points_of(joints: Sequence[str], side: str) -> list[int]:
-    """Return the indices of heel and toe of a side; empty if the skeleton lacks one."""
-    names = list(joints)
-    toe = [f"{side}_{name}" for name in skeleton.TOES if f"{side}_{name}" in names]
-    heel = [f"{side}_heel"] if f"{side}_heel" in names else []
-    return [names.index(heel[0]), names.index(toe[0])] if heel and toe else []
-
-
 def tracks(
     points: Keypoints3D, person: int, side: str, cutoff_hz: Sequence[float]
 ) -> tuple[list[Track], NDArray]:
@@ -59,7 +51,7 @@ def tracks(
     foot is never known. It is a quantile of their heights while they are slow, so it includes the
     common error of the cameras at the floor.
     """
-    chosen = points_of(points.joints.tolist(), side)
+    chosen = skeleton.heel_and_toe(points.joints.tolist(), side)
     if not chosen or len(points.time_s) < 2:
         return [], np.full(2, np.nan)
     known = np.isfinite(points.xyz[person][:, chosen]).all(axis=(1, 2))
@@ -68,9 +60,7 @@ def tracks(
     variance = _variance(points, person, chosen, side)
     found = [_track(points, person, chosen, slice(*run), own_hz, variance) for run in runs]
     floor = _floor(found)
-    for one in found:
-        one.height[:] = one.place[..., 2] - floor
-    return found, floor
+    return [replace(one, height=one.place[..., 2] - floor) for one in found], floor
 
 
 def _variance(points: Keypoints3D, person: int, chosen: list[int], side: str) -> NDArray:
@@ -98,14 +88,14 @@ def _track(
     cutoff_hz: float,
     variance: NDArray,
 ) -> Track:
-    """Return a track by cubic splines through the frames; its heights are not known yet."""
+    """Return a track by cubic splines through the frames; its heights are above z = 0."""
     own_s, step = points.time_s[frames], max(1, int(np.ceil(GRID_HZ / points.rate_hz - 1e-6)))
     time_s = np.interp(np.arange(step * (len(own_s) - 1) + 1) / step, range(len(own_s)), own_s)
     spline = scipy.interpolate.CubicSpline(own_s, points.xyz[person, frames][:, chosen])
     variance = interpolation.linear(own_s, variance[frames], time_s)
     place = spline(time_s)
     return Track(
-        frames, time_s, step, place, spline(time_s, 1), variance, place[..., 2].copy(), cutoff_hz
+        frames, time_s, step, place, spline(time_s, 1), variance, place[..., 2], cutoff_hz
     )
 
 

@@ -13,8 +13,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from courtside.calibration.point_covariance import WITHIN_90
-from courtside.footwork import tracks
 from courtside.records.footwork import Contacts
+from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.truth.take_truth import TakeTruth
 
@@ -128,7 +128,7 @@ def _movement(points: Keypoints3D, person: str, foot: str, steps: pd.DataFrame) 
 
     Root mean square distance on the floor from its mean of the stance, of the middle half of each.
     """
-    named = tracks.points_of(points.joints.tolist(), foot)
+    named = skeleton.heel_and_toe(points.joints.tolist(), foot)
     row, squares = points.person_id.tolist().index(person), []
     for step in steps.itertuples():
         start, stop = (float(step.onset_s), float(step.end_s))

@@ -126,3 +126,11 @@ PARENT = {stop: start for chain in CHAINS for start, stop in pairwise(chain)}
 JOINTS = tuple(f"{side}_{limb}" for side in ("left", "right") for limb in LIMBS)
 TOES = ("foot_index", "big_toe")  # what networks call the toe; each has one of them
 TRUNK = ("left_shoulder", "right_shoulder", "left_hip", "right_hip")
+
+
+def heel_and_toe(joints: Sequence[str], side: str) -> list[int]:
+    """Return the positions of heel and toe of a side; empty if the skeleton lacks one."""
+    toe = [f"{side}_{name}" for name in TOES if f"{side}_{name}" in joints]
+    if not toe or f"{side}_heel" not in joints:
+        return []
+    return [joints.index(f"{side}_heel"), joints.index(toe[0])]
