@@ -17,7 +17,10 @@ from fixtures.cameras import scene
 from fixtures.people import keypoints_made, walker
 
 SKELETON = skeleton.read(Path(__file__).parents[3] / "config" / "skeletons" / "cpm14.yaml")
-OPTIONS = {"min_score": 0.3, "min_views": 2, "max_error_px": 15, "fade_px": 20, "fix_sides": True}
+SHARES = {"max_error_share": 0.05, "fade_share": 0.067}
+OPTIONS = {
+    "min_score": 0.3, "min_views": 2, "max_error_px": 15, "fade_px": 20, "fix_sides": True, **SHARES
+}
 
 
 def body(time_s):
@@ -285,7 +288,7 @@ def test_halves_of_different_takes_are_a_fault():
 def test_limits_in_shares_need_no_scaling(scale):
     """The same scene in pictures of another size accepts the same views of the same points."""
     record, rng = walker.points(n_frames=20), np.random.default_rng(2)
-    shares = {"min_score": 0.3, "min_views": 2, "fix_sides": True, "max_error_share": 0.05}
+    shares = {"min_score": 0.3, "min_views": 2, "fix_sides": True, **SHARES}
     noise = rng.normal(0, 5, (4, 1, 20, walker.N_JOINTS, 2))
     noise[2, :, 5:9] += 60
     found = []
@@ -302,16 +305,14 @@ def test_limits_in_shares_need_no_scaling(scale):
     np.testing.assert_allclose(found[0].xyz, found[1].xyz, atol=1e-4)
 
 
-def test_pixels_replace_shares_and_one_of_both_is_needed():
+def test_pixels_replace_shares():
     cameras, views = scene.ring(4), walker.views(walker.points(20), scene.ring(4))
     views[2].xy[...] += 12
-    common = {"min_score": 0.3, "min_views": 2, "fix_sides": False}
+    common = {"min_score": 0.3, "min_views": 2, "fix_sides": False, **SHARES}
 
     def accepted(**limits):
         found = fusion.triangulate_take(cameras, views, walker.SKELETON, ["p1"], **common, **limits)
         return found.accepted[..., 2].mean()
 
-    assert accepted(max_error_share=0.05) > 0.99 > 0.01 > accepted(max_error_px=5)
-    assert accepted(max_error_share=0.05, max_error_px=5, fade_px=7) < 0.01
-    with pytest.raises(ValueError, match="max_error_share or max_error_px"):
-        accepted()
+    assert accepted() > 0.99 > 0.01 > accepted(max_error_px=5)
+    assert accepted(max_error_px=5, fade_px=7) < 0.01

@@ -153,6 +153,7 @@ def test_a_planted_swap_reaches_the_table_through_the_fusion():
 
 def fused(seen, views):
     options = {"min_score": 0.3, "min_views": 2, "max_error_px": 15, "fade_px": 20}
+    options |= {"max_error_share": 0.05, "fade_share": 0.067}
     clocks = [one.clock for one in seen]
     return fusion.triangulate_take(
         takes_made.CAMERAS,

@@ -32,8 +32,8 @@ def triangulate_take(
     min_score: float,
     min_views: int,
     fix_sides: bool,
-    max_error_share: float | None = None,
-    fade_share: float | None = None,
+    max_error_share: float,
+    fade_share: float,
     max_error_px: float | None = None,
     fade_px: float | None = None,
     clocks: Sequence[Clock] | None = None,
@@ -50,7 +50,7 @@ def triangulate_take(
     leaves out joints that their views leave open; "dlt" uses all
     (`triangulation.triangulate_plain`). `max_error_share` and `fade_share` are in heights of the
     person in each picture (`person_height.in_pictures`); `max_error_px` and `fade_px`, the same
-    everywhere, have precedence. A `ValueError` without a limit.
+    everywhere, have precedence.
 
     The keypoints' standard deviation is measured per joint from the residuals of the accepted
     views, three degrees of freedom less per point. It contains what the views disagree on, but not
@@ -82,14 +82,12 @@ def triangulate_take(
 
 def _limits(cameras, xy, score, joints, share, px) -> dict[str, NDArray]:
     """Return the limit and where a view fades, (C, P, T) px, from (limit, fade) in shares or px."""
-    if share[0] is None and px[0] is None:
-        raise ValueError("expected max_error_share or max_error_px, found neither")
     if not px[0]:
         height_px = person_height.in_pictures(cameras, xy, score, joints)
     limit_px = np.full(score.shape[:3], float(px[0])) if px[0] else share[0] * height_px
     if px[1]:
         fade_px = np.full(score.shape[:3], float(px[1]))
-    elif px[0] or share[1] is None:
+    elif px[0]:
         fade_px = triangulation.FADE * limit_px
     else:
         fade_px = share[1] * height_px
