@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from courtside.inertial import correction
+from courtside.inertial import correction, fit
 from courtside.records.devices.hierarchy import PosedHierarchy, forward
 from courtside.records.keypoints.skeleton import JOINTS as LIMB_JOINTS
 from courtside.study.errors import InputError
@@ -15,7 +15,7 @@ from fixtures.people import moved_bodies
 
 SECONDS = 15.0
 SIGMA_M = 0.03
-SAME_JOINTS = correction.Settings(offset_m=0.002, bias_m=0.005)  # vision's are the skeleton's
+SAME_JOINTS = {"OFFSET_M": 0.002, "BIAS_M": 0.005}  # vision's are the skeleton's
 LONGER = {
     **{f"{side}_elbow": 1.08 for side in ("left", "right")},
     **{f"{side}_knee": 0.94 for side in ("left", "right")},
@@ -42,7 +42,10 @@ def corrected(case):
         "swivel": moved_bodies.swivelled(true, "left", np.radians(30)),
     }
     vision = moved_bodies.seen(true, 1)
-    found = correction.correct(bodies[case], vision, sigma_m=SIGMA_M, settings=SAME_JOINTS)
+    with pytest.MonkeyPatch.context() as patch:
+        for name, size_m in SAME_JOINTS.items():
+            patch.setattr(fit, name, size_m)
+        found = correction.correct(bodies[case], vision, sigma_m=SIGMA_M)
     return bodies[case], *found
 
 

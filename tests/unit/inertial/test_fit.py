@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from courtside.inertial import correction, fit
+from courtside.inertial import fit
 from courtside.records.keypoints.skeleton import JOINTS as LIMB_JOINTS
 from courtside.study.errors import InputError
 from fixtures.people import moved_bodies
@@ -21,8 +21,7 @@ def fitted(drift_m):
     rng = np.random.default_rng(0)
     body.translation[:, 0] += drift_m * moved_bodies.smooth(rng, len(body.time_s), (3,), 2.0)
     seen = fit.observe(body, moved_bodies.seen(TRUE, 1, sd_m=(0.01,) * 3), 0.01)
-    settings = correction.Settings()
-    state = fit.Fit(body, seen, moved_bodies.UP, 0.0, settings)
+    state = fit.Fit(body, seen, moved_bodies.UP, 0.0)
     state.run()
     return state
 
@@ -43,7 +42,7 @@ def test_a_wandering_root_is_brought_back():
 
 def test_the_fit_settles():
     changes = fitted(0.5).rms_change_m
-    assert changes[-1] < correction.Settings().tolerance_m
+    assert changes[-1] < fit.TOLERANCE_M
     assert changes[-1] < 0.05 * changes[0]
 
 

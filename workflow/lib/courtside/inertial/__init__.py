@@ -1,6 +1,6 @@
 """Correction of an inertial suit by what cameras see: segments, heading, slow drift.
 
-correction: `correct` (the entry), `Settings`
+correction: `correct` (the entry)
 fit: `Fit`, `observe`, `Seen`, `Noise`, `estimate_vision_noise`, `stated_vision_noise`
 segments: `segments_of`, `Segments`, `Model`, `Frames`
 heading: `estimate`, `Alignment`, `turn_path`

@@ -8,8 +8,7 @@ noise of vision are both estimated, in alternation with the fit: a device that i
 is.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,60 +21,6 @@ from courtside.records.devices.hierarchy import PosedHierarchy, forward
 
 UP = np.array([0.0, 1.0, 0.0])  # vertical in the suit's world
 FLOOR_PERCENTILE = 5  # ASSUME: of the lower ankle's height: where the floor is
-# Defaults of `Settings`.
-TURN_DEG = {
-    "pelvis": 4.0,
-    "thorax": 6.0,
-    "clavicle": 5.0,
-    "upper_arm": 10.0,
-    "forearm": 6.0,
-    "thigh": 8.0,
-    "shank": 5.0,
-}
-MOUNT_DEG = {
-    "pelvis": 4.0,
-    "thorax": 6.0,
-    "clavicle": 6.0,
-    "upper_arm": 12.0,
-    "forearm": 8.0,
-    "thigh": 8.0,
-    "shank": 6.0,
-}
-
-
-@dataclass(frozen=True)
-class Settings:
-    """Prior standard deviations of the corrections, and settings of the fit.
-
-    Chosen on virtual suits of mild and usual errors, seeds 1 to 3; others serve as tests.
-    """
-
-    knot_s: float = 0.5  # distance of the splines' knots
-    # Slow turn of a segment. Pelvis, forearm and shank carry sensors.
-    turn_deg: Mapping[str, float] = field(default_factory=TURN_DEG.copy)
-    turn_memory_s: float = 2.0  # memory of these turns
-    # Slow turn about the vertical that a first estimate of the heading leaves.
-    heading_deg: float = 5.0
-    heading_memory_s: float = 5.0
-    shift_m: float = 0.2  # slow error of the root's path that a first estimate leaves
-    shift_memory_s: float = 3.0
-    # Constant turn of a segment in its own axes. That of the upper arm is the swivel of the elbow,
-    # which no sensor sees.
-    mount_deg: Mapping[str, float] = field(default_factory=MOUNT_DEG.copy)
-    body: float = 0.04  # logarithm of the factor on all bones
-    stretch: float = 0.06  # the same on one kind of bone
-    uneven: float = 0.02  # the same between left and right
-    # Constant offset of vision's joint from the skeleton's, in the axes of the joint's parent.
-    offset_m: float = 0.01
-    # Constant error of vision's joint in vision's own axes: a depth camera sees skin, not joints.
-    bias_m: float = 0.015
-    tilt_deg: float = 5.0  # what a first estimate leaves of the turn between both frames
-    place_m: float = 0.5  # what a first estimate leaves of the shift between both frames
-    # Least correlation time of vision's errors: a network errs alike while a pose lasts.
-    correlation_s: float = 0.25
-    window_s: float = 1.5  # of the first estimate of the heading
-    rounds: int = 15
-    tolerance_m: float = 5e-4  # root mean square change of joints at which the rounds end
 
 
 def correct(
@@ -85,7 +30,6 @@ def correct(
     sigma_m: ArrayLike,
     lag_s: float = 0.0,
     performed: NDArray | None = None,
-    settings: Settings | None = None,
 ) -> tuple[PosedHierarchy, report.CorrectionReport]:
     """Correct an inertial skeleton by vision; return it, and what was found.
 
@@ -100,11 +44,10 @@ def correct(
     clock's shift found. An `InputError` if vision has too little in common with the skeleton, or
     nothing to say about place.
     """
-    settings = settings or Settings()
     performed = np.ones(len(posed.time_s), bool) if performed is None else performed
     moving = _only(posed, performed)
     seen = observe(moving, vision, sigma_m)
-    fit = Fit(moving, seen, UP, lag_s, settings)
+    fit = Fit(moving, seen, UP, lag_s)
     fit.run()
     corrected = _whole(posed, performed, _applied(fit), fit)
     return corrected, report.describe(fit, moving, _only(corrected, performed))

@@ -1,9 +1,6 @@
 """Fit the correction of an inertial suit to what cameras or a depth camera see meanwhile."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy
@@ -19,9 +16,6 @@ from courtside.records.devices.hierarchy import PosedHierarchy, forward
 from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
 
-if TYPE_CHECKING:
-    from courtside.inertial.correction import Settings
-
 CHUNK = 500  # frames whose derivatives are held at once: bounds the memory
 SAMPLES = 6  # ASSUME: draws, to tell how much of a correction the data determine
 SEED = 5  # any; fixed so that a fit is repeatable
@@ -36,6 +30,49 @@ ROUNDS = 5  # ASSUME: the noise settles in a few
 PRIOR_FRAMES = 5.0  # ASSUME: independent frames that the stated sigma counts for
 LONGEST_S = 0.5  # memory of the noise: beyond, it cannot be told from a slow error of the device
 SHORT_S = 0.1  # ASSUME: lag at which the memory is read
+# Prior standard deviations of the corrections, and settings of the fit, chosen on virtual suits of
+# mild and usual errors, seeds 1 to 3; others serve as tests.
+KNOT_S = 0.5  # distance of the splines' knots
+# Slow turn of a segment. Pelvis, forearm and shank carry sensors.
+TURN_DEG = {
+    "pelvis": 4.0,
+    "thorax": 6.0,
+    "clavicle": 5.0,
+    "upper_arm": 10.0,
+    "forearm": 6.0,
+    "thigh": 8.0,
+    "shank": 5.0,
+}
+TURN_MEMORY_S = 2.0  # memory of these turns
+HEADING_DEG = 5.0  # slow turn about the vertical that a first estimate of the heading leaves
+HEADING_MEMORY_S = 5.0
+SHIFT_M = 0.2  # slow error of the root's path that a first estimate leaves
+SHIFT_MEMORY_S = 3.0
+# Constant turn of a segment in its own axes. That of the upper arm is the swivel of the elbow,
+# which no sensor sees.
+MOUNT_DEG = {
+    "pelvis": 4.0,
+    "thorax": 6.0,
+    "clavicle": 6.0,
+    "upper_arm": 12.0,
+    "forearm": 8.0,
+    "thigh": 8.0,
+    "shank": 6.0,
+}
+BODY = 0.04  # logarithm of the factor on all bones
+STRETCH = 0.06  # the same on one kind of bone
+UNEVEN = 0.02  # the same between left and right
+# Constant offset of vision's joint from the skeleton's, in the axes of the joint's parent.
+OFFSET_M = 0.01
+# Constant error of vision's joint in vision's own axes: a depth camera sees skin, not joints.
+BIAS_M = 0.015
+TILT_DEG = 5.0  # what a first estimate leaves of the turn between both frames
+PLACE_M = 0.5  # what a first estimate leaves of the shift between both frames
+# Least correlation time of vision's errors: a network errs alike while a pose lasts.
+CORRELATION_S = 0.25
+WINDOW_S = 1.5  # of the first estimate of the heading
+MOST_ROUNDS = 15
+TOLERANCE_M = 5e-4  # root mean square change of joints at which the rounds end
 
 
 class Fit:
@@ -45,16 +82,14 @@ class Fit:
     of the clocks' offset.
     """
 
-    def __init__(
-        self, posed: PosedHierarchy, seen: Seen, up: NDArray, lag_s: float, settings: Settings
-    ) -> None:
-        self.posed, self.seen, self.up, self.settings = posed, seen, up, settings
+    def __init__(self, posed: PosedHierarchy, seen: "Seen", up: NDArray, lag_s: float) -> None:
+        self.posed, self.seen, self.up = posed, seen, up
         self.segments = segments_of(posed.hierarchy, seen.source)
         observed = [list(posed.hierarchy.joints).index(joint) for joint in seen.joints]
         self.model = Model(posed.hierarchy, self.segments, observed, up)
         self._align()
         start, stop = posed.time_s[0] - PAD_S, posed.time_s[-1] + PAD_S
-        self.basis = splines.basis_over(start, stop, settings.knot_s)
+        self.basis = splines.basis_over(start, stop, KNOT_S)
         self.coefficients = np.zeros((self.basis.n, self.model.n_slow))
         self._slow_prior()
         self._fixed_prior(lag_s)
@@ -67,9 +102,8 @@ class Fit:
         xyz, world = forward(self.posed)
         time_s, seen_s = self.posed.time_s, self.seen.time_s
         device = linear(time_s, xyz[:, self.model.observed], seen_s)
-        window = self.settings.window_s
         self.alignment = heading_drift.estimate(
-            seen_s, device, self.seen.xyz, self.up, window_s=window
+            seen_s, device, self.seen.xyz, self.up, window_s=WINDOW_S
         )
         heading = self.alignment.heading_at(time_s)
         turn = rotations.rotation_from_rodrigues(heading[:, None] * self.up)[:, None]
@@ -87,13 +121,12 @@ class Fit:
         self.vision = vision - self.place
 
     def _slow_prior(self) -> None:
-        settings = self.settings
         kinds = [skeleton.without_side(name) for name in self.segments.names]
         names = [kind for kind in kinds for _ in range(3)] + ["heading"] + ["shift"] * 3
-        sizes = {kind: np.radians(size) for kind, size in settings.turn_deg.items()}
-        sizes |= {"heading": np.radians(settings.heading_deg), "shift": settings.shift_m}
-        memory = dict.fromkeys(kinds, settings.turn_memory_s)
-        memory |= {"heading": settings.heading_memory_s, "shift": settings.shift_memory_s}
+        sizes = {kind: np.radians(size) for kind, size in TURN_DEG.items()}
+        sizes |= {"heading": np.radians(HEADING_DEG), "shift": SHIFT_M}
+        memory = dict.fromkeys(kinds, TURN_MEMORY_S)
+        memory |= {"heading": HEADING_MEMORY_S, "shift": SHIFT_MEMORY_S}
         self.kinds = {
             kind: np.flatnonzero(np.array(names) == kind) for kind in dict.fromkeys(names)
         }
@@ -103,23 +136,18 @@ class Fit:
         self.band = np.stack([band[memory[name]] for name in names], axis=2)  # (K, 4, P)
 
     def _fixed_prior(self, lag_s: float) -> None:
-        settings, layout = self.settings, self.model.fixed
-        deviation = np.zeros(self.model.n_fixed)
+        layout, deviation = self.model.fixed, np.zeros(self.model.n_fixed)
         kinds = [skeleton.without_side(name) for name in self.segments.names]
-        mounts = [settings.mount_deg[kind] for kind in kinds]
+        mounts = [MOUNT_DEG[kind] for kind in kinds]
         deviation[layout["mount"]] = np.radians(np.repeat(mounts, 3))
         deviation[layout["stretch"]] = [
-            settings.body
-            if name == "body"
-            else settings.uneven
-            if "diff" in name
-            else settings.stretch
+            BODY if name == "body" else UNEVEN if "diff" in name else STRETCH
             for name in self.segments.stretches
         ]
-        deviation[layout["offset"]] = settings.offset_m
-        deviation[layout["bias"]] = settings.bias_m
-        deviation[layout["tilt"]] = np.radians(settings.tilt_deg)
-        deviation[layout["place"]] = settings.place_m
+        deviation[layout["offset"]] = OFFSET_M
+        deviation[layout["bias"]] = BIAS_M
+        deviation[layout["tilt"]] = np.radians(TILT_DEG)
+        deviation[layout["place"]] = PLACE_M
         deviation[layout["lag"]] = max(lag_s, 1e-6)
         self.fixed_precision = deviation**-2
 
@@ -127,18 +155,18 @@ class Fit:
         """Fit: in each round the noise, a Gauss-Newton step, and the sizes of the corrections."""
         rng = np.random.default_rng(SEED)
         self.first = before = self.predicted()
-        for number in range(1, self.settings.rounds + 1):
+        for number in range(1, MOST_ROUNDS + 1):
             self.round = number
             residual = (self.vision - before) / self.seen.sigma_m[..., None]
             estimate = stated_vision_noise if number <= FIRST_ROUNDS else estimate_vision_noise
-            self.noise = estimate(residual, self.rate_hz, self.settings.correlation_s)
+            self.noise = estimate(residual, self.rate_hz, CORRELATION_S)
             solution = self._step(before)
             if number > FIRST_ROUNDS:
                 self._resize(solution, rng)
             after = self.predicted()
             self.rms_change_m.append(float(np.sqrt(np.mean((after - before) ** 2))))
             before = after
-            if number > 2 * FIRST_ROUNDS and self.rms_change_m[-1] < self.settings.tolerance_m:
+            if number > 2 * FIRST_ROUNDS and self.rms_change_m[-1] < TOLERANCE_M:
                 break
         self.last, self.border_covariance = before, solution.border_covariance
 
