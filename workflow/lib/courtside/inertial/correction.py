@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from courtside.inertial import report
-from courtside.inertial.fit import Fit, observe
+from courtside.inertial.fit import Fit
 from courtside.inertial.segments import Frames
+from courtside.inertial.vision import observe
 from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.devices.hierarchy import PosedHierarchy, forward
 
