@@ -83,8 +83,8 @@ def stiffness(normal: NDArray, cutoff_hz: NDArray, rate_hz: float, sigma: NDArra
 
     A series measured with steady information I and fitted with weight w on its second differences
     passes 1 / (1 + w (2 sin(pi f / rate))^4 / I) of the frequency f: a zero-lag Butterworth filter
-    of effective order 4 (Eilers 2003), whose gain is 1 / sqrt(2) at the cut-off
-    with this w. I is the median over frames (T, D, D) of the information of each degree of freedom.
+    of effective order 4 (Eilers 2003), whose gain is 1 / sqrt(2) at the cut-off with this w. I is
+    the median over frames (T, D, D) of the information of each degree of freedom.
     """
     information = np.median(np.diagonal(normal, axis1=1, axis2=2), axis=0) + 1 / sigma**2
     gain = (2 * np.sin(np.pi * np.minimum(cutoff_hz / rate_hz, 0.5))) ** 4
