@@ -121,7 +121,7 @@ def test_the_counterpart_has_the_frame_of_the_same_t_pose():
 
 def test_a_t_pose_that_nobody_performed_has_no_counterpart():
     _, made, happened = take()
-    with pytest.raises(InputError, match="d415-rgb: expected a T-pose .* rest poses .*; film one"):
+    with pytest.raises(InputError, match=r"d415-rgb: expected a T-pose .* rest poses .*; film one"):
         common.counterpart(made[0], happened["d415-rgb"].tposes, CARRIED_BY, np.full(2, np.nan))
 
 

@@ -25,9 +25,7 @@ def shaken(true, by=0.1):
 def test_exact_joints_are_fitted_from_a_wrong_start():
     true = moving_model.moving()
     points = moving_model.points(true)
-    found = fit.fit(
-        MODEL, moving_model.body(), data(points), shaken(true), HZ, *HOW
-    )
+    found = fit.fit(MODEL, moving_model.body(), data(points), shaken(true), HZ, *HOW)
     for name, within_deg in (("left_tibia", 1.0), ("right_forearm", 2.0)):
         at = moving_model.column(name)
         error = np.degrees(found.angle[:, at] - true.angle[:, at])

@@ -19,7 +19,12 @@ from fixtures.people import keypoints_made, walker
 SKELETON = skeleton.read(Path(__file__).parents[3] / "config" / "skeletons" / "cpm14.yaml")
 SHARES = {"max_error_share": 0.05, "fade_share": 0.067}
 OPTIONS = {
-    "min_score": 0.3, "min_views": 2, "max_error_px": 15, "fade_px": 20, "fix_sides": True, **SHARES
+    "min_score": 0.3,
+    "min_views": 2,
+    "max_error_px": 15,
+    "fade_px": 20,
+    "fix_sides": True,
+    **SHARES,
 }
 
 

@@ -94,9 +94,7 @@ def _track(
     spline = scipy.interpolate.CubicSpline(own_s, points.xyz[person, frames][:, chosen])
     variance = interpolation.linear(own_s, variance[frames], time_s)
     place = spline(time_s)
-    return Track(
-        frames, time_s, step, place, spline(time_s, 1), variance, place[..., 2], cutoff_hz
-    )
+    return Track(frames, time_s, step, place, spline(time_s, 1), variance, place[..., 2], cutoff_hz)
 
 
 def _floor(found: Sequence[Track]) -> NDArray:
