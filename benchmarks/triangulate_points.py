@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 import peers
-from fixtures.cameras import scene
+import scene
 
 POINTS_OF_POSE2SIM = {"spoiled": 26000, "bad": 260}
 HEAD = "{:<44}{:>8}{:>9}{:>7}{:>8}{:>8}{:>8}{:>7}   {}"

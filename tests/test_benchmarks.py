@@ -1,5 +1,7 @@
 """What the benchmarks conclude from their times; that they give scripts what these take."""
 
+import ast
+import importlib.util
 import inspect
 import json
 import runpy
@@ -127,6 +129,52 @@ def test_every_pair_of_features_of_matched_images_is_compared(tmp_path):
     count = structure_from_motion.compared_features
     assert count(tmp_path / "f.db") == 2 * 3 + 2 * 5 + 3 * 5
     assert count(tmp_path / "f.db", [("a", "c")]) == 10
+
+
+def local_file(module):
+    """Return the file of a module of the project, None where it belongs to nobody here."""
+    folders = ("benchmarks", "workflow/lib", "workflow/scripts")
+    places = [Path(ROOT, folder, *module.split(".")) for folder in folders]
+    files = [found for at in places for found in (at.with_suffix(".py"), at / "__init__.py")]
+    return next((path for path in files if path.is_file()), None)
+
+
+def defined(path):
+    """Return the names that a module has."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    found = {path.stem for path in path.parent.iterdir()} if path.stem == "__init__" else set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            found |= {one.asname or one.name for one in node.names}
+        elif isinstance(node, ast.FunctionDef | ast.ClassDef):
+            found.add(node.name)
+        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            found.add(node.id)
+    return found
+
+
+def elsewhere(module):
+    """Return whether a module is installed; those of the tests are not for benchmarks."""
+    root = module.partition(".")[0]
+    installed = root in sys.stdlib_module_names or importlib.util.find_spec(root) is not None
+    return installed and not (ROOT / "tests" / root).exists()
+
+
+@pytest.mark.parametrize(
+    "path",
+    [p for p in sorted((ROOT / "benchmarks").rglob("*.py")) if p.parent.name != "methods"],
+    ids=lambda path: path.stem,
+)
+def test_what_a_benchmark_imports_is_there(path):
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names = [one.name for one in node.names]
+            assert all(local_file(name) or elsewhere(name) for name in names), names
+        elif isinstance(node, ast.ImportFrom):
+            file = local_file(node.module)
+            assert file or elsewhere(node.module), node.module
+            if file:
+                assert {one.name for one in node.names} <= defined(file), node.module
 
 
 def test_scripts_are_called_by_benchmarks_that_the_next_tests_run():
