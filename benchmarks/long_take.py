@@ -1,6 +1,6 @@
-"""Cost of fusing, synchronising, filtering and measuring a long take: ms per frame, and memory.
+"""Cost of fusing, synchronising, filtering and measuring: ms per frame, and memory.
 
-Memory is given by the take's length.
+Both are told by the length of the take.
 
     python benchmarks/long_take.py results players-b footwork [--minutes 0.5 2 10] [--json OUT]
 
@@ -30,6 +30,7 @@ except ImportError:  # Windows does not tell the memory
 ROOT = Path(__file__).parents[1]
 sys.path += [str(ROOT / "workflow" / "lib"), str(ROOT / "workflow" / "scripts")]
 
+from courtside.evaluation.numbers.players import NETWORK
 from courtside.records.keypoints import keypoints, skeleton
 
 MIB_PER_KIB = 1 / 1024
@@ -48,7 +49,7 @@ def repeated(view, seconds):
     """Return keypoints of a camera over and over, until its clock has shown so many seconds."""
     period_s = view.time_s[-1] + np.median(np.diff(view.time_s))
     times = int(np.ceil(seconds / period_s))
-    names = ("xy", "score", "reason", "xyz_in_body")
+    names = ("xy", "score", "reason", "xyz_in_body", "clothing")
     every = {name: np.concatenate([getattr(view, name)] * times, axis=1) for name in names}
     time_s = (np.arange(times)[:, None] * period_s + view.time_s).ravel()
     stop = int(np.searchsorted(time_s, seconds))
@@ -142,7 +143,7 @@ def main():
     parser.add_argument("take")
     parser.add_argument("--minutes", type=float, nargs="+", default=[0.5, 2.0, 10.0])
     parser.add_argument("--calibration", default="sfm-n40-lines")
-    parser.add_argument("--model", default="blazepose-full")
+    parser.add_argument("--model", default=NETWORK)
     parser.add_argument("--json", type=Path)
     asked = parser.parse_args()
     folder = asked.results / asked.session

@@ -28,6 +28,7 @@ sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.court import court as court_files
 from courtside.calibration.file_check import residuals
 from courtside.calibration.people import adjustment, prior, views
+from courtside.evaluation.numbers.players import NETWORK
 from courtside.evaluation.tables import ways
 from courtside.geometry import camera as camera_models
 from courtside.records.keypoints import skeleton
@@ -109,7 +110,7 @@ def main():
     parser.add_argument("session")
     parser.add_argument("takes", nargs="+")
     parser.add_argument("--base", default="known18")
-    parser.add_argument("--model", default="blazepose-full")
+    parser.add_argument("--model", default=NETWORK)
     parser.add_argument("--seeds", type=int, default=3)
     given = parser.parse_args()
     session = yaml_files.read(ROOT / "config" / "sessions" / f"{given.session}.yaml")

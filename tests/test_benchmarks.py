@@ -37,7 +37,7 @@ from comparisons import pose
 from courtside.devices import openpose
 from courtside.geometry import camera as camera_models
 from courtside.pose.detector import Region
-from courtside.records.keypoints import skeleton
+from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.configuration import configuration, yaml_files
 from courtside.study.targets import together
 
@@ -196,6 +196,19 @@ def test_long_take_gives_each_script_what_it_takes(tmp_path):
     for script, arguments, options in steps:
         main = runpy.run_path(str(ROOT / "workflow" / "scripts" / f"{script}.py"))["main"]
         inspect.signature(main).bind(*arguments, **options)
+
+
+def test_a_take_is_repeated_with_all_that_its_file_has(tmp_path):
+    names = {"xy": (2,), "score": (), "xyz_in_body": (3,)}
+    seen = {name: np.random.default_rng(0).random((1, 4, 5, *of)) for name, of in names.items()}
+    view = keypoints.Keypoints2D(
+        "side", "made", np.array(list("abcde")), np.array([640, 360]), np.arange(4) / 2,
+        **seen, reason=np.zeros((1, 4, 5), np.uint8), clothing=np.arange(24.0).reshape(1, 4, 2, 3),
+    )  # fmt: skip
+    keypoints.write_2d(tmp_path / "long.npz", long_take.repeated(view, 3.0))
+    long = keypoints.read_2d(tmp_path / "long.npz")
+    np.testing.assert_array_equal(long.time_s, np.arange(6) / 2)
+    np.testing.assert_array_equal(long.clothing[0], view.clothing[0, [0, 1, 2, 3, 0, 1]])
 
 
 def test_mapping_seeds_gives_each_script_what_it_takes(tmp_path, monkeypatch):
