@@ -13,10 +13,10 @@ provider, over the output's largest value.
 import argparse
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
-import onnxruntime
 
 from many_sessions import ROOT
 
@@ -26,23 +26,14 @@ from courtside.pose.networks import session
 from courtside.pose.networks.batches import of_size
 
 
-def opened(content, provider):
-    """Open a network as the study does, on one thread of the processor."""
-    session.check_providers([provider], "--provider")
-    wanted = (session.PROVIDERS[provider][0], session.OPTIONS.get(provider, {}))
-    options = onnxruntime.SessionOptions()
-    options.intra_op_num_threads = options.inter_op_num_threads = 1
-    options.log_severity_level = 3
-    return onnxruntime.InferenceSession(content, options, [wanted])
-
-
 def measure(path, sizes, rounds, provider="cpu"):
     """Return {size: (ms a crop, largest relative difference)}."""
     clock = time.process_time if provider == "cpu" else time.perf_counter
-    networks = {size: opened(of_size(path, size), provider) for size in sizes}
+    opened = partial(session.open_session, path, [provider])
+    networks = {size: opened(of_size(path, size)) for size in sizes}
     name, shape = networks[sizes[0]].get_inputs()[0].name, networks[sizes[0]].get_inputs()[0].shape
     crops = np.random.default_rng(0).random((max(sizes), *shape[1:]), np.float32)
-    single = opened(of_size(path, 1), provider)
+    single = opened(of_size(path, 1))
     alone = [
         np.concatenate(each)
         for each in zip(*(single.run(None, {name: one[None]}) for one in crops), strict=True)
