@@ -22,18 +22,18 @@ from types import SimpleNamespace
 import numpy as np
 import yaml
 
+from many_sessions import ROOT, mib
+
 try:
     import resource
 except ImportError:  # Windows does not tell the memory
     resource = None
 
-ROOT = Path(__file__).parents[1]
 sys.path += [str(ROOT / "workflow" / "lib"), str(ROOT / "workflow" / "scripts")]
 
 from courtside.evaluation.numbers.players import NETWORK
 from courtside.records.keypoints import keypoints, skeleton
 
-MIB_PER_KIB = 1 / 1024
 LINE = "{step:<22}{minutes:>8g} min{n_frames:>8}{ms_per_frame:>9.3f} ms{peak_mib:>8.0f} MiB"
 
 
@@ -65,7 +65,7 @@ def work(script, arguments, options):
     seconds = time.process_time() - started
     if resource is None:
         return seconds, float("nan")
-    return seconds, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * MIB_PER_KIB
+    return seconds, mib(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 
 
 def alone(*job):

@@ -84,7 +84,12 @@ def timed(folder, *options):
         text = output.read()
     if status:
         sys.exit(f"{' '.join(command)} ended with status {status}:\n{text[-2000:]}")
-    return seconds, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024, text
+    return seconds, usage.ru_utime + usage.ru_stime, mib(usage.ru_maxrss), text
+
+
+def mib(ru_maxrss):
+    """Return the greatest memory of a process, MiB: macOS tells bytes, other systems KiB."""
+    return ru_maxrss / (2**20 if sys.platform == "darwin" else 2**10)
 
 
 def planned(n_sessions, n_takes, n_cameras):

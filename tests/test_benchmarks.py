@@ -23,6 +23,7 @@ import device_angles
 import find_persons
 import hall_markers
 import long_take
+import many_sessions
 import mapping_seeds
 import networks
 import opensim_angles
@@ -209,6 +210,12 @@ def test_a_take_is_repeated_with_all_that_its_file_has(tmp_path):
     long = keypoints.read_2d(tmp_path / "long.npz")
     np.testing.assert_array_equal(long.time_s, np.arange(6) / 2)
     np.testing.assert_array_equal(long.clothing[0], view.clothing[0, [0, 1, 2, 3, 0, 1]])
+
+
+def test_the_unit_of_memory_depends_on_the_system(monkeypatch):
+    for system, unit in (("linux", 2**10), ("darwin", 2**20)):
+        monkeypatch.setattr(sys, "platform", system)
+        assert many_sessions.mib(300 * unit) == 300
 
 
 def test_mapping_seeds_gives_each_script_what_it_takes(tmp_path, monkeypatch):
