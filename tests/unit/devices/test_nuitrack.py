@@ -1,4 +1,5 @@
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -160,13 +161,15 @@ def test_unsure_and_absent_joints_are_missing_with_their_reason(tmp_path):
     assert np.isnan(motion.xyz).any(axis=-1).sum() == 3
 
 
-def test_the_user_seen_most_often_is_taken(tmp_path):
+def test_the_user_seen_most_often_is_taken(tmp_path, caplog):
     rows = csv_rows()
     other = [
         [*row[:2], 7, *(v + 1 if isinstance(v, float) else v for v in row[3:])] for row in rows[1:4]
     ]
     path = write_csv(tmp_path / "a.csv", [*rows, *other])
-    check(nuitrack.read(path, JOINTS, "n"))
+    with caplog.at_level("INFO"):
+        check(nuitrack.read(path, JOINTS, "n"))
+    assert re.search(r"a\.csv: user 1 of \{1: \d+, 7: \d+\}", caplog.text)
 
 
 def test_a_wrong_unit_is_noticed(tmp_path):

@@ -96,7 +96,8 @@ def _user(path: Path, users: NDArray) -> NDArray:
         raise InputError(f"{path}: expected a skeleton of a user, found none; {EXPORT}")
     user = known[counts.argmax()]
     if len(known) > 1:
-        log.logger.info("%s: user %s of %s", path, user, dict(zip(known, counts, strict=True)))
+        n_frames = dict(zip(known.tolist(), counts.tolist(), strict=True))
+        log.logger.info("%s: user %s of %s", path, user, n_frames)
     return users == user
 
 
