@@ -281,7 +281,7 @@ NO_VIDEO = {
         ("picture", "single picture"),
         ("sound", "sound only"),
         ("cover", "sound only"),
-        ("no times", "time stamp on every frame"),
+        ("no times", "time stamp on every frame, found 5 of 5 without one"),
         ("header only", "expected frames, found none"),
     ],
 )

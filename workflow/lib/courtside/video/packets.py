@@ -95,7 +95,8 @@ def _read_listing(path: Path) -> Listing:
         stamped = [(p, d, n, key) for p, d, n, key in packets if p is not None]
         if len(stamped) < len(packets):
             raise InputError(
-                f"{path}: expected a time stamp on every frame, found none: "
+                f"{path}: expected a time stamp on every frame, found "
+                f"{len(packets) - len(stamped)} of {len(packets)} without one: "
                 "put the video into a container that has them, such as MP4 or Matroska"
             )
         if not packets:
