@@ -1,10 +1,10 @@
 """OpenSim's inverse kinematics of one TRC file, timed; and a motion played on the model.
 
-Arguments: model.osim markers.trc motion.mot folder.
+Arguments: model.osim markers.trc fitted.trc motion.mot folder.
 
-Every marker of the model counts alike. `markers_mm` is the largest distance between the markers of
-the TRC file and those of the model posed by the motion file, over its frames. Coordinates and
-markers that OpenSim finds are in the folder.
+Every marker of the model counts alike; OpenSim solves markers.trc. `markers_mm` is the largest
+distance between the markers of fitted.trc and those of the model posed by the motion file, over its
+frames. Coordinates and markers that OpenSim finds are in the folder.
 """
 
 import json
