@@ -167,7 +167,7 @@ def test_the_user_seen_most_often_is_taken(tmp_path, caplog):
         [*row[:2], 7, *(v + 1 if isinstance(v, float) else v for v in row[3:])] for row in rows[1:4]
     ]
     path = write_csv(tmp_path / "a.csv", [*rows, *other])
-    with caplog.at_level("INFO"):
+    with caplog.at_level("INFO", logger="courtside"):
         check(nuitrack.read(path, JOINTS, "n"))
     assert re.search(r"a\.csv: user 1 of \{1: \d+, 7: \d+\}", caplog.text)
 
