@@ -9,7 +9,8 @@ whose person OpenPose's keypoints show; DATA is the recording of `hall_markers.p
 joints set by hand show; the truth shows the virtual ones. A person of 80 px or more counts as found
 if a region lies on it: centres apart by less than a quarter of its height, size right within a
 factor of 1.7. `whole`: the detector looks at the whole picture; `tiles`: as the study does where it
-follows nobody. It writes docs/numbers/find_persons.csv, a source of docs/make_tables.py.
+follows nobody. With all scenes, all detectors and the default settings it writes
+docs/numbers/find_persons.csv, a source of docs/make_tables.py.
 """
 
 import argparse
@@ -158,7 +159,9 @@ def main():
             share, more = f"{100 * hits / n_persons:.1f}", f"{others / n_pictures:.1f}"
             rows.append([*about, way, share, "%", *rest])
             print(f"{words}; {name}, {way}: {hits} of {n_persons}, {share} %; others {more}")
-    stated.write(OUTPUT, rows)
+    usual = all(getattr(given, key) == parser.get_default(key) for key in ("every", "min_score"))
+    if usual and given.demo and given.hall and given.session and set(OWN) < set(found):
+        stated.write(OUTPUT, rows)
 
 
 if __name__ == "__main__":

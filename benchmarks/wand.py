@@ -15,7 +15,7 @@ to calibrate has 18 clicked court points, which define the world frame.
 FOLDER contains `wandpts.csv` of a real wand, clicked in 50 frames of three cameras, and the
 cameras' nominal lenses in `RGBsetup_profile.txt` (github.com/PeppyHare/EasyWand). The length of
 this wand is not stated; its variation measures the quality of the cameras. Writes
-docs/numbers/wand.csv.
+docs/numbers/wand.csv; without FOLDER its rows there stay.
 """
 
 import argparse
@@ -191,6 +191,6 @@ if __name__ == "__main__":
     parser.add_argument("--easywand", type=Path)
     parser.add_argument("--csv", type=Path, default=ROOT / stated.FOLDER / "wand.csv")
     given = parser.parse_args()
-    stated.write(
-        given.csv, [[*row, *MADE] for row in rows(given.seconds, given.seeds, given.easywand)]
-    )
+    made = [[*row, *MADE] for row in rows(given.seconds, given.seeds, given.easywand)]
+    others = stated.of_other_sessions(given.csv, {row[5] for row in made})
+    stated.write(given.csv, [*others, *made])

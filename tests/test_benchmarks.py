@@ -408,6 +408,20 @@ def test_a_person_is_found_by_a_region_of_its_size_and_place():
     assert counts["made", "whole"].tolist() == [1, 2]
 
 
+def test_a_run_without_some_scene_leaves_the_stated_numbers_alone(tmp_path, monkeypatch):
+    monkeypatch.setattr(find_persons, "OUTPUT", tmp_path / "table.csv")
+    known = dict.fromkeys(["blazepose-detector", *find_persons.OWN])
+    monkeypatch.setattr(find_persons, "detectors", lambda *_: known)
+    monkeypatch.setattr(find_persons, "counted", lambda *_: ({("made", "whole"): (1, 0)}, 1, 1))
+    call = ["find_persons.py", "results", "--models", "folder", "--demo", "demo"]
+    whole = [*call, "--session", "crowd-dev", "--hall", "data"]
+    for arguments in (call, [*whole, "--every", "80"], whole):
+        assert not find_persons.OUTPUT.exists()
+        monkeypatch.setattr(sys, "argv", arguments)
+        find_persons.main()
+    assert find_persons.OUTPUT.read_text().count("\n") == 4
+
+
 def test_a_network_is_brought_to_several_crops(tmp_path):
     picture = onnx.helper.make_tensor_value_info("x", onnx.TensorProto.FLOAT, [1, 2, 2, 3])
     flat = onnx.helper.make_tensor_value_info("y", onnx.TensorProto.FLOAT, [1, 12])
