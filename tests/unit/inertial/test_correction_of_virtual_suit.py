@@ -18,7 +18,8 @@ from courtside.records.keypoints.skeleton import JOINTS as LIMB_JOINTS
 from fixtures.people import mannequin, moved_bodies, performers
 from virtualgym.body import athlete, shapes, skinned_body
 from virtualgym.devices import inertial_errors, inertial_suit
-from virtualgym.movement import catalogue
+from virtualgym.movement import single_view
+from virtualgym.movement.player import Player
 
 pytestmark = pytest.mark.slow
 SEED = 11
@@ -31,8 +32,8 @@ NOT_MODELLED = "disturbed"
 def performed():
     """Return the athlete, the times (T,) of the suit's rows, the true joints (T, 12, 3)."""
     figure = skinned_body.Body.read(mannequin.folder(), shapes.BODIES["m2"])
-    rng = np.random.default_rng(SEED)
-    motion = catalogue.single_view(figure.proportions, performers.COURT, rng, free_s=20.0, claps=2)
+    player = Player(figure.proportions, performers.COURT, np.random.default_rng(SEED))
+    motion = single_view.perform(player, free_s=20.0, claps=2)
     mover = athlete.Athlete(figure, motion, racket=False)
     time_s = np.arange(1.0, motion.seconds - 0.5, 1 / 60)
     chosen = [list(skinned_body.JOINTS).index(joint) for joint in LIMB_JOINTS]

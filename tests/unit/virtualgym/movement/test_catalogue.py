@@ -65,7 +65,7 @@ def test_only_claps_are_without_a_racket():
 @pytest.mark.parametrize("height", [1.5, 2.0])
 def test_bodies_of_any_size_keep_their_feet_on_the_floor(height):
     body = stance.Proportions.of_height(height)
-    motion = catalogue.MOTIONS["rally"](body, COURT, np.random.default_rng(0), seconds=8.0)
+    motion = perform("rally", body=body, seconds=8.0)
     for side in stance.SIDES:
         for start, stop in motion.planted(side):
             at = [stance.joints(motion.stance(t), body)[f"{side}_ankle"] for t in (start, stop)]

@@ -168,8 +168,11 @@ class Drill:
         return max(LEAST_S, way / self.rng.uniform(*SPEED_M_S))
 
 
-def rounds(player: Player, seconds: float, swing: float = 1.0) -> Motion:
-    """Visit all corners in random order, again and again, for at least `seconds`."""
+def rounds(player: Player, seconds: float = 21.0, swing: float = 1.0) -> Motion:
+    """Visit all corners in random order, again and again, for at least `seconds`.
+
+    `swing` is as of `Drill`. Events: hit_1, hit_1_start, hit_1_stop, hit_2 ...
+    """
     drill = Drill(player, swing)
     names: list[str] = []
     while drill.time_s < seconds:

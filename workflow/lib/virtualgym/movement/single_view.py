@@ -39,14 +39,19 @@ class Figure:
     lasts_s: float
 
 
-def perform(player: Player, *, free_s: float, claps: int, bouncing: bool) -> Motion:
-    """Stand, T-pose, clap; move freely; T-pose, clap; and so on.
+def perform(
+    player: Player, *, free_s: float = 20.0, claps: int = 2, bouncing: bool = False
+) -> Motion:
+    """Stand facing the net, T-pose, clap; move freely on the spot; T-pose, clap; and so on.
+
+    Without a racket.
 
     Parameters
     ----------
     player : Player
     free_s : float
-        Longest total duration of free motion, which the claps divide evenly.
+        Longest total duration of free motion, which the claps divide evenly: raised arms, bent
+        elbows, twists and turns, squats, steps in place and aside. Each clap adds about 6 s.
     claps : int
         One or more; free motion comes after a single one.
     bouncing : bool

@@ -80,14 +80,28 @@ def along(
     return _walk(player, lap.ends(0.0, stop_s), walking, scatter, lap, **options)
 
 
-def up_and_down(player: Player, lane: int, n_turns: int) -> Motion:
-    """Walk straight along a lane (0 or 1), turn on the spot, walk back, and so on."""
+def up_and_down(player: Player, lane: int = 0, n_turns: int = 1) -> Motion:
+    """Walk past another player, turn, and walk back; the other uses the other lane, the other way.
+
+    The lanes are oblique to the court, so that the players occlude each other in views along either
+    side.
+
+    Parameters
+    ----------
+    player : Player
+    lane : int
+        0 or 1.
+    n_turns : int
+        The players cross once more than that.
+    """
+    if lane not in (0, 1):
+        raise ValueError(f"expected lane 0 or 1, found {lane}")
     middle, end = _lanes(player)
     end = end if lane == 0 else -end
     return _to_and_fro(player, middle + _aside(end, LANE_M), end, n_turns)
 
 
-def stroll(player: Player, seconds: float) -> Motion:
+def stroll(player: Player, seconds: float = 21.0) -> Motion:
     """Walk up and down outside of the court, beside the side line on the right of the half."""
     (wide, long), beside = player.half_m, player.rng.uniform(*BESIDE_M)
     end = np.array([0.0, STROLL_SHARE * long])
@@ -95,7 +109,7 @@ def stroll(player: Player, seconds: float) -> Motion:
     return _to_and_fro(player, np.array([wide + beside, 0.0]), end, n_turns)
 
 
-def stand(player: Player, seconds: float) -> Motion:
+def stand(player: Player, seconds: float = 21.0) -> Motion:
     """Stand beside the lanes, facing the net, and sway a little."""
     middle, end = _lanes(player)
     place = middle + _aside(end, ASIDE_M) + player.rng.uniform(-0.2, 0.2, 2)

@@ -19,6 +19,7 @@ from virtualgym import presets
 from virtualgym.body import athlete, shapes, skinned_body
 from virtualgym.cameras import camera_shake, layouts
 from virtualgym.movement import catalogue
+from virtualgym.movement.player import Player
 from virtualgym.rendering import lamps, player_renderer
 from virtualgym.rendering.background import Backdrop
 from virtualgym.session import clicks, parallel, session, take_devices
@@ -223,12 +224,10 @@ def _athlete(
 ) -> athlete.Athlete:
     """Return the `at`-th person of a take, whose random numbers are of a stream of the seed."""
     make = catalogue.MOTIONS[player.get("motion", take.motion)]
-    options = {"hand": player.get("hand", "right")}
     taken = inspect.signature(make).parameters
+    options: dict[str, Any] = {}
     if "lane" in taken:
         options["lane"] = at % 2
-    else:
-        options["half"] = ("near", "far")[at % 2]
     if "seconds" in taken:
         latest_s = max([0.0, *(-c.get("offset_s", 0.0) for c in take.clocks.values())])
         options["seconds"] = take.start_s + take.seconds + latest_s
@@ -236,9 +235,14 @@ def _athlete(
         options["script_rng"] = parallel.generator(take.seed, SCRIPT)
     options |= player.get("options", {})
     figure = skinned_body.Body.read(body_folder, shapes.BODIES[player["body"]])
-    rng = parallel.generator(take.seed, stream, at)
-    motion = make(figure.proportions, court, rng, **options)
-    return athlete.Athlete(figure, motion, racket=take.racket)
+    performer = Player(
+        figure.proportions,
+        court,
+        parallel.generator(take.seed, stream, at),
+        player.get("hand", "right"),
+        "near" if "lane" in taken else ("near", "far")[at % 2],
+    )
+    return athlete.Athlete(figure, make(performer, **options), racket=take.racket)
 
 
 def simulate_take(
