@@ -7,6 +7,7 @@ from pathlib import Path
 
 from courtside.calibration.court import court
 from courtside.exports import bvh
+from courtside.study.errors import reading
 from courtside.study.execution.script import run
 from virtualgym.body import makehuman
 from virtualgym.session import session
@@ -20,9 +21,11 @@ def body_folder(files):
 
 def main(court_yaml, body_files, truth_npz, backdrops_npz=(), *, settings, take, threads):
     folder = Path(truth_npz).parent
+    with reading(folder, *takes.FITTING, kinds=(ValueError, TypeError)):
+        of_session, of_take = session.Settings(**settings), takes.TakeSettings(**take)
     worn = takes.simulate_take(
-        session.Settings(**settings),
-        takes.TakeSettings(**take),
+        of_session,
+        of_take,
         court.read(court_yaml),
         body_folder(body_files),
         folder,

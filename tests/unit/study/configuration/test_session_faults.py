@@ -71,6 +71,11 @@ LENGTHS |= {"static_points": "p.csv"}
 PLAYERS = VIRTUAL | {"subjects": {"p1": None}, "takes": {"shot": FILMED}}
 
 
+def simulated(**settings):
+    """Return a session whose only take has more settings of its simulation."""
+    return PLAYERS | {"takes": {"t": {"virtual": FILMED["virtual"] | settings}}}
+
+
 @pytest.mark.parametrize(
     "content",
     [
@@ -290,6 +295,22 @@ def test_good_sessions_have_no_fault(root, content):
                 "takes": {"t": {"virtual": FILMED["virtual"] | {"players": {"p2": {"body": "m1"}}}}}
             },
             ["takes.t.virtual.players: expected each of ['p1'], found ['p2']"],
+        ),
+        (
+            simulated(devices={"d": {"kind": "rgbd", "rate_hz": 30, "strength": "mild"}}),
+            ["takes.t.virtual.devices.d.strength: expected it of a device of the kind inertial"],
+        ),
+        (
+            simulated(devices={"d": {"kind": "inertial", "distance_m": 3}}),
+            ["devices.d.distance_m: expected it of a device of the kind rgbd only, found inertial"],
+        ),
+        (
+            simulated(shake={"side": {"knock_deg": 1}}),
+            ["takes.t.virtual.shake.side: expected knock_s with a knock_deg above 0, or neither"],
+        ),
+        (
+            simulated(shake={"side": {"knock_s": 1}}),
+            ["takes.t.virtual.shake.side: expected knock_s with a knock_deg", "state both"],
         ),
         (
             PLAYERS | {"takes": {"t": {"virtual": FILMED["virtual"] | {"clocks": {"up": {}}}}}},

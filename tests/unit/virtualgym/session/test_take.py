@@ -9,10 +9,13 @@ import pytest
 
 from courtside.calibration.court import court as court_files
 from courtside.records.truth import take_truth
+from courtside.study.configuration import schemas
+from courtside.study.errors import InputError
 from courtside.video import reader
 from fixtures.cameras import balls, scene
 from fixtures.people import mannequin
-from virtualgym.body import skinned_body
+from virtualgym.body import shapes, skinned_body
+from virtualgym.movement import catalogue
 from virtualgym.session import session
 from virtualgym.session import take as takes
 
@@ -21,6 +24,10 @@ SESSION = session.Settings(preset="rich", layout="a", seed=3, size_px=[320, 180]
 LARGE = replace(SESSION, size_px=[640, 360])
 HALLS = []
 SUIT = {"kind": "inertial"}
+MIDDLE = {"p1": {"body": "m3", "options": {"corner": "middle"}}}
+UNKNOWN = {"motion": "footwrok", "players": {"p1": {"body": "m9", "motion": "polka"}}}
+UNKNOWN |= {"seconds": 1, "seed": 1, "bystanders": ["m9"]}
+CLAPPING = {"p1": {"body": "m3", "options": {"claps": "two"}}}
 TAKE = takes.TakeSettings(
     motion="rally", seconds=0.1, players={"p1": {"body": "m3"}}, seed=5, racket=True, start_s=2.1,
     clocks={"back": {"offset_s": -0.25, "drift_ppm": 900.0}}, shake={"side": {"tremor_px": 0.5}},
@@ -273,12 +280,25 @@ def test_a_third_player_may_stand_and_bystanders_walk_beside_the_court():
         ({"clocks": {"back": {"offset": 1.0}}}, "keys of the clock of camera back"),
         ({"shake": {"back": {"hum": 1.0}}}, "keys of the shake of camera back"),
         ({"devices": {"d415": {"kind": "lidar"}}}, "kind of"),
+        ({"players": {"p1": {"body": "m1", "options": {"x": 1}}}}, "options of motion rally"),
     ],
 )
 def test_impossible_takes_are_refused(change, message):
     with pytest.raises(ValueError, match=message) as fault:
         replace(TAKE, **change)
     assert "\n" not in str(fault.value)
+
+
+def test_sessions_may_name_the_motions_and_bodies_that_there_are_and_no_others():
+    lines = schemas.faults({"takes": {"t": {"virtual": UNKNOWN}}}, "session", "a.yaml")
+    found = {where: line for where, _, line in (one.partition(": expected ") for one in lines)}
+    for path, names in (
+        ("takes.t.virtual.motion", catalogue.MOTIONS),
+        ("takes.t.virtual.players.p1.motion", catalogue.MOTIONS),
+        ("takes.t.virtual.players.p1.body", shapes.BODIES),
+        ("takes.t.virtual.bystanders.0", shapes.BODIES),
+    ):
+        assert found[f"a.yaml: {path}"].startswith(f"one of {list(names)}, found ")
 
 
 @pytest.mark.parametrize(
@@ -290,10 +310,13 @@ def test_impossible_takes_are_refused(change, message):
         ({"clocks": {"side": {"offset_s": 1.0}}}, "the reference"),
         ({"cameras": []}, "cameras or devices"),
         ({"cameras": [], "devices": {"d": SUIT}, "clocks": {"d": {"offset_s": 1.0}}}, "reference"),
+        ({"shake": {"side": {"knock_deg": 1.0}}}, "knock_s with knock_deg"),
+        ({"motion": "shot", "players": MIDDLE}, "corner of .* found 'middle'"),
+        ({"motion": "single_view", "players": CLAPPING}, "claps"),
     ],
 )
-def test_takes_that_do_not_fit_the_session_are_refused(change, message, tmp_path):
+def test_takes_that_do_not_fit_the_session_are_refused_before_any_work(change, message, tmp_path):
     take = replace(TAKE, **({"shake": {}, "clocks": {}} | change))
-    with pytest.raises(ValueError, match=message):
-        takes.simulate_take(SESSION, take, COURT, None, tmp_path)
+    with pytest.raises(InputError, match=message):
+        takes.simulate_take(SESSION, take, COURT, mannequin.folder(), tmp_path)
     assert list(tmp_path.iterdir()) == []

@@ -44,6 +44,8 @@ def shot(player: Player, *, corner: str = "rear_right") -> Motion:
 
     Events: hit, hit_start, hit_stop (17 frames at 30 fps from start to stop).
     """
+    if corner not in badminton.CORNERS:
+        raise ValueError(f"expected a corner of {list(badminton.CORNERS)}, found {corner!r}")
     motion = badminton.visits(player, [corner])
     events = {name.replace("_1", ""): time_s for name, time_s in motion.events.items()}
     return replace(motion, events=events)

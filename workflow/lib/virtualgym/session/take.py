@@ -13,6 +13,7 @@ from courtside.calibration.court.court import Court
 from courtside.geometry.camera import Camera
 from courtside.records.devices.hierarchy import PosedHierarchy
 from courtside.records.truth import take_truth
+from courtside.study.errors import reading
 from courtside.study.execution import log
 from courtside.video import writer
 from virtualgym import presets
@@ -29,6 +30,7 @@ BYSTANDING = "stroll"  # the motion of bystanders
 CLOCK = {"offset_s", "drift_ppm"}
 LATE_S = 60.0  # greatest offset between two clocks, as the schema of sessions has it
 SHAKE = {part.name for part in fields(camera_shake.Shake)}
+FITTING = "virtual settings of a take that fit", "correct them"  # else an error says so
 # Independent streams of random numbers, of the take's seed.
 MOTION, GRAIN, SHAKING, CLICKS, BYSTANDERS, SCRIPT = range(6)
 FIELD, FRAMES = range(2)  # of GRAIN and a camera
@@ -99,6 +101,8 @@ class TakeSettings:
             _known(f"a body for player {person}", [player.get("body")], shapes.BODIES)
             own = player.get("motion", self.motion)
             _known(f"a motion for player {person}", [own], catalogue.MOTIONS)
+            taken = set(inspect.signature(catalogue.MOTIONS[own]).parameters) - {"player"}
+            _known(f"options of motion {own}", player.get("options", {}), taken)
         _known("bodies of bystanders", self.bystanders, shapes.BODIES)
         for camera, clock in self.clocks.items():
             _known(f"keys of the clock of camera {camera}", clock, CLOCK)
@@ -280,15 +284,17 @@ def simulate_take(
 
     Raises
     ------
-    ValueError
-        If the layout lacks a camera of the take.
     InputError
-        If the files of the body or of the hall are damaged, or a file cannot be written.
+        If the take does not fit the session, or a motion its options; if the files of the body or
+        of the hall are damaged, or a file cannot be written.
     """
     folder, take = Path(folder), replace(take, creep=settings.strength("drift"))
-    chosen = take.filming(settings.layout)
-    cameras = {at: session.plan(settings, court)[0][at] for at in chosen}
-    shaken = {at: take.shaking(camera, at) for at, camera in cameras.items()}
+    with reading(folder, *FITTING, kinds=(ValueError, TypeError)):
+        chosen = take.filming(settings.layout)
+        planned, _ = session.plan(settings, court)
+        cameras = {at: planned[at] for at in chosen}
+        shaken = {at: take.shaking(camera, at) for at, camera in cameras.items()}
+        athletes = perform(take, court, body_folder)
     margins = {
         at: each.reach_px(take.seconds + LATE_S) if each else 0 for at, each in shaken.items()
     }
@@ -302,7 +308,6 @@ def simulate_take(
         with parallel.workers(FilmSet, film_set, workers) as call:
             for name in call("film", films):
                 log.logger.info("%s: filmed", name)
-    athletes = perform(take, court, body_folder)
     recorded = take_devices.record(take, settings, court, athletes, folder, threads=threads)
     clicks.write(folder / "racket.csv", folder.name, _clicked(take, settings, cameras, athletes))
     truth = take_devices.of_take(take, cameras, athletes, recorded.truth)

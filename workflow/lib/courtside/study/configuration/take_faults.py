@@ -7,6 +7,7 @@ from courtside.study.configuration.session_files import KINDS, kind_of
 from courtside.study.configuration.yaml_files import Content
 
 MEANT_FOR = {"unit": ("inertial", "nuitrack"), "angles": ("inertial",)}  # keys of devices
+OF_VIRTUAL_SUITS = ("strength",)  # keys of virtual devices; the others are of depth cameras
 RECORDINGS = ("videos", "pose2d", "devices")  # keys of a take that was recorded
 
 
@@ -227,11 +228,30 @@ def _filmed_faults(
     yield from unknown(f"{where}.virtual.cameras", filmed.get("cameras", []), cameras)
     yield from unknown(f"{where}.virtual.clocks", filmed.get("clocks", {}), clocks)
     yield from unknown(f"{where}.virtual.shake", filmed.get("shake", {}), cameras)
+    yield from _simulated_faults(f"{where}.virtual", filmed)
     if set(filmed["players"]) != set(subjects):
         yield (
             f"{where}.virtual.players: expected each of {sorted(subjects)}, found "
             f"{sorted(filmed['players'])}; correct one of them"
         )
+
+
+def _simulated_faults(where: str, filmed: Content) -> Iterator[str]:
+    """Check keys of virtual devices and shakes that do not fit each other."""
+    for name, device in filmed.get("devices", {}).items():
+        for key in sorted(set(device) - {"kind", "subject", "rate_hz"}):
+            kind = "inertial" if key in OF_VIRTUAL_SUITS else "rgbd"
+            if device["kind"] != kind:
+                yield (
+                    f"{where}.devices.{name}.{key}: expected it of a device of the kind {kind} "
+                    f"only, found {device['kind']}; remove it"
+                )
+    for name, shake in filmed.get("shake", {}).items():
+        if ("knock_s" in shake) != (shake.get("knock_deg", 0) > 0):
+            yield (
+                f"{where}.shake.{name}: expected knock_s with a knock_deg above 0, or neither, "
+                f"found {shake}; state both"
+            )
 
 
 def unknown(where: str, names: Iterable[str], known: Collection[str]) -> list[str]:
