@@ -16,7 +16,7 @@ import tomli_w
 from numpy.typing import NDArray
 
 from courtside.exports import markers, opensim, trc
-from courtside.geometry import camera as camera_files
+from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints3D, unknown_errors
@@ -58,7 +58,7 @@ def write_project(
             raise ValueError(f"expected keypoints {shape} of camera {camera.name}")
     named = replace(points, joints=np.array(markers.names(list(points.joints))))
     with atomic_folder(folder) as made:
-        camera_files.write_toml(made / "calibration" / "Calib.toml", cameras, source=SOURCE)
+        camera_models.write_toml(made / "calibration" / "Calib.toml", cameras, source=SOURCE)
         for number, camera in enumerate(cameras, start=1):
             _write_2d(made / "pose", f"{camera.name}_{number:02d}", *views[camera.name])
         for person, name in enumerate(points.person_id):

@@ -10,9 +10,12 @@ from courtside.pose.detector import LandmarkNetwork, PersonDetector, Pose, Regio
 from courtside.pose.foreground import Box
 from courtside.records.keypoints import missing_reason
 
-# ASSUME: the foreground misses less than this of a body, and a track on it strays by less.
-SEARCH_MARGIN = 1.3  # the detector looks at the foreground box times this
-STRAY = 0.25  # a track whose middle leaves every foreground box by this share of the box strayed
+# The detector looks at the foreground box times this. ASSUME: what the box misses of a body lies
+# within.
+SEARCH_MARGIN = 1.3
+# ASSUME: joints of a tracked body have their middle within this share of the box's longer side
+# around it.
+STRAY = 0.25
 
 
 @dataclass(frozen=True)

@@ -75,7 +75,8 @@ class Drill:
         place, start = self._at(corner.place), self.time_s
         arrive = start + self._lasts(place)
         self.keys.append((start + 0.35 * (arrive - start), upper_body.RUN))
-        getattr(self, f"_{corner.stroke}")(arrive, place, heading)
+        play = {"net": self._net, "side": self._side, "overhead": self._overhead}
+        play[corner.stroke](arrive, place, heading)
         self._return()
 
     def finish(self, **options: Any) -> Motion:

@@ -48,8 +48,8 @@ class Settings:
     size_px : (int, int)
         Width and height of every video, even numbers.
     walk_frames : int
-        Frames of the walk's video, at least two: only those that the study samples are rendered. 0:
-        no walk.
+        Number of frames of the walk: at least two, or 0 for no walk. They are the grid from which
+        bridging images are taken; no others are rendered.
     walk_seed : int
         Of the walk, its camera, its noise, and the bystanders.
     speed_kmh : float
