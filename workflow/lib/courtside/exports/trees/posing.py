@@ -18,12 +18,12 @@ FEEBLE = 1e-6  # weight of a parent's turn: decides only what directions of bone
 Y_UP_FROM_Z = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
 
 
-def turned(posed: PosedHierarchy, rotation: NDArray = Y_UP_FROM_Z) -> PosedHierarchy:
-    """Return the same motion in other axes of the world; z up becomes y up by default."""
+def turned(posed: PosedHierarchy) -> PosedHierarchy:
+    """Return the same motion in other axes of the world: z up becomes y up."""
     root = posed.hierarchy.parents == NO_PARENT
     translation, turns = posed.translation.copy(), posed.parent_from_joint.copy()
-    translation[:, root] = translation[:, root] @ rotation.T
-    turns[:, root] = rotation @ turns[:, root]
+    translation[:, root] = translation[:, root] @ Y_UP_FROM_Z.T
+    turns[:, root] = Y_UP_FROM_Z @ turns[:, root]
     return replace(posed, translation=translation, parent_from_joint=turns)
 
 
@@ -66,7 +66,8 @@ def of_joints(time_s: NDArray, xyz: NDArray, skeleton: Skeleton) -> PosedHierarc
     """
     nodes = _tree(skeleton)
     parents = np.array([node.parent for node in nodes])
-    at, target = (np.array([node[2 + part] for node in nodes]) for part in (0, 1))
+    at = np.array([node.joint for node in nodes])
+    target = np.array([node.target for node in nodes])
     known = np.isfinite(xyz[:, at[0]]).all(axis=1)
     time_s, xyz = time_s[known], xyz[known]
     above = np.maximum(parents, 0)
