@@ -7,7 +7,6 @@ not trained on rotated persons; they are cut as mmpose and rtmlib do.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,31 +24,6 @@ BOX_OF_JOINTS = 1.25  # a person's box is the joints' extent times this, as in r
 CONFIDENT = 0.3  # joints below this score do not count for it, if others do
 ENOUGH = 4  # ASSUME: so many confident joints show a person's extent
 WIDTH_SHARE = 0.5  # ASSUME: width of an upright person, in heights, where only a circle is known
-
-
-class Maps(Protocol):
-    """The outputs of a network as arrays that can be averaged, and what they mean."""
-
-    @property
-    def ends_inside(self) -> bool:
-        """Whether the crop ends in the middle of the last pixel: see `Window`."""
-        ...
-
-    def read(self, network: Network, outputs: Sequence[NDArray]) -> list[NDArray]:
-        """Return the arrays of a network's outputs; an `InputError` for other shapes."""
-        ...
-
-    def mirror(self, arrays: Sequence[NDArray]) -> float:
-        """Return where to mirror the crop so that cells change places: see `Window.cut`."""
-        ...
-
-    def mirrored(self, arrays: Sequence[NDArray], pairs: Sequence[int]) -> list[NDArray]:
-        """Return the arrays with left and right exchanged."""
-        ...
-
-    def place(self, arrays: Sequence[NDArray]) -> tuple[NDArray, NDArray]:
-        """Return the joints (J, 2) as fractions of the crop's sides, and their scores (J,)."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -138,6 +112,10 @@ class SimCC:
         found = [peaks.lines(one) for one in arrays]
         fraction = [bins / one.shape[1] for (bins, _), one in zip(found, arrays, strict=True)]
         return np.stack(fraction, axis=1), np.clip(np.minimum(found[0][1], found[1][1]), 0, 1)
+
+
+# The outputs of a network as arrays that can be averaged, and what they mean.
+Maps = HeatMaps | SimCC
 
 
 def check_joints(path: StrPath, found: int, wanted: int) -> None:
