@@ -10,6 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from virtualgym.movement import easing
+
 
 @dataclass(frozen=True)
 class Errors:
@@ -204,13 +206,8 @@ def disturbance(rng: np.random.Generator, time_s: NDArray, sensors: int, errors:
         near = rng.random(sensors) < NEAR
         near[rng.integers(sensors)] = True
         size = np.radians(errors.disturbed_deg) * rng.standard_normal(sensors) * near
-        rise, fall = (_smooth((time_s - at) / JUMP_S) for at in (start, stop))
+        rise, fall = (easing.step((time_s - at) / JUMP_S) for at in (start, stop))
         left = LEFT_SHARE * fall * np.exp(-np.maximum(time_s - stop, 0) / LEFT_S)
         heading += (rise - fall + left)[:, None] * size
         start = stop + rng.exponential(errors.disturbed_every_s)
     return heading
-
-
-def _smooth(x: NDArray) -> NDArray:
-    x = np.clip(x, 0, 1)
-    return x * x * (3 - 2 * x)

@@ -19,8 +19,6 @@ from virtualgym.body.athlete import Athlete
 from virtualgym.rendering import rolling_shutter
 from virtualgym.session import click_model
 
-FULL_WIDTH_PX = 3840  # clicking errors are stated for pictures of this width
-
 
 def click_points(
     cameras: Iterable[Camera],
@@ -55,7 +53,7 @@ def click_points(
     clicks = {}
     for camera in cameras:
         error = bias + rng.standard_normal((len(points_xyz), 2)) * sigma_px_at_3840
-        error_px = error * camera.size[0] / FULL_WIDTH_PX
+        error_px = error * camera.size[0] / click_model.FULL_WIDTH_PX
         clicks[camera.name] = _clicked(camera, points_xyz, error_px)
     return clicks
 
@@ -201,7 +199,7 @@ def of_camera(
     clicks : list of (str, int, str, (2,) float)
         Camera, frame_idx, end, px; without those outside of the picture.
     """
-    per_px = cameras[0].size[0] / FULL_WIDTH_PX
+    per_px = cameras[0].size[0] / click_model.FULL_WIDTH_PX
     habit = rng.standard_normal(2) * preset.click_bias_px_at_3840
     holders = [athlete for athlete in athletes if athlete.has_racket]
     clicks = []
