@@ -26,6 +26,15 @@ def test_points_along_a_ray_are_seen_in_its_pixel(size):
         assert np.abs(xy - pixels(size)).max() < 1e-3
 
 
+def test_bands_are_the_whole_picture_in_parts(monkeypatch):
+    camera = small_hall.camera(size=(101, 57))
+    seen = rays.of_camera(camera, rays.grid(camera), None, 0.0)
+    monkeypatch.setattr(rays, "BAND_RAYS", 2000)
+    parts, directions = zip(*seen.bands(), strict=True)
+    assert len(parts) == 3 and parts[1] == slice(19 * 101, 38 * 101)
+    np.testing.assert_array_equal(np.concatenate(directions, axis=1), seen.of_band(0, 57)[0])
+
+
 def test_rays_beside_pixels_and_of_halved_pictures():
     camera = small_hall.camera()
     seen = rays.of_camera(camera, rays.grid(camera), None, 0.0)

@@ -219,7 +219,6 @@ class Recorder:
         return np.random.default_rng(seed)
 
 
-BAND_RAYS = 1 << 16  # per batch: fits the processor's cache
 NEAREST_M = 0.1  # nearer surfaces are left out
 FAR = 1 / NEAREST_M  # upper limit of inverse depth
 
@@ -236,10 +235,7 @@ def of_hall(renderer: Renderer, camera: Camera) -> NDArray:
     view = textured_quads.View(renderer.surfaces, seen.eye, seen.steps)
     width, height = camera.size
     depth_m = np.empty(height * width, np.float32)
-    rows = max(1, BAND_RAYS // width)
-    for start in range(0, height, rows):
-        direction, _ = seen.of_band(start, min(start + rows, height))
-        part = slice(start * width, start * width + direction.shape[1])
+    for part, direction in seen.bands():
         quad = renderer.surfaces.hit(seen.eye.astype(np.float32), np.ascontiguousarray(direction.T))
         away = view.distance(quad, direction, None)
         depth_m[part] = np.where(quad >= shading.FLOOR, away, np.inf)

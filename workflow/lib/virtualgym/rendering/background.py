@@ -22,7 +22,6 @@ SPEC = {
     "net_m": ("float", ("C", "H", "W")),
     "floor": ("bool", ("C", "H", "W")),
 }
-BAND_RAYS = 1 << 16  # per batch: fits the processor's cache
 NOTHING = np.float16(np.inf)
 
 
@@ -79,11 +78,8 @@ def look(renderer: "Renderer", camera: Camera, margin_px: int = 0) -> Backdrop:
     height, width = picture.shape[:2]
     solid, net = (np.full(height * width, NOTHING) for _ in range(2))
     floor = np.zeros(height * width, bool)
-    rows = max(1, BAND_RAYS // width)
-    for start in range(0, height, rows):
-        direction, _ = seen.of_band(start, min(start + rows, height))
-        part = slice(start * width, start * width + direction.shape[1])
-        origin = seen.eye.astype(np.float32)
+    origin = seen.eye.astype(np.float32)
+    for part, direction in seen.bands():
         quad = surfaces.hit(origin, np.ascontiguousarray(direction.T))
         floor[part] = quad == shading.FLOOR
         away = view.distance(quad, direction, None)

@@ -12,6 +12,7 @@ from courtside.geometry import rotations as transforms
 from courtside.geometry.camera import Camera
 from virtualgym.cameras import chebyshev, row_warp
 
+BAND_RAYS = 1 << 16  # per batch: fits the processor's cache
 NODES = 28  # per axis: the lens is smooth, so this interpolation is exact to 1e-9 px
 
 
@@ -79,6 +80,14 @@ class Rays:
         row = np.arange(start, stop)
         direction = _turn(self._turns(row)[..., None], x, y).reshape(3, -1)
         return direction, self._times(np.repeat(row, x.shape[1]))
+
+    def bands(self) -> Iterator[tuple[slice, NDArray]]:
+        """Yield parts of the flattened picture, of whole rows, and directions (3, n) of each."""
+        height, width = self.xy.shape[1:]
+        rows = max(1, BAND_RAYS // width)
+        for start in range(0, height, rows):
+            direction, _ = self.of_band(start, min(start + rows, height))
+            yield slice(start * width, start * width + direction.shape[1]), direction
 
     def near(
         self, pixel: NDArray, offsets: Sequence[tuple[float, float]] | NDArray = ((0.0, 0.0),)

@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 from virtualgym.hall import painted_lines
 from virtualgym.hall.hall import Scene
 from virtualgym.rendering import textured_quads
-from virtualgym.rendering.rays import Rays
+from virtualgym.rendering.rays import BAND_RAYS, Rays
 
-BAND_RAYS = 1 << 16  # per batch: fits the processor's cache
 # Rotated grid supersampling: four rays with distinct rows and columns.
 SUBPIXELS = np.array([[-0.375, -0.125], [0.125, -0.375], [0.375, 0.125], [-0.125, 0.375]])
 # ASSUME: gloss of a varnished wooden floor and cover of a net, chosen by eye; they change pictures
