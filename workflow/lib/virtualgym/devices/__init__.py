@@ -2,7 +2,7 @@
 
 - depth_camera: `DepthCamera`, `Recorder`, `of_hall`, `of_athletes`
 - depth_noise: `DepthErrors`, `Sensor`
-- realsense_writer: `Device`, `write`: recordings that the camera's own program reads
+- realsense_writer: `write`: recordings that the camera's own program reads
 - inertial_suit: `InertialSuit`, `record`, `Recording`
 - inertial_errors: `Errors`, `STRENGTHS`, `wandering`, `disturbance`
 - inertial_estimate: `guess`, `Turns`

@@ -3,7 +3,6 @@
 import itertools
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import lz4.frame  # comes with rosbags
@@ -31,15 +30,7 @@ PACKING = {
 }
 DEPTH, COLOUR = "/device_0/sensor_0/Depth_0", "/device_0/sensor_1/Color_0"
 
-
-@dataclass(frozen=True)
-class Device:
-    """What a recording says of its camera."""
-
-    model: str = "Intel RealSense D415"  # as the camera names itself
-    serial: str = "000000000000"
-    baseline_m: float = math.nan  # between the imagers that depth comes from; not written if NaN
-    rate_hz: int = 30  # nominal
+MODEL, SERIAL = "Intel RealSense D415", "000000000000"  # as a camera names itself
 
 
 def write(
@@ -50,14 +41,16 @@ def write(
     depth_unit_m: float,
     frames: Iterable[Frame],
     *,
-    device: Device | None = None,
+    baseline_m: float = math.nan,
+    rate_hz: int = 30,
 ) -> int:
     """Write colour and depth as a recording that `courtside` and the camera's own program read.
 
     The file appears under its name only when whole. `colour_from_depth` (3, 4) is in metres,
     `depth_unit_m` the metres of one step of depth. Frames are the time on the camera's clock in
     seconds, not before 0; colour (H, W, 3) as BGR; depth (h, w), 0 where there is none. None is a
-    lost frame: its number is missing. Return the number of frames.
+    lost frame: its number is missing. `baseline_m` is between the imagers that depth comes from,
+    not written if NaN; `rate_hz` is nominal. Return the number of frames.
 
     Raises
     ------
@@ -72,16 +65,15 @@ def write(
     first = next(frames, None)
     if first is None:
         raise ValueError(f"{path}: expected at least one frame, found none")
-    device = device or Device()
     with atomic(path) as temporary:
         writer = Writer(temporary)
         writer.set_compression(Writer.CompressionFormat.LZ4)
         writer.compressor = lambda chunk: lz4.frame.compress(chunk, **PACKING)
         with writer:
             messages = _Messages(writer)
-            _describe(messages, device, depth_unit_m)
-            _stream(messages, DEPTH, depth, "mono16", device.rate_hz, np.eye(3, 4))
-            _stream(messages, COLOUR, colour, "rgb8", device.rate_hz, colour_from_depth)
+            _describe(messages, baseline_m, depth_unit_m)
+            _stream(messages, DEPTH, depth, "mono16", rate_hz, np.eye(3, 4))
+            _stream(messages, COLOUR, colour, "rgb8", rate_hz, colour_from_depth)
             count = 0
             for count, frame in enumerate(itertools.chain([first], frames), start=1):
                 _frame(messages, count, frame, (colour, depth), first[0])
@@ -116,15 +108,14 @@ class _Messages:
         return self.make("std_msgs/msg/Header", seq=number, stamp=stamp, frame_id=frame)
 
 
-def _describe(messages: _Messages, device: Device, depth_unit_m: float) -> None:
+def _describe(messages: _Messages, baseline_m: float, depth_unit_m: float) -> None:
     messages.put("/file_version", "std_msgs/msg/UInt32", data=3)
-    about = {"Name": device.model, "Serial Number": device.serial}
-    messages.put_pairs("/device_0/info", about)
+    messages.put_pairs("/device_0/info", {"Name": MODEL, "Serial Number": SERIAL})
     messages.put_pairs("/device_0/sensor_0/info", {"Name": "Stereo Module"})
     messages.put_pairs("/device_0/sensor_1/info", {"Name": "RGB Camera"})
     options = {"Depth Units": (depth_unit_m, "Number of meters represented by a single depth unit")}
-    if np.isfinite(device.baseline_m):
-        baseline_mm = 1000 * device.baseline_m
+    if np.isfinite(baseline_m):
+        baseline_mm = 1000 * baseline_m
         options["Stereo Baseline"] = (baseline_mm, "Distance in mm between the stereo imagers")
     for name, (value, description) in options.items():
         topic = f"/device_0/sensor_0/option/{name}"

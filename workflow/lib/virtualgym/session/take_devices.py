@@ -148,7 +148,6 @@ def _write_bag(
     frames = call("frame", [(name, index, time_s) for index, time_s in enumerate(times_s)])
     own_s = np.arange(len(times_s)) / device.rate_hz
     shown = log.progress(zip(own_s, frames, strict=True), len(own_s), f"{name}: frames")
-    about = realsense_writer.Device(baseline_m=device.baseline_m, rate_hz=round(device.rate_hz))
     realsense_writer.write(
         path,
         colour,
@@ -156,7 +155,8 @@ def _write_bag(
         device.colour_from_depth,
         device.depth_unit_m,
         ((own, *pair) for own, pair in shown),
-        device=about,
+        baseline_m=device.baseline_m,
+        rate_hz=round(device.rate_hz),
     )
 
 
