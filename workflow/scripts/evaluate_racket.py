@@ -14,6 +14,7 @@ from courtside.records import tables
 from courtside.records.truth import session_truth
 from courtside.study.execution.script import run
 from virtualgym.session import clicks as clicking
+from virtualgym.session import rackets
 
 VIEWS = 2  # the paper's: the first two fixed cameras of a layout
 
@@ -30,15 +31,15 @@ def main(
         offset = repeat % len(records)
         ways = racket.calibrate(records[offset], views, court, marked, **options)
         of_run = {"seed": clicks["seed"], "run": repeat}
-        ends = clicking.swing_of_run(court, length_m, **of_run)
+        ends = rackets.swing_of_run(court, length_m, **of_run)
         below = ends[..., 2].mean(axis=1) < court.net["mid_height_m"]
         for sigma_px, again in product(tips_px, (False, True)):
             tip = {"sigma_px_at_3840": sigma_px, "again": again}
-            seen = clicking.click_racket(views, ends, **tip, **of_run)
+            seen = rackets.click_racket(views, ends, **tip, **of_run)
             about = {"offset": offset, "draw": repeat, "tip_sigma_px": sigma_px, "again": again}
             found = racket.rows(ways, seen, length_m, below)
             rows += [{**about, **row} for row in found]
-    lengths = racket.length_columns(clicking.FRAMES)
+    lengths = racket.length_columns(rackets.FRAMES)
     table = pd.DataFrame(rows).reindex(columns=[*about, *racket.COLUMNS, *lengths])
     tables.write(lengths_csv, table, labels)
 

@@ -23,7 +23,7 @@ from virtualgym.movement import catalogue
 from virtualgym.movement.player import Player
 from virtualgym.rendering import lamps, player_renderer
 from virtualgym.rendering.background import Backdrop
-from virtualgym.session import clicks, parallel, session, take_devices
+from virtualgym.session import parallel, rackets, session, take_devices
 
 PLAYER = {"body", "hand", "motion", "options"}
 BYSTANDING = "stroll"  # the motion of bystanders
@@ -309,7 +309,7 @@ def simulate_take(
             for name in call("film", films):
                 log.logger.info("%s: filmed", name)
     recorded = take_devices.record(take, settings, court, athletes, folder, threads=threads)
-    clicks.write(folder / "racket.csv", folder.name, _clicked(take, settings, cameras, athletes))
+    rackets.write(folder / "racket.csv", folder.name, _clicked(take, settings, cameras, athletes))
     truth = take_devices.of_take(take, cameras, athletes, recorded.truth)
     take_truth.write(folder / "truth.npz", truth)
     return recorded.inertial
@@ -328,7 +328,7 @@ def _clicked(
     for at, camera in cameras.items():
         shaken, times_s = take.shaking(camera, at), take.frame_times(camera.name)
         seen = [camera if shaken is None else shaken.camera_at(time_s) for time_s in times_s]
-        yield from clicks.of_camera(
+        yield from rackets.of_camera(
             list(athletes.values()), seen, times_s + take.start_s, _preset(settings, at), rng
         )
 
