@@ -34,11 +34,9 @@ def compare(given):
             places = measured["courtside"][1]
             least_s = (path.stat().st_size + places.nbytes) / machine.measured().bytes_s
             away = 1000 * np.linalg.norm(places - peer[1], axis=-1)
-            shared = (NAME,), ("frame", n_frames, times)
+            work = "frame", n_frames, times
             apart = {"error_median": np.median(away), "error_p95": np.percentile(away, 95)}
             apart["error_unit"] = "mm from bvhio's"
-            found.append(
-                rows.Row(*shared[0], rows.OURS, True, *shared[1], ours_s, least_s, **apart)
-            )
-            found.append(rows.Row(*shared[0], "bvhio", False, *shared[1], peer[0], least_s))
+            found.append(rows.Row(NAME, rows.OURS, True, *work, ours_s, least_s, **apart))
+            found.append(rows.Row(NAME, "bvhio", False, *work, peer[0], least_s))
     return found

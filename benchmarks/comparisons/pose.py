@@ -38,22 +38,13 @@ def compare(given):
             spent = np.min([seconds[mode] for seconds, _ in runs], axis=0)
             away = np.linalg.norm(runs[0][1][mode] - measured["mediapipe"][1][mode], axis=-1)
             apart = (np.nanmedian(away), np.nanpercentile(away, 95))
-            found += [
-                rows.Row(NAME, f"{side} {mode}", side == rows.OURS, "frame", n, n / FRAMES,
+            found += [  # a ratio is between rows of one comparison: of one mode
+                rows.Row(f"{NAME}, {mode}", side, side == rows.OURS, "frame", n, n / FRAMES,
                          spent[:n].sum(), limit_s=n * least_s,
                          **_error(apart if side == rows.OURS else None))
                 for n in (each * FRAMES for each in times) if n <= len(frames)
             ]  # fmt: skip
-    return _by_mode(found)
-
-
-def _by_mode(found):
-    """Return rows whose comparison names the mode: a ratio is between rows of one mode."""
-    return [
-        rows.Row(**{**vars(row), "comparison": f"{NAME}, {row.method.rsplit(' ', 1)[1]}",
-                    "method": row.method.rsplit(" ", 1)[0]})
-        for row in found
-    ]  # fmt: skip
+    return found
 
 
 def _sides(measured):
