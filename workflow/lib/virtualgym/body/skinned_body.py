@@ -13,7 +13,7 @@ from virtualgym.body import clothing, pose_bones, shapes
 from virtualgym.body.makehuman import Figure
 from virtualgym.body.pose_bones import Skeleton
 from virtualgym.body.shapes import Shape
-from virtualgym.body.stance import SIDES, Proportions, Stance
+from virtualgym.body.stance import SIDES, Proportions
 
 JOINTS = (
     *(f"{s}_{j}" for j in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle") for s in SIDES),
@@ -34,14 +34,6 @@ BONE_OF = {
 
 
 @dataclass(frozen=True, eq=False)
-class Posed:
-    """A body in a stance: vertices (V, 3) float32 and joints (J, 3) of JOINTS, world, metres."""
-
-    vertices: np.ndarray
-    joints: np.ndarray
-
-
-@dataclass(frozen=True, eq=False)
 class Body:
     """One person's body.
 
@@ -59,10 +51,8 @@ class Body:
     triangles : (F, 3) int32
     colours : (F, 3) uint8
         BGR.
-    weights : (V, B) float32
-        Skinning weights of `pose_bones.BONES`; rows sum to 1.
-    blend : (V, B) scipy.sparse.csr_matrix
-        The same; a sparse product runs on one thread.
+    blend : (V, B) scipy.sparse.csr_matrix of float32
+        Skinning weights of `pose_bones.BONES`; rows sum to 1. A sparse product runs on one thread.
     """
 
     shape: Shape
@@ -73,7 +63,6 @@ class Body:
     rest: np.ndarray
     triangles: np.ndarray
     colours: np.ndarray
-    weights: np.ndarray
     blend: sparse.csr_matrix
 
     @classmethod
@@ -112,18 +101,12 @@ class Body:
             rest=rest,
             triangles=figure.triangles,
             colours=colours,
-            weights=weights,
             blend=sparse.csr_matrix(weights),
         )
 
     def gripping(self, side: str | None) -> "Body":
         """Return this body with the fingers of one hand (or none) closed round a racket's grip."""
         return self if side == self.grip else Body.of(self.figure, self.shape, side)
-
-    def posed(self, stance: Stance) -> Posed:
-        """Put the body into a stance."""
-        bones = pose_bones.pose(self.skeleton, stance)
-        return Posed(self.skinned(bones), self.joints(bones))
 
     def skinned(self, bones: pose_bones.Posed) -> NDArray:
         """Return the vertices (V, 3) float32 of posed bones, by linear blend skinning."""

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
 FIELD_PX = 256  # size of the noise field beyond the picture's
@@ -33,10 +33,6 @@ class DepthErrors:
     edge_px: float
     edge_holes: float
     holes: float
-
-    def sigma_m(self, depth_m: ArrayLike) -> NDArray:
-        """Return the standard deviation of depth, z^2 s / (f b), metres."""
-        return np.asarray(depth_m) ** 2 * self.subpixel_px / self.focal_baseline
 
 
 class Sensor:

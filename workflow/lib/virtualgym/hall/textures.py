@@ -21,10 +21,11 @@ WINDOW_SPACING_M = 4.6
 WINDOW_SILL_M = 5.4
 LETTERS = list("ABCDEFGHKLMNPRSTUVXYZ0123456789")
 FONTS = (cv2.FONT_HERSHEY_SIMPLEX, cv2.FONT_HERSHEY_DUPLEX, cv2.FONT_HERSHEY_TRIPLEX)
+DECAY = 0.6  # of amplitudes of noise, from one scale to the next
 
 
 def multiscale_noise(
-    shape: tuple[int, int], cells: Sequence[int], rng: np.random.Generator, *, decay: float = 0.6
+    shape: tuple[int, int], cells: Sequence[int], rng: np.random.Generator
 ) -> NDArray:
     """Return smooth noise of several scales, (h, w) float32, mean about 0, std about 0.5.
 
@@ -34,11 +35,9 @@ def multiscale_noise(
         Height and width.
     cells : sequence of int
         Number of noise cells along the longer side, for each scale.
-    decay : float
-        Ratio of the amplitudes of one scale and the one before.
     """
     total = np.zeros(shape, np.float32)
-    weights = decay ** np.arange(len(cells))
+    weights = DECAY ** np.arange(len(cells))
     for count, weight in zip(cells, weights / weights.sum(), strict=True):
         size = [max(2, round(count * length / max(shape))) for length in shape]
         coarse = rng.standard_normal(size, dtype=np.float32)

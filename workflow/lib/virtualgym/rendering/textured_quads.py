@@ -53,7 +53,6 @@ class Surfaces:
         self.light = np.array([quad.light for quad in self.quads], np.float32)
         corners = np.stack([origin, origin + u, origin + u + v, origin + v], axis=1)
         triangles = corners[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3, 3).astype(np.float32)
-        self.corners = corners
         self._scene = EmbreeScene()
         self._mesh = TriangleMesh(self._scene, np.ascontiguousarray(triangles))
 
