@@ -52,7 +52,7 @@ def follow(
 ):
     """Return the `Track`, and the poses of people whom the background itself shows."""
     if not background:
-        return tracklets.alone(tracking.track_person(frames, *networks, **how)), []
+        return tracking.track_person(frames, *networks, **how), []
     empty = images.read(background)
     changed = foreground.Foreground(empty, min_difference)
     time_s, first = next(frames)

@@ -71,7 +71,7 @@ def follow(places, redetect=False):
 
 def test_the_detector_is_asked_once_while_the_track_holds():
     track, asked = follow([20, 30, 40, 50, 60])
-    np.testing.assert_allclose(track.xy[:, 0, 0], [39.5, 49.5, 59.5, 69.5, 79.5])
+    np.testing.assert_allclose(track.xy[0, :, 0, 0], [39.5, 49.5, 59.5, 69.5, 79.5])
     np.testing.assert_allclose(track.time_s, np.arange(5) / 30)
     assert asked == 1
 
@@ -79,9 +79,9 @@ def test_the_detector_is_asked_once_while_the_track_holds():
 def test_a_lost_person_is_searched_again():
     track, asked = follow([20, 30, 200, 210, None, None, 100])
     assert asked == 5
-    assert (track.reason[4:6] == missing_reason.UNSEEN).all()
-    assert np.isnan(track.xy[4:6]).all()
-    np.testing.assert_allclose(track.xy[[2, 3, 6], 0, 0], [219.5, 229.5, 119.5])
+    assert (track.reason[0, 4:6] == missing_reason.UNSEEN).all()
+    assert np.isnan(track.xy[0, 4:6]).all()
+    np.testing.assert_allclose(track.xy[0, [2, 3, 6], 0, 0], [219.5, 229.5, 119.5])
 
 
 def test_the_largest_person_is_followed():
@@ -98,7 +98,7 @@ def test_the_largest_person_is_followed():
     track = tracking.track_person(
         [(0.0, image)], Several(), Anybody(), min_presence=0.5, redetect=True
     )
-    np.testing.assert_allclose(track.xy[0, 0], [player.x, player.y])
+    np.testing.assert_allclose(track.xy[0, 0, 0], [player.x, player.y])
 
 
 def test_redetection_asks_in_every_frame():
@@ -108,13 +108,13 @@ def test_redetection_asks_in_every_frame():
 
 def test_joints_outside_the_picture_say_so():
     track, _ = follow([20])
-    assert track.reason[0].tolist() == [
+    assert track.reason[0, 0].tolist() == [
         missing_reason.OK,
         missing_reason.OK,
         missing_reason.OUT_OF_IMAGE,
     ]
-    assert np.isnan(track.xy[0, 2]).all()
-    assert np.isnan(track.score[0, 2])
+    assert np.isnan(track.xy[0, 0, 2]).all()
+    assert np.isnan(track.score[0, 0, 2])
 
 
 @pytest.mark.parametrize("finds", [True, False])

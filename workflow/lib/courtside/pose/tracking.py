@@ -20,14 +20,14 @@ STRAY = 0.25
 
 @dataclass(frozen=True)
 class Track:
-    """The joints of one person in every frame of one camera."""
+    """The joints of P persons in every frame of one camera."""
 
     time_s: NDArray  # (T,)
-    xy: NDArray  # (T, J, 2): pixels; NaN where nobody was found
-    score: NDArray  # (T, J)
-    reason: NDArray  # (T, J) uint8: `courtside.records.keypoints.missing_reason`
-    xyz_in_body: NDArray  # (T, J, 3): metres, see `courtside.pose.detector.Pose`
-    clothing: NDArray  # (T, 2, 3): L*a*b* of upper body and thighs; NaN where not looked at
+    xy: NDArray  # (P, T, J, 2): pixels; NaN where nobody was found
+    score: NDArray  # (P, T, J)
+    reason: NDArray  # (P, T, J) uint8: `courtside.records.keypoints.missing_reason`
+    xyz_in_body: NDArray  # (P, T, J, 3): metres, see `courtside.pose.detector.Pose`
+    clothing: NDArray  # (P, T, 2, 3): L*a*b* of upper body and thighs; NaN where not looked at
 
 
 def track_person(
@@ -38,7 +38,7 @@ def track_person(
     min_presence: float,
     redetect: bool,
 ) -> Track:
-    """Follow the person who fills most of each picture: a track with one row per frame.
+    """Follow the person who fills most of each picture: a track of one person.
 
     This is for a device that films one person from near. The detector sees the whole picture when
     there is no track.
@@ -63,8 +63,8 @@ def track_person(
         region = None if found is None else found.region
         times.append(time_s)
         rows.append(as_row(found, landmarks.n_joints, image.shape))
-    xy, score, reason, xyz = (np.stack(column) for column in zip(*rows, strict=True))
-    return Track(np.array(times), xy, score, reason, xyz, np.full((len(times), 2, 3), np.nan))
+    xy, score, reason, xyz = (np.stack(column)[None] for column in zip(*rows, strict=True))
+    return Track(np.array(times), xy, score, reason, xyz, np.full((1, len(times), 2, 3), np.nan))
 
 
 def _largest(

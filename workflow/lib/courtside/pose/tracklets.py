@@ -118,12 +118,6 @@ def track_people(
     return _stacked(np.array(times), found, landmarks.n_joints)
 
 
-def alone(track: Track) -> Track:
-    """Return the track of one person as that of `track_people`, with one row."""
-    time_s, *arrays = vars(track).values()
-    return Track(time_s, *(array[None] for array in arrays))
-
-
 def _stacked(
     time_s: NDArray, found: Sequence[dict[int, tuple[NDArray, ...]]], n_joints: int
 ) -> Track:
