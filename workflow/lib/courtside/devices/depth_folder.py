@@ -39,7 +39,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from courtside.devices.depth_recording import DEFAULT_UNIT_M, STANDING_STILL, DepthRecording
-from courtside.geometry import camera as cameras
+from courtside.geometry import camera as camera_models
 from courtside.geometry import camera_fields, rotations
 from courtside.records.cameras.frame_times import FrameTimes
 from courtside.study.errors import InputError, StrPath, reading
@@ -57,7 +57,7 @@ def read(path: StrPath, name: str = "rgbd") -> DepthRecording:
     """
     folder = Path(path)
     toml = folder / "cameras.toml"
-    found = {camera.name: camera for camera in cameras.read_toml(toml)}
+    found = {camera.name: camera for camera in camera_models.read_toml(toml)}
     if set(found) != {"colour", "depth"}:
         raise InputError(
             f"{toml}: expected cameras named colour and depth, found {sorted(found)}; rename them"
@@ -66,7 +66,7 @@ def read(path: StrPath, name: str = "rgbd") -> DepthRecording:
     film, pictures = _film(folder), _pictures(folder / "depth")
     colour_index, depth_index = _indices(folder, film, len(pictures))
     colour, depth = found["colour"], found["depth"]
-    cameras.check_size(colour, reader.probe(film).size, film)
+    camera_models.check_size(colour, reader.probe(film).size, film)
     back = rotations.invert(depth.cam_from_world)
     turn, shift = colour.cam_from_world[:, :3], colour.cam_from_world[:, 3]
     try:

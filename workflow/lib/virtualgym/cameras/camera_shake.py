@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from courtside.geometry import camera as cameras
+from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
 from virtualgym.cameras import chebyshev
 
@@ -113,7 +113,7 @@ class Warp:
         self.size = camera.size
         self.before = replace(before, cam_from_world=np.eye(3, 4))
         places = np.meshgrid(*(chebyshev.nodes(side, NODES) for side in camera.size))
-        seen = cameras.undistort(camera, np.stack(places, axis=-1))
+        seen = camera_models.undistort(camera, np.stack(places, axis=-1))
         self._seen = np.concatenate([seen, np.ones((NODES, NODES, 1))], axis=-1)
         self._across, self._down = (
             chebyshev.to_pixels(side, NODES).astype(np.float32) for side in camera.size
@@ -121,5 +121,5 @@ class Warp:
 
     def places(self, still_from_shaken: NDArray) -> NDArray:
         """Return the place (2, H, W) float32, px of the existing picture, that each pixel sees."""
-        xy = cameras.project(self.before, self._seen @ still_from_shaken.T).astype(np.float32)
+        xy = camera_models.project(self.before, self._seen @ still_from_shaken.T).astype(np.float32)
         return np.stack([self._down @ xy[..., axis] @ self._across.T for axis in (0, 1)])

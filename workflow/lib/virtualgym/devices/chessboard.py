@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.geometry import camera as cameras
+from courtside.geometry import camera as camera_models
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
 from courtside.video import reader
@@ -44,7 +44,7 @@ def poses(camera: Camera, n_boards: int, rng: np.random.Generator) -> NDArray:
     middle = np.append(corners_m()[:, :2].mean(axis=0), 0.0)
     while len(found) < n_boards:
         place = np.array(PLACES[len(found) % len(PLACES)]) + rng.uniform(-0.03, 0.03, 2)
-        ray = np.append(cameras.undistort(camera, place * camera.size), 1.0)
+        ray = np.append(camera_models.undistort(camera, place * camera.size), 1.0)
         wide = rng.uniform(0.3, 0.55)
         depth_m = (INNER_CORNERS[0] + 1) * SQUARE_M * camera.K[0, 0] / (wide * camera.size[0])
         turn = rng.uniform(-TILT_DEG, TILT_DEG, 3) * [1, 1, 0.4]
@@ -89,7 +89,7 @@ def picture(
     """
     left, top, right, bottom = _box(camera, cam_from_board)
     xy = np.stack(np.meshgrid(np.arange(left, right), np.arange(top, bottom)), axis=-1)
-    rays = cameras.undistort(camera, xy)
+    rays = camera_models.undistort(camera, xy)
     along_x, along_y = np.gradient(rays, axis=1), np.gradient(rays, axis=0)
     offsets = (np.arange(SUBSAMPLES) + 0.5) / SUBSAMPLES - 0.5
     shade, cover = np.zeros(rays.shape[:2]), np.zeros(rays.shape[:2])
@@ -156,8 +156,8 @@ def _outline_px(camera: Camera, cam_from_board: NDArray) -> NDArray:
     dense = np.concatenate(
         [np.linspace(a, b, 8) for a, b in zip(edges, np.roll(edges, -1, axis=0), strict=True)]
     )
-    seen = cameras.Camera("board", camera.size, camera.K, camera.dist, cam_from_board)
-    return cameras.project(seen, dense)
+    seen = camera_models.Camera("board", camera.size, camera.K, camera.dist, cam_from_board)
+    return camera_models.project(seen, dense)
 
 
 def _inside(camera: Camera, cam_from_board: NDArray) -> bool:

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 
-from courtside.geometry import camera as cameras
 from courtside.geometry import camera_fields
 from courtside.geometry.camera import Camera
 from courtside.records import npz
@@ -44,7 +43,7 @@ class Backdrop:
         Where the floor is seen.
     """
 
-    camera: cameras.Camera
+    camera: Camera
     margin_px: int
     picture: np.ndarray
     solid_m: np.ndarray
@@ -52,12 +51,12 @@ class Backdrop:
     floor: np.ndarray
 
     @property
-    def filmed(self) -> cameras.Camera:
+    def filmed(self) -> Camera:
         """The camera of the films: this one without the margin."""
         return widened(self.camera, -self.margin_px)
 
 
-def widened(camera: Camera, margin_px: int) -> cameras.Camera:
+def widened(camera: Camera, margin_px: int) -> Camera:
     """Return the camera of a picture that is larger (or smaller) on each side by whole px."""
     middle = np.zeros((3, 3))
     middle[:2, 2] = margin_px
@@ -101,7 +100,7 @@ def write(path: str | Path, backdrops: Sequence[Backdrop]) -> None:
     npz.write(path, FORM, SPEC, {"camera": [each.camera.name for each in backdrops], **arrays})
 
 
-def read(path: str | Path, filming: Iterable[cameras.Camera]) -> list[Backdrop]:
+def read(path: str | Path, filming: Iterable[Camera]) -> list[Backdrop]:
     """Return the backdrop of each camera, in order, from a file by `write`.
 
     Raises

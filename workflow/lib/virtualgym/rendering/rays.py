@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
-from courtside.geometry import camera as cameras
+from courtside.geometry import camera as camera_models
 from courtside.geometry import rotations as transforms
 from courtside.geometry.camera import Camera
 from virtualgym.cameras import chebyshev, row_warp
@@ -33,7 +33,7 @@ def grid(camera: Camera, row_warp_px: NDArray | None = None) -> NDArray:
     xy = np.stack(np.meshgrid(*(chebyshev.nodes(side, NODES) for side in camera.size)), axis=-1)
     if row_warp_px is not None:
         xy += np.moveaxis(row_warp.shifts(row_warp_px, xy[..., 1], camera.size[1]), 0, -1)
-    seen = cameras.undistort(camera, xy)
+    seen = camera_models.undistort(camera, xy)
     if not np.isfinite(seen).all():
         raise ValueError(
             f"camera {camera.name}: expected a lens that fills the picture, found {camera.dist}"

@@ -6,7 +6,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.geometry import camera as distortion
+from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
 from virtualgym.body import mesh
 from virtualgym.body.mesh import Mesh
@@ -184,7 +184,7 @@ def shown(camera: Camera, xyz: NDArray) -> NDArray:
         visible = (z > 0) & (np.hypot(*flat) < camera.fold_radius)
     if not visible.all():
         flat[:, ~visible] = np.nan
-    flat[:] = distortion.distort(camera.dist, flat.T).T
+    flat[:] = camera_models.distort(camera.dist, flat.T).T
     flat *= np.diag(camera.K)[:2, np.newaxis]
     flat += camera.K[:2, 2:]
     return seen

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration.court.court import Court
-from courtside.geometry import camera as projection
+from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
 from virtualgym.hall.painted_lines import NET_DEPTH_M
 from virtualgym.presets import Preset
@@ -56,10 +56,10 @@ def covariance(camera: Camera, xyz: NDArray, court: Court, preset: Preset) -> ND
         Its noise is that of the pictures.
     """
     along = _edges(camera, xyz)
-    xy = projection.project(camera, xyz)
+    xy = camera_models.project(camera, xyz)
     by_m = (
         np.stack(
-            [projection.project(camera, xyz + STEP_M * along[:, k]) - xy for k in (0, 1)], axis=1
+            [camera_models.project(camera, xyz + STEP_M * along[:, k]) - xy for k in (0, 1)], axis=1
         )
         / STEP_M
     )  # (P, 2 edges, 2): px for a metre along each edge
