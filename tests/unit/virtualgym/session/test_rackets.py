@@ -111,7 +111,9 @@ def fixed(layout="a", size=(1280, 720)):
 
 
 def click_swing(views, ends, *, sigma=0.7, again=False, seed=3, run=0):
-    return rackets.click_racket(views, ends, sigma_px_at_3840=sigma, again=again, seed=seed, run=run)
+    return rackets.click_racket(
+        views, ends, sigma_px_at_3840=sigma, again=again, seed=seed, run=run
+    )
 
 
 def test_the_racket_is_as_long_as_asked_in_every_frame():

@@ -89,8 +89,8 @@ def _check_size(
         raise InputError(
             f"{folder}: expected points within the {size[0]}x{size[1]} px {of}, found "
             f"{1 - within.mean():.0%} outside, up to ({xy[:, 0].max():.0f}, {xy[:, 1].max():.0f}); "
-            f"{how if video else 'declare `scale` or `crop_px` of the camera'}, or the folder of this "
-            "camera"
+            f"{how if video else 'declare `scale` or `crop_px` of the camera'}, or the "
+            "folder of this camera"
         )
 
 
