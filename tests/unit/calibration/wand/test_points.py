@@ -142,6 +142,8 @@ def test_a_wand_has_two_or_three_markers():
         (OURS.replace("cam_b", "cam_c"), {"markers": ["tip", "end"]}, "for camera right (cam_b)"),
         (OURS.replace("cam_", "no_"), {"markers": ["tip", "end"]}, "for camera left (cam_a)"),
         (OURS + "cam_a,3,tip,1,1\n", {"markers": ["tip", "end"]}, "expected one row for marker"),
+        (OURS, {"markers": ["tip", "ned"]}, "of tip, end, floor, found ned; correct `wand.mark"),
+        (OURS, {"markers": ["pit", "ned"]}, "found pit, ned; correct `wand.markers`"),
         (DLTDV8, {}, "expected the columns camera"),
         (OURS, {"program": "argus"}, "expected columns such as pt1_cam1_X or Track_1_cam_1_x"),
         (DLTDV8.replace("pt2_cam2_Y", "pt2_cam2_X"), {"program": "dltdv8"}, "each once"),

@@ -121,8 +121,7 @@ def _ours(path: StrPath, wand: Wand, names: Mapping[str, str], floor: Iterable[f
             f"{path}: expected one column frame or time_s, found {' and '.join(times) or 'none'}; "
             "keep the one that gives the time of each row"
         )
-    markers = wand.markers or tuple(dict.fromkeys(row["marker"] for _, row in rows))
-    _check_markers(path, wand, markers)
+    markers = _points(path, wand, (row["marker"] for _, row in rows))
     wanted = {theirs: name for name, theirs in names.items()}
     each: dict[str, dict[float, NDArray]] = {name: {} for name in names}
     for line, row in rows:
@@ -140,14 +139,6 @@ def _ours(path: StrPath, wand: Wand, names: Mapping[str, str], floor: Iterable[f
         xy[at] = [number(where, key, row[key]) for key in OURS[2:]]
     _check_cameras(path, names, [name for name, places in each.items() if places])
     return _at_frames(each) if times == ["frame"] else _at_times(each, floor)
-
-
-def _check_markers(path: StrPath, wand: Wand, found: Sequence[str]) -> None:
-    if len(found) != len(wand.along_m):
-        raise InputError(
-            f"{path}: expected {len(wand.along_m)} markers, found {', '.join(found)[:80]}; list "
-            "the wand's markers in their order along it in `wand.markers`"
-        )
 
 
 def _at_frames(each: Mapping[str, Mapping[float, NDArray]]) -> Seen:
@@ -201,7 +192,7 @@ def _theirs(path: StrPath, wand: Wand, sizes: Sequence[tuple[int, int]], program
     header = lines[0] if lines else []
     plain = bool(header) and all(_is_number(cell) for cell in header if cell)
     columns = _numbered(wand, len(sizes)) if plain else _named(path, header)
-    order = _points(path, wand, columns)
+    order = _points(path, wand, (point for point, _, _ in columns))
     if sorted({camera for _, camera, _ in columns}) != list(range(1, len(sizes) + 1)):
         raise InputError(
             f"{path}: expected columns of {len(sizes)} cameras, numbered from 1, found columns of "
@@ -248,11 +239,15 @@ def _numbered(wand: Wand, n_cameras: int) -> list[tuple[str, int, str]]:
     return [(f"pt{point}", camera, axis) for point, camera in each for axis in "xy"]
 
 
-def _points(path: StrPath, wand: Wand, columns: Iterable[tuple[str, int, str]]) -> list[str]:
-    """Return the names of the wand's markers in the order along the wand."""
-    points = list(dict.fromkeys(point for point, _, _ in columns))
+def _points(path: StrPath, wand: Wand, names: Iterable[str]) -> list[str]:
+    """Return the wand's markers in the order along it; `names` are those of the file's points."""
+    points = list(dict.fromkeys(names))
     order = list(wand.markers) or points
-    _check_markers(path, wand, order)
+    if len(order) != len(wand.along_m):
+        raise InputError(
+            f"{path}: expected {len(wand.along_m)} markers, found {', '.join(order)[:80]}; list "
+            "the wand's markers in their order along it in `wand.markers`"
+        )
     if missing := [name for name in order if name not in points]:
         raise InputError(
             f"{path}: expected markers of {', '.join(points)[:80]}, found {', '.join(missing)}; "
