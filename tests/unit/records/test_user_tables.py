@@ -18,6 +18,11 @@ def test_rows_have_their_lines_and_cells_without_blanks(tmp_path):
     assert rows == [(3, {"b": "1", "a": "x y"}), (5, {"b": "2", "a": "z"})]
 
 
+def test_lines_have_their_numbers_empty_ones_too(tmp_path):
+    path = written(tmp_path, "a, b\n\n,\n1\n")
+    assert user_tables.lines(path, "do") == [(1, ["a", "b"]), (2, []), (3, ["", ""]), (4, ["1"])]
+
+
 @pytest.mark.parametrize("header", ["a", "a,a,b", "a,b,d", ""])
 def test_other_columns_are_refused_with_those_that_may_be_there(tmp_path, header):
     with pytest.raises(InputError, match=r"own.csv: expected the columns a,b and perhaps c with"):

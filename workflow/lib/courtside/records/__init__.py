@@ -5,7 +5,7 @@ npz: `read`, `write`: arrays with stated keys, shapes and kinds; `read_record`,
 tables: `read`, `write`: CSV tables
 footwork: `Contacts`, `read_contacts`, `read_steps`, `read_events`: contact of the feet, stances
 study_table: `of_take`, `read`: all measures of all takes in one table
-user_tables: `table`, `known`, `number`: CSV tables that people write
+user_tables: `lines`, `table`, `known`, `number`: CSV tables that people write
 
 Folders: `keypoints` (skeletons, people), `cameras` (clicks, frames, footage), `devices` (motion,
 clocks), `truth` (of simulated sessions; for evaluation only).

@@ -8,6 +8,20 @@ from pathlib import Path
 from courtside.study.errors import InputError, StrPath, reading
 
 
+def lines(path: StrPath, advice: str) -> list[tuple[int, list[str]]]:
+    """Return (line number, cells) of every line of a CSV, cells stripped.
+
+    The `advice` says what to do with a file that cannot be read.
+    """
+    kinds = (OSError, UnicodeDecodeError, csv.Error)
+    with (
+        reading(path, "a readable CSV file", advice, kinds=kinds),
+        Path(path).open(newline="", encoding="utf-8-sig") as stream,
+    ):
+        cells = csv.reader(stream, strict=True)
+        return [(cells.line_num, [cell.strip() for cell in row]) for row in cells]
+
+
 def table(
     path: StrPath, columns: Sequence[str], more: Sequence[str] = ()
 ) -> list[tuple[int, dict[str, str]]]:
@@ -15,15 +29,8 @@ def table(
 
     The header has the `columns`, and perhaps `more`, in any order; an `InputError` otherwise.
     """
-    kinds = (OSError, UnicodeDecodeError, csv.Error)
-    with (
-        reading(path, "a readable CSV file", "save it again as CSV (UTF-8)", kinds=kinds),
-        Path(path).open(newline="", encoding="utf-8-sig") as stream,
-    ):
-        cells = csv.reader(stream, strict=True)
-        lines = [(cells.line_num, [cell.strip() for cell in row]) for row in cells]
-    lines = [(number, row) for number, row in lines if any(row)]
-    header = lines[0][1] if lines else []
+    rows = [one for one in lines(path, "save it again as CSV (UTF-8)") if any(one[1])]
+    header = rows[0][1] if rows else []
     known = {*columns, *more}
     if len(set(header)) < len(header) or not set(columns) <= set(header) <= known:
         perhaps = f" and perhaps {','.join(more)}" if more else ""
@@ -31,12 +38,12 @@ def table(
             f"{path}: expected the columns {','.join(columns)}{perhaps} with commas between, found "
             f"{','.join(header)[:80] or 'an empty file'}; correct the first line"
         )
-    for line, row in lines[1:]:
+    for line, row in rows[1:]:
         if len(row) != len(header):
             raise InputError(
                 f"{path}: line {line}: expected {len(header)} cells, found {len(row)}; correct it"
             )
-    return [(line, dict(zip(header, row, strict=True))) for line, row in lines[1:]]
+    return [(line, dict(zip(header, row, strict=True))) for line, row in rows[1:]]
 
 
 def known(where: str, what: str, name: str, names: Collection[str]) -> str:

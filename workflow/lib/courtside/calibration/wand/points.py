@@ -4,18 +4,16 @@ Rows of one frame show the wand in one position: frames of synchronised videos, 
 wand at rest. Files are in the format of the study, or of DLTdv, Argus and easyWand.
 """
 
-import csv
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.records.user_tables import number, table
-from courtside.study.errors import InputError, StrPath, reading
+from courtside.records.user_tables import lines, number, table
+from courtside.study.errors import InputError, StrPath
 
 OURS = ("camera", "marker", "x_px", "y_px")
 TIMES = ("frame", "time_s")  # one of them
@@ -180,16 +178,10 @@ def _between(own: NDArray, values: NDArray, times: NDArray) -> NDArray:
 
 def _theirs(path: StrPath, wand: Wand, sizes: Sequence[tuple[int, int]], program: str) -> NDArray:
     """Return px (C, F, M, 2) of an `xypts.csv`: a row per frame, columns by point and camera."""
-    kinds = (OSError, UnicodeDecodeError, csv.Error)
-    advice = "export it again as CSV (dense, not sparse)"
-    with (
-        reading(path, "a readable CSV file", advice, kinds=kinds),
-        Path(path).open(newline="", encoding="utf-8-sig") as stream,
-    ):
-        lines = [[cell.strip() for cell in row] for row in csv.reader(stream, strict=True)]
     # A row of empty cells is a frame in which nothing is seen, an empty line is none.
-    lines = [row for row in lines if len(row) > 1 or any(row)]
-    header = lines[0] if lines else []
+    each = lines(path, "export it again as CSV (dense, not sparse)")
+    rows = [(line, row) for line, row in each if len(row) > 1 or any(row)]
+    header = rows[0][1] if rows else []
     plain = bool(header) and all(_is_number(cell) for cell in header if cell)
     columns = _numbered(wand, len(sizes)) if plain else _named(path, header)
     order = _points(path, wand, (point for point, _, _ in columns))
@@ -199,7 +191,7 @@ def _theirs(path: StrPath, wand: Wand, sizes: Sequence[tuple[int, int]], program
             f"{len({camera for _, camera, _ in columns})}; the session must have the same cameras, "
             "in the order of `wand.cameras`"
         )
-    values = _values(path, lines[0 if plain else 1 :], len(columns), 1 if plain else 2)
+    values = _values(path, rows[0 if plain else 1 :], len(columns))
     xy = np.full((len(sizes), len(values), len(order), 2), np.nan)
     for column, (point, camera, axis) in enumerate(columns):
         if point in order:
@@ -256,11 +248,11 @@ def _points(path: StrPath, wand: Wand, names: Iterable[str]) -> list[str]:
     return order
 
 
-def _values(path: StrPath, rows: Sequence[Sequence[str]], width: int, first: int) -> NDArray:
-    """Return the numbers of the rows (F, K), NaN for empty cells."""
+def _values(path: StrPath, rows: Sequence[tuple[int, Sequence[str]]], width: int) -> NDArray:
+    """Return the numbers (F, K) of rows with their line numbers, NaN for empty cells."""
     found = np.full((len(rows), width), np.nan)
-    for at, row in enumerate(rows):
-        where = f"{path}: row {at + first}"
+    for at, (line, row) in enumerate(rows):
+        where = f"{path}: line {line}"
         if len(row) != width:
             raise InputError(f"{where}: expected {width} cells, found {len(row)}; correct it")
         for k, cell in enumerate(row):
