@@ -32,12 +32,14 @@ def test_the_floor_is_found_under_feet_from_any_axes():
     assert (x[1] - x[0])[0] > 0
 
 
-@pytest.mark.parametrize("hidden", [["ankle"], ["knee", "ankle"], ["hip", "knee", "elbow"]])
-def test_people_without_legs_tell_no_floor(hidden):
+@pytest.mark.parametrize(
+    "hidden", [["ankle"], ["knee", "ankle"], ["hip", "knee", "elbow"], ["shoulder"]]
+)
+def test_people_without_legs_or_trunk_tell_no_floor(hidden):
     joints = np.concatenate(WALK).copy()
     at = [k for k, name in enumerate(skeleton.JOINTS) if name.split("_")[1] in hidden]
     joints[:, at] = np.nan
-    with pytest.raises(InputError, match="expected hips, knees and ankles that two cameras see"):
+    with pytest.raises(InputError, match="hips, knees, ankles and shoulders .* in 20 frames"):
         world_frame.floor(joints, TRUE)
 
 

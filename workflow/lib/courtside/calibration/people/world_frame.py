@@ -29,7 +29,7 @@ TINY_STEP = 1e-6  # of a similarity, for numerical derivatives
 def floor(xyz: NDArray, cameras: Sequence[Camera], on_floor: NDArray | None = None) -> Sim3:
     """Return `world_from_cameras` for joints (T, J, 3) m of all persons, NaN where unknown.
 
-    Raises `InputError` if no ankles are known, or no legs or arms to tell the size of a person by.
+    Raises `InputError` if no ankles are known, or no legs or trunk to tell the size of a person by.
 
     The floor is the plane of the lowest ankles. If people stay in one place, it is perpendicular to
     the mean line from ankles to shoulders. Points `on_floor` (P, 3) replace its height, and its
@@ -40,8 +40,9 @@ def floor(xyz: NDArray, cameras: Sequence[Camera], on_floor: NDArray | None = No
     ankles = ankles[np.isfinite(ankles).all(axis=1)]
     if not len(ankles) or not np.isfinite(unit.length(xyz)):
         raise InputError(
-            "people: expected hips, knees and ankles that two cameras see, found none; film whole "
-            "bodies, with the feet in the picture"
+            "people: expected hips, knees, ankles and shoulders that two cameras see in "
+            f"{unit.LEAST_FRAMES} frames or more, found fewer; film whole bodies, with the feet in "
+            "the picture"
         )
     upward = rotations.unit(unit.middle(place, "shoulder") - unit.middle(place, "ankle"))
     up = rotations.unit(np.nanmedian(upward, axis=0))
