@@ -112,6 +112,11 @@ def test_a_take_of_somebody_without_height_tells_nothing(heights):
         unit.by_heights([body(1.7)], heights)
 
 
+def test_tracks_without_legs_or_trunk_are_not_counted():
+    with pytest.raises(InputError, match=r"found heights \[\[1.7\]\] for \[0\] usable tracks"):
+        unit.by_heights([body(np.nan)], [[1.7]])
+
+
 def clicked(noise_px=0.0, seed=0, length_m=2.0, cameras=(0, 1, 2, 3)):
     """Return the line as some of the cameras see it."""
     xy = LINE_XY + noise_px * np.random.default_rng(seed).normal(size=LINE_XY.shape)

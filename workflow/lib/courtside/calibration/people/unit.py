@@ -246,11 +246,12 @@ def by_heights(bodies: Sequence[Body], heights_m: Sequence[Sequence[float | None
     """
     takes = _takes(bodies, heights_m)
     if not takes:
+        usable = [one.take for one in bodies if np.isfinite(one.length)]
         raise InputError(
             "people: expected `height_m` of every subject of a take whose legs and trunks are "
             f"seen, found heights {[list(one) for one in heights_m]} for "
-            f"{[sum(one.take == take for one in bodies) for take in range(len(heights_m))]} "
-            "tracks, by take; state the heights, or `known_lengths`: nothing else defines the scale"
+            f"{[usable.count(take) for take in range(len(heights_m))]} usable tracks, by take; "
+            "state the heights, or `known_lengths`: nothing else defines the scale"
         )
     starts = np.unique(np.concatenate([take.ratio().ravel() for take in takes]).round(4))
     found = [_converged(takes, unit) for unit in starts[np.isfinite(starts)]]
