@@ -273,9 +273,7 @@ def test_a_calibration_in_another_unit_is_told(hall):
     assert "expected cameras 0.1 to 150 m apart, found 200 m" in hall.fault()
     hall.calibrate((320, 180), apart=1000)
     hall.content["calibration"]["unit"] = "mm"
-    assert "expected `unit` under calibration in the session file for a file that states none" in (
-        hall.fault()
-    )
+    assert "the file or its format states it, found 'mm'; remove it" in hall.fault()
 
 
 def test_what_the_check_accepts_the_import_makes(hall, monkeypatch):

@@ -28,9 +28,9 @@ from courtside.study.errors import InputError, StrPath, reading
 LARGEST_BYTES = 1 << 24  # ASSUME: far above any calibration: a larger file is another one
 APART_M = (0.1, 150.0)  # ASSUME: of the two cameras of a hall that are farthest apart
 UNIT_STATED = re.compile(r"(?m)^\s*<?[\"']?unit[\"']?\s*[=:>]")
-STATE_UNIT = (
-    "if its lengths are not metres, write `unit: mm` (or cm, in, ft) under calibration in the "
-    "session file"
+CORRECT_UNIT = (
+    "if its lengths have another unit, correct the one that the file states or, where it states "
+    "none, write `unit: mm` (or cm, in, ft) under calibration in the session file"
 )
 FARTHEST_M = 300.0  # ASSUME: no hall is larger: a camera farther away is in mm or cm
 OPENCV_SUFFIXES = (".yml", ".yaml", ".xml")
@@ -48,7 +48,9 @@ MUST_STATE = (
     "mm, cm, in, ft), with z up and the floor at z = 0; else scale it first"
 )
 
-Found = tuple[list[Camera], str | None]  # cameras, and their lengths' unit if it may be replaced
+# Cameras; the unit of their lengths that a session may replace: "" if the session must state it,
+# None where the file or its format states it.
+Found = tuple[list[Camera], str | None]
 
 
 def read(path: StrPath, unit: str | None = None) -> list[Camera]:
@@ -65,8 +67,8 @@ def read(path: StrPath, unit: str | None = None) -> list[Camera]:
     found, replaceable = _found(path)
     if unit is not None and replaceable is None:
         raise InputError(
-            f"{path}: expected `unit` under calibration in the session file for a file that states "
-            "none, found one in the file; remove one of the two"
+            f"{path}: expected no `unit` under calibration in the session file, because the file "
+            f"or its format states it, found {unit!r}; remove it from the session file"
         )
     if replaceable is not None:
         if not (unit or replaceable):
@@ -82,7 +84,7 @@ def read(path: StrPath, unit: str | None = None) -> list[Camera]:
         if far_m > FARTHEST_M:
             raise InputError(
                 f"{path}: camera {camera.name}: expected it within {FARTHEST_M:g} m of the world's "
-                f"origin, found {far_m:.0f} m; {STATE_UNIT}"
+                f"origin, found {far_m:.0f} m; {CORRECT_UNIT}"
             )
     return found
 
@@ -96,7 +98,7 @@ def check_apart(path: StrPath, cameras: Sequence[Camera]) -> None:
     if not APART_M[0] <= apart_m <= APART_M[1]:
         raise InputError(
             f"{path}: expected cameras {APART_M[0]:g} to {APART_M[1]:g} m apart, found "
-            f"{apart_m:.3g} m between the farthest; {STATE_UNIT}"
+            f"{apart_m:.3g} m between the farthest; {CORRECT_UNIT}"
         )
 
 
