@@ -140,7 +140,7 @@ def test_other_faults_are_one_line():
         start.lens("c0", SIZES["c0"], BOARD, replace(seen, **rows), 0)
     mixed = np.random.default_rng(1).permutation(len(BOARD.corners))[seen.corner]
     with pytest.raises(
-        InputError, match=r"board: expected corners that .* found \d+ %.*check `squares`"
+        InputError, match=r"board: .* on one plane, 6 or more .* found \d+ %.*check `squares`"
     ):
         adjustment.calibrate(
             BOARD, replace(seen, corner=mixed), SIZES, lenses={c.name: c for c in RIG}

@@ -53,7 +53,7 @@ def flat(board: Board, seen: Corners) -> NDArray:
     share = float(found.mean()) if len(found) else 0.0
     if share < FLAT_SHARE:
         raise InputError(
-            f"board: expected corners that lie on a plane with {FEWEST_CORNERS} others of their "
+            f"board: expected corners that lie on one plane, {FEWEST_CORNERS} or more in a "
             f"picture, found {100 * share:.0f} % of them; check `squares`, or {HOW}"
         )
     return found
