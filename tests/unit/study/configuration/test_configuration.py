@@ -433,6 +433,10 @@ def test_a_calibration_that_is_none_is_named(folder, name):
             ["chessboard.inner_corners.1", "at least 3"],
         ),
         (
+            {"cameras": {"side": {"chessboard": {"images": "b", "inner_corners": [5, 5]}}}},
+            ["cameras.side.chessboard.inner_corners: expected entries that differ", "5 again"],
+        ),
+        (
             {
                 "cameras": {
                     "side": {"chessboard": {"images": "b", "inner_corners": [7, 4], "square_m": 60}}

@@ -1,6 +1,6 @@
 """Calibrate a camera's lens from pictures of a chessboard, held in different places before it."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -29,7 +29,7 @@ class Boards:
 
     paths: tuple[Path, ...]
     xy: NDArray  # (B, columns * rows, 2): inner corners, px, row by row
-    size: tuple[int, int]  # width and height of the pictures, px; (0, 0) without any
+    size: tuple[int, int]  # width and height of the pictures, px
     inner_corners: tuple[int, int]  # columns and rows
     dropped: dict[Path, str]  # the other pictures, and why: unseen, misread or blurred
 
@@ -47,25 +47,20 @@ class Lens:
     dropped: dict[Path, str]  # the other pictures, and why: unseen, misread, blurred or off
 
 
-def find(pictures: str | Path | Iterable[StrPath], inner_corners: Sequence[int]) -> Boards:
+def find(folder: StrPath, inner_corners: Sequence[int]) -> Boards:
     """Find a chessboard in pictures of one camera, in the order of their file names.
 
     Uses OpenCV's sector-based detector (Duda & Frese 2018), which has sub-pixel accuracy. It
     sometimes returns wrong corners; these do not form a plane grid and are rejected. Raises
-    `InputError` if there are no pictures, one is unreadable, or their sizes differ. `pictures` is a
-    folder or files; `inner_corners` counts where four squares meet, along both sides of the board,
-    in either order.
+    `InputError` if there are no pictures, one is unreadable, or their sizes differ. `inner_corners`
+    counts where four squares meet, along both sides of the board, in either order: two different
+    numbers of 3 or more, as the schema of a session has them.
     """
     columns, rows = (int(count) for count in inner_corners)
-    if min(columns, rows) < 3 or columns == rows:
-        raise InputError(
-            f"inner_corners: expected two different counts of 3 or more, such as [7, 4], found "
-            f"{list(inner_corners)}; count where four squares meet"
-        )
     paths, found = [], []
     dropped: dict[Path, str] = {}
     size: tuple[int, int] | None = None
-    for path in _paths(pictures):
+    for path in pictures_of(folder):
         image = images.read(path, cv2.IMREAD_GRAYSCALE, advice="delete or replace it")
         size = same_size(path, image, size)
         xy, why = _corners(image, (columns, rows))
@@ -76,12 +71,6 @@ def find(pictures: str | Path | Iterable[StrPath], inner_corners: Sequence[int])
             found.append(xy)
     xy = np.array(found, dtype=float).reshape(-1, columns * rows, 2)
     return Boards(tuple(paths), xy, size or (0, 0), (columns, rows), dropped)
-
-
-def _paths(pictures: str | Path | Iterable[StrPath]) -> list[Path]:
-    if isinstance(pictures, (str, Path)):
-        return pictures_of(pictures)
-    return sorted(Path(path) for path in pictures)
 
 
 def pictures_of(folder: StrPath) -> list[Path]:
