@@ -3,10 +3,10 @@
 The rooms: boards, court, court_lines, bundle, planning, click_proposals, file_check, foreign,
 people, records, wand.
 
-file_formats: read, read_session, rename, known_lenses, with_principal_points: calibrations by other
-    programs
-chessboard: find, calibrate: a lens from pictures of a chessboard
+file_formats: read, read_session, rename, check_apart, known_lenses, with_principal_points:
+    calibrations by other programs
+chessboard: find, calibrate, pictures_of, same_size: a lens from pictures of a chessboard
 robust_poses: essential, relative, resected: poses of cameras by RANSAC
-point_covariance: point_covariance, sensitivity, of_columns, pseudo_inverse, mahalanobis, ellipsoid,
-    centre_sigma
+point_covariance: point_covariance, sensitivity, field, of_columns, pseudo_inverse, mahalanobis,
+    ellipsoid, centre_sigma
 """

@@ -1,9 +1,9 @@
 """Bundle adjustment of images, lenses and points, with clicked court points as control points.
 
-problem: Network, residuals, linearised, without_points, with_points
-solver: adjust, cost, normal_equations, mean, scaled, Quadratic, Normal
+problem: Network, see, residuals, linearised, without_points, with_points
+solver: adjust, cost, normal_equations, mean, total, scaled, Quadratic, Normal
 selection: thin, weigh, select, transform, add_control_points, marginalise, free_frame, cameras,
-    of_cameras
-variance_components: Factors, estimate, none
-walk_parts: split, centres, points, residual_spread
+    of_cameras, fixed_cameras, images_only, with_lens_priors, centres, residual_spread
+variance_components: Factors, estimate, none, shift_columns
+walk_parts: split, centres, views, points, residual_spread
 """

@@ -1,6 +1,7 @@
 """Cameras refined by the people that they film, or calibrated from people alone.
 
-views: `Seen`, `joined`, `placed`, `check`: joints at common times, blocks of time, bad input
+views: `Seen`, `joined`, `placed`, `check`, `longest_way`: joints at common times, blocks of time,
+    bad input
 prior: `stated`, `knowledge`: what is known of cameras before
 adjustment: `refine`, `Clicks`, `court_clicks`, `Limits`: cameras and joints adjusted together
 held_out: `score`, `verdicts`, `better`: whether cameras are better, by what the fit did not see
@@ -10,6 +11,6 @@ relative_poses: `pair`, `pose`: relative poses of cameras from tracks of unknown
 unit: `Body`, `KnownLength`, `of_clicks`, `find`, `combined`, `by_lengths`, `by_heights`: the unit
 world_frame: `floor`, `axes`, `of_shape`: the floor from feet or points, axes, covariance
 warnings: `find`: warnings about cameras from people alone
-from_nothing: `guess`, `adjust`, `rescaled`, `summary`: cameras from people alone
+from_nothing: `guess`, `adjust`, `check`, `rescaled`, `summary`: cameras from people alone
 refinement: `refine`, `unchanged`: which cameras are taken, what was wrong, the table
 """

@@ -67,7 +67,7 @@ def of_network(cameras: Sequence[str], covariance: NDArray) -> CameraCovariance:
 
 
 def write(path: StrPath, found: CameraCovariance) -> None:
-    """Write a `CameraCovariance`; a camera whose covariance is unknown has NaN."""
+    """Write a `CameraCovariance`."""
     arrays = {
         "camera": np.array(found.cameras, dtype=str),
         "parameter": np.array(PARAMETERS, dtype=str),
