@@ -112,7 +112,6 @@ def calibrate(
             replace(camera, cam_from_world=one.cam_from_world)
             for camera, one in zip(known, solved, strict=True)
         ]
-        solved = [replace(c, name=name) for c, name in zip(solved, seen.cameras, strict=True)]
     name = seen.pictures[posed.world]
     return Found(solved, covariance, name, sigma_px, factor, error_px)
 

@@ -127,10 +127,7 @@ def _check_ways(takes: Sequence[Take]) -> None:
 
 def _with_lenses(names, sizes, lenses: Mapping[str, Camera], share: float) -> list[Camera]:
     """Return cameras at the origin with their known lenses, the others with one focal length."""
-    each = {
-        name: lenses.get(name) or camera_models.plain(name, sizes[name], share) for name in names
-    }
-    return [replace(camera, name=name) for name, camera in each.items()]
+    return [lenses.get(name) or camera_models.plain(name, sizes[name], share) for name in names]
 
 
 def _scaled(camera: Camera, factor: float) -> Camera:

@@ -197,12 +197,12 @@ def _check_sync(seen: Seen, cameras: Sequence[Camera], xyz: NDArray) -> None:
 
 def _straight(cameras, lenses: Mapping[str, Camera], xy: NDArray) -> NDArray:
     """Return px (C, ...), without distortion for cameras with known lenses."""
-    return np.stack([
-        undistort(lens, px) * np.diag(lens.K)[:2] + lens.K[:2, 2]
-        if (lens := lenses.get(camera.name))
-        else px
-        for camera, px in zip(cameras, xy, strict=True)
-    ])  # fmt: skip
+    straight = []
+    for camera, px in zip(cameras, xy, strict=True):
+        if lens := lenses.get(camera.name):
+            px = undistort(lens, px) * np.diag(lens.K)[:2] + lens.K[:2, 2]
+        straight.append(px)
+    return np.stack(straight)
 
 
 def _state(
@@ -318,7 +318,7 @@ def _cameras(found: Adjusted, cameras, lenses) -> list[Camera]:
     names, sizes = [c.name for c in cameras], [c.size for c in cameras]
     solved = selection.cameras(found.state.network, names, sizes)
     return [
-        replace(lenses[one.name], name=one.name, cam_from_world=one.cam_from_world)
+        replace(lenses[one.name], cam_from_world=one.cam_from_world)
         if one.name in lenses
         else one
         for one in solved

@@ -131,7 +131,7 @@ def _check(seen: Seen, shared: NDArray) -> None:
 def _candidates(name: str, size: tuple[int, int], lenses: Mapping[str, Camera]) -> list[Camera]:
     """Return a camera at the origin with its known lens, or one for each focal length to try."""
     if name in lenses:
-        return [replace(lenses[name], name=name, cam_from_world=np.eye(3, 4))]
+        return [replace(lenses[name], cam_from_world=np.eye(3, 4))]
     return [camera_models.plain(name, size, share) for share in FOCAL_SHARES]
 
 
