@@ -94,8 +94,8 @@ def guess(
             fault = error
             continue
         tried += [(_explained(posed, takes, tracks), posed, tracks) for posed, tracks in ways]
-    if not tried:
-        raise fault or InputError("people: expected cameras, found none")
+    if fault and not tried:
+        raise fault
     _, cameras, tracks = max(tried, key=lambda one: one[0])
     joints = [_placed(cameras, takes, track) for track in tracks]
     bodies = [_body(track, xyz) for track, xyz in zip(tracks, joints, strict=True)]

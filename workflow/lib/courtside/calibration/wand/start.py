@@ -65,15 +65,14 @@ def guess(
     shared = _shared(seen)
     _check(seen, shared)
     cameras = [_candidates(name, sizes[name], lenses) for name in seen.cameras]
-    best: _Placed | None = None
+    tried = []
     for first in _first(wand, seen, cameras, shared):
-        found = _completed(first, seen, cameras)
-        if best is None or found.agreeing > best.agreeing:
-            best = found
-        if best.agreeing >= ENOUGH:
+        tried.append(_completed(first, seen, cameras))
+        if tried[-1].agreeing >= ENOUGH:
             break
-    if best is None or best.fault:
-        raise InputError(best.fault if best else "wand: expected cameras, found none")
+    best = max(tried, key=lambda one: one.agreeing)
+    if best.fault:
+        raise InputError(best.fault)
     return [best.cameras[name] for name in seen.cameras]
 
 
