@@ -142,13 +142,11 @@ def _minimised(state: State, columns: NDArray) -> State:
     """Return the state at the minimum of the cost, by the method of Levenberg and Marquardt."""
     damping, cost = 1e-4, _cost(state)
     for _ in range(STEPS):
-        normal = _normal(state, columns, damping)
-        moved = _moved(state, columns, normal, damping)
+        moved = _moved(state, columns, damping)
         trial = _cost(moved)
         while not trial <= cost and damping < 1e6:
             damping *= 10
-            normal = _normal(state, columns, damping)
-            moved = _moved(state, columns, normal, damping)
+            moved = _moved(state, columns, damping)
             trial = _cost(moved)
         if not trial <= cost:
             break
@@ -263,8 +261,9 @@ def _of_bodies(
     return own, np.linalg.inv(square)
 
 
-def _moved(state: State, columns: NDArray, normal: _Normal, damping: float) -> State:
+def _moved(state: State, columns: NDArray, damping: float) -> State:
     """Return the state after a damped step."""
+    normal = _normal(state, columns, damping)
     damped = normal.information + damping * np.diag(np.diag(normal.information) + 1e-12)
     part = -np.linalg.solve(damped, normal.gradient)
     step = np.zeros(len(columns))
