@@ -87,8 +87,7 @@ def calibrate(
     _check_sync(seen, cameras, xyz)
     if clicks is not None:
         marked = clicks(cameras)
-        named = dict(zip(seen.cameras, marked.xy, strict=True))
-        moved = world.of_clicks(cameras, marked.xyz, named)
+        moved = world.of_clicks(cameras, marked.xyz, marked.xy)
         cameras = [moved.camera(camera) for camera in cameras]
         marked = clicks(cameras)  # their variances depend on where the cameras are
         state = _with_clicks(_state(wand, seen, cameras, lenses), cameras, lenses, marked)

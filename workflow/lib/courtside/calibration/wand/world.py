@@ -1,6 +1,6 @@
 """The world frame of cameras from a wand: of the floor, of clicked points, or of the cameras."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import cv2
@@ -67,19 +67,19 @@ def of_cameras(xyz: NDArray, cameras: Sequence[Camera]) -> Sim3:
     return Sim3(1.0, turn, -np.nanmedian(xyz.reshape(-1, 3) @ turn.T, axis=0))
 
 
-def of_clicks(cameras: Sequence[Camera], points: NDArray, clicks: Mapping[str, NDArray]) -> Sim3:
-    """Return `world_from_cameras` from points (P, 3) m and their clicks (P, 2) px by camera.
+def of_clicks(cameras: Sequence[Camera], points: NDArray, xy: NDArray) -> Sim3:
+    """Return `world_from_cameras` from points (P, 3) m and their clicks (C, P, 2) px.
 
     Raises `InputError` if too few points are clicked, or only the mirror image of the cameras fits.
     """
-    found = _best(cameras, points, clicks)
+    found = _best(cameras, points, xy)
     if found is None:
         raise InputError(
             f"wand: expected {FEWEST_CLICKS} clicked points or more in one camera, found fewer; "
             "click more, or remove `court_points` and set `wand.floor`"
         )
     off, world = found
-    other = _best([_flipped(camera) for camera in cameras], points, clicks)
+    other = _best([_flipped(camera) for camera in cameras], points, xy)
     if other is not None and off > MIRRORED * max(1.0, other[0]):
         raise InputError(
             "wand: expected clicked points that fit the cameras from the wand, found points that "
@@ -96,16 +96,15 @@ def of_clicks(cameras: Sequence[Camera], points: NDArray, clicks: Mapping[str, N
     return world
 
 
-def _best(cameras, points: NDArray, clicks) -> tuple[float, Sim3] | None:
+def _best(cameras, points: NDArray, xy: NDArray) -> tuple[float, Sim3] | None:
     """Return the median error of clicks, px, and the world frame with the least error, or None."""
-    tried = [(_error(world, cameras, points, clicks), world)
-             for world in _worlds(cameras, points, clicks)]  # fmt: skip
+    worlds = _worlds(cameras, points, xy)
+    tried = [(_error(world, cameras, points, xy), world) for world in worlds]
     return min(tried, key=lambda one: one[0], default=None)
 
 
-def _worlds(cameras, points: NDArray, clicks) -> Iterator[Sim3]:
+def _worlds(cameras, points: NDArray, xy: NDArray) -> Iterator[Sim3]:
     """Yield world frames from the clicks of each camera alone, and from triangulated points."""
-    xy = np.stack([clicks[camera.name] for camera in cameras])
     for camera, px in zip(cameras, xy, strict=True):
         at = np.isfinite(px).all(axis=1)
         if at.sum() < FEWEST_CLICKS:
@@ -124,14 +123,11 @@ def _worlds(cameras, points: NDArray, clicks) -> Iterator[Sim3]:
         yield similarity.rigid(placed[seen], points[seen])
 
 
-def _error(world: Sim3, cameras, points: NDArray, clicks) -> float:
+def _error(world: Sim3, cameras, points: NDArray, xy: NDArray) -> float:
     """Return the median error of clicks, px; inf if most points are behind the cameras."""
-    off = [
-        np.linalg.norm(project(world.camera(camera), points) - clicks[camera.name], axis=1)
-        for camera in cameras
-    ]
-    clicked = np.concatenate([np.isfinite(clicks[camera.name][:, 0]) for camera in cameras])
-    return float(np.median(np.nan_to_num(np.concatenate(off)[clicked], nan=np.inf)))
+    off = np.stack([project(world.camera(camera), points) for camera in cameras]) - xy
+    off_px = np.linalg.norm(off, axis=-1)[np.isfinite(xy[..., 0])]
+    return float(np.median(np.nan_to_num(off_px, nan=np.inf)))
 
 
 def _flipped(camera: Camera) -> Camera:
