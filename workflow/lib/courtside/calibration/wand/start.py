@@ -11,6 +11,7 @@ from itertools import combinations, product
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
 
 from courtside.calibration import robust_poses
 from courtside.calibration.wand.points import Seen, Wand
@@ -111,17 +112,12 @@ def _shared(seen: Seen) -> NDArray:
 def _check(seen: Seen, shared: NDArray) -> None:
     """Raise an `InputError` if a group of cameras has too few frames in common with the others."""
     names = seen.cameras
-    inside = {0}
-    while (
-        more := {int(c) for at in inside for c in np.flatnonzero(shared[at] >= FEWEST_FRAMES)}
-        - inside
-    ):
-        inside |= more
-    outside = [c for c in range(len(names)) if c not in inside]
-    if outside:
-        most = shared[np.ix_(sorted(inside), outside)].max()
+    _, group = connected_components(shared >= FEWEST_FRAMES, directed=False)
+    inside, outside = np.flatnonzero(group == group[0]), np.flatnonzero(group != group[0])
+    if len(outside):
+        most = shared[np.ix_(inside, outside)].max()
         raise InputError(
-            f"wand: cameras {', '.join(names[c] for c in sorted(inside))} and "
+            f"wand: cameras {', '.join(names[c] for c in inside)} and "
             f"{', '.join(names[c] for c in outside)}: expected {FEWEST_FRAMES} frames or more in "
             f"which a camera of each group sees two markers, found {most}; {HOW}"
         )
