@@ -7,9 +7,8 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
-from courtside.geometry import camera as camera_models
 from courtside.geometry import rotations
-from courtside.geometry.camera import Camera, project
+from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError
 
 # ASSUME: how far a person who walks strays from the path (along x, y, z) and misses the aim, m, and
@@ -33,11 +32,8 @@ def camera(
     """Return a planned camera at a place (3,) m: no distortion, principal point in the middle.
 
     Either its focal length or its field of view across the width is given; `roll` turns it about
-    its own axis, rad. Raises `ValueError` if none or both of focal length and field of view are
-    given, `InputError` if it looks straight up or down, or nowhere.
+    its own axis, rad. Raises `InputError` if it looks straight up or down, or nowhere.
     """
-    if (focal_px is None) == (fov_deg is None):
-        raise ValueError("expected one of focal_px and fov_deg")
     width, height = size_px
     if fov_deg is not None:
         focal_px = width / 2 / np.tan(np.radians(fov_deg) / 2)
@@ -55,13 +51,6 @@ def camera(
     rotation = rotations.rotation_from_rodrigues([0, 0, roll]) @ upright
     pose = np.column_stack([rotation, -rotation @ np.asarray(place_m, dtype=float)])
     return Camera(name, (int(width), int(height)), K, np.zeros(5), pose)
-
-
-def in_picture(camera: Camera, xyz: NDArray) -> tuple[NDArray, NDArray]:
-    """Return where a camera sees points (N, 3), px, and which are in its picture, (N,) bool."""
-    with np.errstate(invalid="ignore"):
-        xy = project(camera, xyz)
-    return xy, camera_models.in_picture(camera, xy)
 
 
 def places_on_path(points_m: ArrayLike, n_places: int, height_m: float) -> NDArray:
@@ -116,17 +105,6 @@ def walked_cameras(
     ]
 
 
-def neighbour_angles_deg(centres: ArrayLike, point: ArrayLike) -> NDArray:
-    """Return the angles (V - 1,) between neighbouring views, 0 to 180, as seen from a point (3,).
-
-    Optical centres (V, 3) are in order along the path, fixed cameras included; angles beside one
-    that is NaN are NaN.
-    """
-    ray = np.asarray(centres, dtype=float) - np.asarray(point, dtype=float)
-    cross = np.linalg.norm(np.cross(ray[:-1], ray[1:]), axis=1)
-    return np.degrees(np.arctan2(cross, np.sum(ray[:-1] * ray[1:], axis=1)))
-
-
 def path_order(centres: NDArray, fixed: NDArray) -> NDArray:
     """Return the order (V,) int in which a walk passes all images.
 
@@ -143,9 +121,11 @@ def path_order(centres: NDArray, fixed: NDArray) -> NDArray:
 
 
 def path_angles_deg(fixed: NDArray, centres: NDArray, point: ArrayLike) -> NDArray:
-    """Return `neighbour_angles_deg` with fixed cameras put where the walk passes them.
+    """Return the angles (V - 1,) between neighbouring views, 0 to 180, as seen from a point (3,).
 
-    `fixed` (V,) bool tells which images are of fixed cameras.
+    Views have optical centres (V, 3) and are in their `path_order`; `fixed` (V,) bool tells which
+    are of fixed cameras. Angles beside a centre that is NaN are NaN.
     """
-    order = path_order(centres, fixed)
-    return neighbour_angles_deg(centres[order], point)
+    ray = centres[path_order(centres, fixed)] - np.asarray(point, dtype=float)
+    cross = np.linalg.norm(np.cross(ray[:-1], ray[1:]), axis=1)
+    return np.degrees(np.arctan2(cross, np.sum(ray[:-1] * ray[1:], axis=1)))

@@ -13,7 +13,7 @@ from courtside.calibration.bundle.problem import IMAGE, Network
 from courtside.calibration.court import joint_adjustment, quality
 from courtside.calibration.court.court import Court
 from courtside.calibration.planning import cameras, tie_points
-from courtside.geometry.camera import Camera
+from courtside.geometry.camera import Camera, in_picture, project
 from courtside.study.errors import InputError
 
 QUANTILES = (0.05, 0.5, 0.95)
@@ -55,10 +55,10 @@ def predict(
     """Predict the error over the court with planned fixed cameras and bridging images.
 
     Without any image of a walk the cameras rest on clicked court points, and on what fixed cameras
-    that stand near one another see alike. The hall and lenses
-    are as for `tie_points.network`, `images_per_part` as for `walk_parts.split`; `tie_sigma` is the
-    weight of ties in units of their noise, as after a session; `thinning` are arguments of
-    `selection.thin`, `**clicking` sigma, bias and loss of clicks in `joint_adjustment.solve`.
+    that stand near one another see alike. The hall and lenses are as for `tie_points.network`,
+    `images_per_part` as for `walk_parts.split`; `tie_sigma` is the weight of ties in units of their
+    noise, as after a session; `thinning` are arguments of `selection.thin`, `**clicking` sigma, bias
+    and loss of clicks in `joint_adjustment.solve`.
     """
     rng = np.random.default_rng([seed, len(walked)])
     ties = tie_points.network(fixed, walked, hall_m, texture, lens_prior, rng)
@@ -123,8 +123,8 @@ def clicks(fixed: Sequence[Camera], court: Court) -> dict[str, NDArray]:
     """Return where each camera sees the court's points, (P, 2) px; NaN outside its picture."""
     seen = {}
     for each in fixed:
-        xy, inside = cameras.in_picture(each, court.xyz)
-        seen[each.name] = np.where(inside[:, None], xy, np.nan)
+        xy = project(each, court.xyz)
+        seen[each.name] = np.where(in_picture(each, xy)[:, None], xy, np.nan)
     return seen
 
 

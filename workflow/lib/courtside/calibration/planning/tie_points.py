@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from courtside.calibration.bundle import problem, selection
 from courtside.calibration.bundle.problem import Network
 from courtside.calibration.planning import cameras
-from courtside.geometry.camera import Camera
+from courtside.geometry.camera import Camera, in_picture, project
 
 CHUNK = 4000  # points tried at once, which bounds the memory
 WIDTH_PX = 1280  # of the pictures in which textures were measured
@@ -139,7 +139,7 @@ def _alive(angle_deg: NDArray, texture: Texture, rng: np.random.Generator) -> ND
 
 def _in_view(camera: Camera, xyz: NDArray) -> NDArray:
     away_m = np.linalg.norm(xyz - camera.centre_in_world, axis=1)
-    return cameras.in_picture(camera, xyz)[1] & (away_m > NEAREST_M)
+    return in_picture(camera, project(camera, xyz)) & (away_m > NEAREST_M)
 
 
 def _network_of(images, n_fixed, xyz, seen, lens_prior) -> Network:
