@@ -61,23 +61,20 @@ def refine(
     views.check(cameras, seen, limits.score)
     wrong, mended = _mended(cameras, calibrated, seen, found_again)
     knowledge = prior.knowledge(mended, known)
-    clicks = points.court if points.fitted else None
-    last: list[adjustment.Refined] = []
 
-    def fit(part: Seen, some: adjustment.Clicks | None) -> list[Camera]:
-        last.append(adjustment.refine(mended, part, knowledge, limits, some))
-        return last[-1].cameras
+    def fit(part: Seen, some: adjustment.Clicks | None) -> adjustment.Refined:
+        return adjustment.refine(mended, part, knowledge, limits, some)
 
     scores = {"base": held_out.score(lambda *_: cameras, seen, points, limits)}
     if wrong:
         scores["mended"] = held_out.score(lambda *_: mended, seen, points, limits)
-    scores["refined"] = held_out.score(fit, seen, points, limits)
-    refined = fit(seen, clicks)
-    ways = {"base": list(cameras), "mended": mended, "refined": refined}
-    taken, verdicts = _judged(scores, seen, last[-1].alike, found_again is not None)
-    spread = camera_covariance.of_network([c.name for c in cameras], last[-1].covariance)
+    scores["refined"] = held_out.score(lambda *part: fit(*part).cameras, seen, points, limits)
+    refined = fit(seen, points.court if points.fitted else None)
+    ways = {"base": list(cameras), "mended": mended, "refined": refined.cameras}
+    taken, verdicts = _judged(scores, seen, refined.alike, found_again is not None)
+    spread = camera_covariance.of_network([c.name for c in cameras], refined.covariance)
     table = pd.concat([_measures(cameras, scores), _numbers(ways, spread)])
-    wrong = [*wrong, *_named(mended, refined, known)] if taken == "refined" else wrong
+    wrong = [*wrong, *_named(mended, refined.cameras, known)] if taken == "refined" else wrong
     line = _line(taken, verdicts)
     return Found(
         ways[taken], spread if taken == "refined" else known, taken, line, verdicts, wrong, table
