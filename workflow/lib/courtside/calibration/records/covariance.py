@@ -53,11 +53,10 @@ class CameraCovariance:
 
 def columns(n_cameras: int) -> NDArray:
     """Return the indices of the cameras' parameters among their network's columns, (14 C,) int."""
-    places = []
-    for at in range(n_cameras):
-        places.append(IMAGE * at + np.arange(IMAGE - len(FLEX)))
-        places.append(IMAGE * n_cameras + len(LENS) * at + np.arange(len(LENS)))
-    return np.concatenate(places) if places else np.zeros(0, dtype=int)
+    at = np.arange(n_cameras)[:, None]
+    poses = IMAGE * at + np.arange(IMAGE - len(FLEX))
+    lenses = IMAGE * n_cameras + len(LENS) * at + np.arange(len(LENS))
+    return np.concatenate([poses, lenses], axis=1).ravel()
 
 
 def of_network(cameras: Sequence[str], covariance: NDArray) -> CameraCovariance:
