@@ -102,11 +102,9 @@ def _constraints(ties: Network, fixed: NDArray) -> solver.Quadratic:
         return selection.marginalise(ties, fixed)
     # Without ties: of the lenses only.
     alone = selection.images_only(ties, fixed)
-    information = np.zeros((alone.n_columns, alone.n_columns))
-    lens = information.shape[0] - ties.lens_sigma[: len(fixed)].size
-    sigma = ties.lens_sigma[ties.lens_of_image[list(fixed)]].ravel()
-    information[range(lens, len(information)), range(lens, len(information))] = sigma**-2.0
-    return solver.Quadratic(alone, information, np.zeros(len(information)))
+    of_lenses = ties.lens_sigma[ties.lens_of_image[fixed]].ravel() ** -2.0
+    information = np.append(np.zeros(alone.n_columns - len(of_lenses)), of_lenses)
+    return solver.Quadratic(alone, np.diag(information), np.zeros(alone.n_columns))
 
 
 def widest_angle_deg(fixed: Sequence[Camera], walked: Sequence[Camera], court: Court) -> float:
