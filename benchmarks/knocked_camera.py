@@ -45,7 +45,7 @@ def knocked(camera, seen, at, time_s, turn):
 
 def error_mm(cameras, seen, truth):
     """Return the median error of limb joints placed by the cameras, mm."""
-    xyz = views.placed(cameras, seen, LIMITS.score, LIMITS.limit, LIMITS.fade).xyz
+    xyz = views.placed(cameras, seen, LIMITS).xyz
     named = [list(truth.joints).index(name) for name in skeleton.JOINTS]
     true = interpolation.linear(truth.time_s, truth.xyz[0][:, named], seen.time_s)
     off = np.linalg.norm(xyz.reshape(true.shape) - true, axis=-1)

@@ -127,7 +127,7 @@ def main():
         return list(ways.against_truth(cameras, real, court).values())
 
     def measure(of, cameras, height_m):
-        placed = views.placed(cameras, seen, LIMITS.score, LIMITS.limit, LIMITS.fade)
+        placed = views.placed(cameras, seen, LIMITS)
         xyz = placed.xyz.reshape(len(seen.track), -1, 3)
         plane = floor(xyz)
         numbers = [*errors_cm(cameras), *variation(xyz, seen.track)]

@@ -5,7 +5,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
-from courtside.calibration.people.adjustment import Limits
+from courtside.calibration.people.views import Limits
 from courtside.reconstruction import common_views
 from courtside.study.configuration import yaml_files
 

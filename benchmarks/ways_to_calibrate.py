@@ -218,7 +218,7 @@ def of_board(one, seed):
 
 def accepted(cameras, seen):
     """Return the share of views of limb joints that the triangulation accepts, %."""
-    found = people_views.placed(cameras, seen, LIMITS.score, LIMITS.limit, LIMITS.fade)
+    found = people_views.placed(cameras, seen, LIMITS)
     return 100 * found.accepted[np.nan_to_num(seen.flat()[1]) >= LIMITS.score].mean()
 
 
@@ -259,7 +259,7 @@ def virtual_rows(one, n_draws, lines):
 
 def limb_variation(cameras, seen):
     """Return the mean coefficient of variation of eight limb lengths, %."""
-    xyz = people_views.placed(cameras, seen, LIMITS.score, LIMITS.limit, LIMITS.fade).xyz
+    xyz = people_views.placed(cameras, seen, LIMITS).xyz
     xyz, joints = xyz.reshape(len(seen.track), -1, 3), list(skeleton.JOINTS)
     shape = skeleton.read(ROOT / "config" / "skeletons" / "blazepose33.yaml")
     ends = [[joints.index(joint) for joint in pair] for pair in shape.segments.values()]

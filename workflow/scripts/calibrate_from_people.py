@@ -2,7 +2,7 @@
 
 from courtside.calibration import file_formats
 from courtside.calibration.people import from_nothing, unit
-from courtside.calibration.people.adjustment import Limits
+from courtside.calibration.people.views import Limits
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.geometry import camera as camera_models
 from courtside.reconstruction import self_calibration

@@ -6,8 +6,8 @@ from courtside.calibration import file_formats
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court import quality
 from courtside.calibration.people import adjustment, knocks, prior, refinement, resection
-from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.held_out import Points
+from courtside.calibration.people.views import Limits
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.geometry import camera as camera_models
 from courtside.reconstruction import lost_cameras

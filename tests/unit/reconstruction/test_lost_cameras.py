@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from courtside.calibration.people.adjustment import Limits
+from courtside.calibration.people.views import Limits
 from courtside.reconstruction import lost_cameras
 from courtside.records.cameras.footage import Footage
 from courtside.records.devices.clocks import Clock

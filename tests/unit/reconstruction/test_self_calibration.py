@@ -8,8 +8,8 @@ import pytest
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
 from courtside.calibration.people import from_nothing, unit
-from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.from_nothing import Guess
+from courtside.calibration.people.views import Limits
 from courtside.geometry import camera as camera_models
 from courtside.geometry import triangulation
 from courtside.reconstruction import self_calibration

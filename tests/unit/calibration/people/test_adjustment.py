@@ -10,7 +10,8 @@ from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
 from courtside.calibration.court.court import read
 from courtside.calibration.people import adjustment, prior
-from courtside.calibration.people.adjustment import Clicks, Limits
+from courtside.calibration.people.adjustment import Clicks
+from courtside.calibration.people.views import Limits
 from courtside.geometry import camera as cameras
 from courtside.geometry.similarity import umeyama
 from courtside.geometry.triangulation import triangulate_all

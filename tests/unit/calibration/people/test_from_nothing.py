@@ -6,9 +6,8 @@ import pytest
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
 from courtside.calibration.people import from_nothing, unit
-from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.held_out import Score
-from courtside.calibration.people.views import Seen
+from courtside.calibration.people.views import Limits, Seen
 from courtside.geometry import camera as cameras
 from courtside.geometry import similarity
 from courtside.geometry.triangulation import triangulate_all

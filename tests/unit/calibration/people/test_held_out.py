@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from courtside.calibration.people import held_out, prior
-from courtside.calibration.people.adjustment import Clicks, Limits
+from courtside.calibration.people.adjustment import Clicks
 from courtside.calibration.people.held_out import Points
+from courtside.calibration.people.views import Limits
 from courtside.geometry import camera as cameras
 from fixtures.cameras import corner_cameras, walkers
 

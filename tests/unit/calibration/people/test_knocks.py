@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from courtside.calibration.people import knocks, prior
-from courtside.calibration.people.adjustment import Limits
+from courtside.calibration.people.views import Limits
 from courtside.geometry import camera as cameras
 from courtside.records.devices.clocks import Clock
 from fixtures.cameras import corner_cameras, walkers

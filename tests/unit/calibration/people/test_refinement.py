@@ -7,8 +7,8 @@ import pytest
 
 from courtside.calibration.file_check import faults
 from courtside.calibration.people import prior, refinement, resection, views
-from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.held_out import Points
+from courtside.calibration.people.views import Limits
 from courtside.study.errors import InputError
 from fixtures.cameras import corner_cameras, walkers
 

@@ -7,8 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from courtside.calibration.people import prior, resection
-from courtside.calibration.people.adjustment import Limits
-from courtside.calibration.people.views import joined
+from courtside.calibration.people.views import Limits, joined
 from courtside.calibration.records.covariance import PARAMETERS
 from fixtures.cameras import corner_cameras, walkers
 

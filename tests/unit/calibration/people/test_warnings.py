@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from courtside.calibration.people import warnings
-from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.held_out import Score
-from courtside.calibration.people.views import Seen
+from courtside.calibration.people.views import Limits, Seen
 from courtside.geometry import camera as camera_models
 from courtside.geometry import rotations
 from courtside.geometry.similarity import Sim3

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 
 from courtside.calibration.court.court import Court
 from courtside.calibration.people import resection
-from courtside.calibration.people.adjustment import Limits
-from courtside.calibration.people.views import Seen, placed
+from courtside.calibration.people.views import Limits, Seen, placed
 from courtside.geometry.camera import Camera
 from courtside.reconstruction import common_views, resampling
 from courtside.reconstruction.association import everybody
@@ -147,8 +146,7 @@ def _by_others(cameras: Sequence[Camera], at: int, part: Seen, limits: Limits) -
     """Return the joints (N, 3) m that the other cameras place."""
     without = part.xy.copy()
     without[at] = np.nan
-    wide = (resection.WIDENED * share for share in (limits.limit, limits.fade))
-    return placed(cameras, replace(part, xy=without), limits.score, *wide).xyz
+    return placed(cameras, replace(part, xy=without), limits.times(resection.WIDENED)).xyz
 
 
 def associated(

@@ -7,10 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration.people import from_nothing, relative_poses
-from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.relative_poses import Take
 from courtside.calibration.people.unit import KnownLength
-from courtside.calibration.people.views import Seen, joined
+from courtside.calibration.people.views import Limits, Seen, joined
 from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
 from courtside.reconstruction import person_height, resampling

@@ -1,9 +1,9 @@
 """Cameras refined by the people that they film, or calibrated from people alone.
 
-views: `Seen`, `joined`, `placed`, `check`, `longest_way`: joints at common times, blocks of time,
-    bad input
+views: `Seen`, `Limits`, `joined`, `placed`, `check`, `longest_way`: joints at common times, blocks
+    of time, bad input
 prior: `stated`, `knowledge`: what is known of cameras before
-adjustment: `refine`, `Clicks`, `court_clicks`, `Limits`: cameras and joints adjusted together
+adjustment: `refine`, `Clicks`, `court_clicks`: cameras and joints adjusted together
 held_out: `score`, `verdicts`, `better`: whether cameras are better, by what the fit did not see
 knocks: `find`, `in_all`, `between`, `undone`, `row`, `lines`: cameras knocked have two poses
 resection: `lost`, `expected`, `find`, `widened`, `line`: cameras that agree with nobody

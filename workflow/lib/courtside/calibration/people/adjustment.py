@@ -5,9 +5,8 @@ linear in frames. People do not tell where the world begins, how it is turned an
 what is known of the cameras before, or court points, hold that.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +17,7 @@ from courtside.calibration.bundle.problem import POSE, Network
 from courtside.calibration.court import joint_adjustment, line_edges
 from courtside.calibration.court.court import ClickedPoints, Court
 from courtside.calibration.people import prior
-from courtside.calibration.people.views import Seen, placed
+from courtside.calibration.people.views import Limits, Seen, placed
 from courtside.geometry.camera import Camera, distort, undistort
 
 # Limits in units of the last: cameras that are a little wrong must not lose the views that say so.
@@ -78,20 +77,6 @@ def court_clicks(
     sigma_px = scatter[:, None, None] * np.sqrt(edges)
     xy = np.stack([marked[camera.name] for camera in cameras])
     return Clicks(court.xyz, court.sigma_m, xy, sigma_px, bias, click_loss)
-
-
-@dataclass(frozen=True, eq=False)
-class Limits:
-    """Which views count: `score` least confidence; others in shares of the person's height."""
-
-    score: float
-    limit: float
-    fade: float
-
-    @classmethod
-    def of(cls, views: Mapping[str, Any]) -> "Limits":
-        """Return those of the step `triangulate` of the configuration."""
-        return cls(views["min_score"], views["max_error_share"], views["fade_share"])
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,7 +159,7 @@ def _network(
 
     A cell is one joint of one track in one camera.
     """
-    points = placed(cameras, seen, limits.score, widened * limits.limit, widened * limits.fade)
+    points = placed(cameras, seen, limits.times(widened))
     xy, score, height_px = seen.flat()
     n_joints = seen.score.shape[2]
     image_idx, at = np.nonzero(points.accepted)

@@ -22,10 +22,9 @@ from courtside.calibration.people import (
     warnings,
     world_frame,
 )
-from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.held_out import Points, Score
 from courtside.calibration.people.relative_poses import Take, Track
-from courtside.calibration.people.views import Seen
+from courtside.calibration.people.views import Limits, Seen
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance
 from courtside.geometry import boxes
@@ -267,7 +266,7 @@ def _refined(cameras, lenses, seen: Seen, limits: Limits) -> adjustment.Refined:
 
 def _joints(cameras, seen: Seen, limits: Limits) -> NDArray:
     """Return the joints (T, J, 3) m whose views agree."""
-    found = views.placed(cameras, seen, limits.score, limits.limit, limits.fade)
+    found = views.placed(cameras, seen, limits)
     return found.xyz.reshape(len(seen.track), -1, 3)
 
 

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration.file_check import residuals
-from courtside.calibration.people.adjustment import Clicks, Limits
-from courtside.calibration.people.views import Seen, placed
+from courtside.calibration.people.adjustment import Clicks
+from courtside.calibration.people.views import Limits, Seen, placed
 from courtside.geometry.camera import Camera, project
 
 BLOCKS = 8  # of each track, in turn to fit and to score
@@ -93,7 +93,7 @@ def _people(found: Score, cameras, seen: Seen, block: NDArray, limits: Limits) -
     of_point = np.repeat(block, seen.score.shape[2])
     for one in np.unique(block):
         found.share[int(one)] = residuals.typical_px(shares[:, of_point == one])
-    accepted = placed(cameras, seen, limits.score, limits.limit, limits.fade).accepted
+    accepted = placed(cameras, seen, limits).accepted
     usable = np.nan_to_num(score) >= limits.score
     shared = usable & (usable.sum(axis=0) >= 2)  # no other view can agree with a single one
     found.accepted.append(np.where(shared, accepted, np.nan))

@@ -8,9 +8,8 @@ import pandas as pd
 
 from courtside.calibration.file_check import residuals, verdict
 from courtside.calibration.people import adjustment, held_out, prior, resection, views
-from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.held_out import Points, Score
-from courtside.calibration.people.views import Seen
+from courtside.calibration.people.views import Limits, Seen
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance
 from courtside.geometry import rotations

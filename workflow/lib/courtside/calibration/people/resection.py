@@ -7,8 +7,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration.people.adjustment import Limits
-from courtside.calibration.people.views import Seen, placed
+from courtside.calibration.people.views import Limits, Seen, placed
 from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera, in_picture, project
@@ -34,10 +33,10 @@ def lost(cameras: Sequence[Camera], seen: Seen, limits: Limits) -> list[int]:
     Views of joints that no other camera sees are not counted, because they cannot agree: they may
     show spectators. A camera with few other views counts as lost.
     """
-    accepted = placed(cameras, seen, limits.score, limits.limit, limits.fade).accepted
+    accepted = placed(cameras, seen, limits).accepted
     usable = np.nan_to_num(seen.flat()[1]) >= limits.score
     shared = usable & (usable.sum(axis=0) >= 2)
-    share = (accepted & shared).sum(axis=1) / np.maximum(shared.sum(axis=1), 1)
+    share = accepted.sum(axis=1) / np.maximum(shared.sum(axis=1), 1)
     return [int(at) for at in np.flatnonzero(share < LOST)]
 
 

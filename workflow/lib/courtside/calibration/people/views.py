@@ -3,8 +3,9 @@
 A row is one person in one frame. C cameras, T rows, J joints.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,6 +58,24 @@ class Seen:
         return self.xy.reshape(*score.shape, 2), score, height_px
 
 
+@dataclass(frozen=True, eq=False)
+class Limits:
+    """Which views count: `score` least confidence; others in shares of the person's height."""
+
+    score: float
+    limit: float
+    fade: float
+
+    @classmethod
+    def of(cls, views: Mapping[str, Any]) -> "Limits":
+        """Return those of the step `triangulate` of the configuration."""
+        return cls(views["min_score"], views["max_error_share"], views["fade_share"])
+
+    def times(self, factor: float) -> "Limits":
+        """Return limits of views that are wider by a factor."""
+        return replace(self, limit=factor * self.limit, fade=factor * self.fade)
+
+
 def joined(parts: Sequence[Seen]) -> Seen:
     """Join what was seen in several takes; the tracks of each are its own."""
     first, found = 0, []
@@ -72,19 +91,17 @@ def joined(parts: Sequence[Seen]) -> Seen:
     )
 
 
-def placed(
-    cameras: Sequence[Camera], seen: Seen, min_score: float, limit_share: float, fade_share: float
-) -> triangulation.Triangulated:
-    """Triangulate all joints robustly, limits in shares of the person's height."""
+def placed(cameras: Sequence[Camera], seen: Seen, limits: Limits) -> triangulation.Triangulated:
+    """Triangulate all joints robustly."""
     xy, score, height_px = seen.flat()
     return triangulation.triangulate_robust(
         cameras,
         xy,
         score,
         sigma_px=1.0,
-        max_error_px=limit_share * height_px,
-        fade_px=fade_share * height_px,
-        min_score=min_score,
+        max_error_px=limits.limit * height_px,
+        fade_px=limits.fade * height_px,
+        min_score=limits.score,
     )
 
 
@@ -124,7 +141,7 @@ def longest_way(cameras: Sequence[Camera], seen: Seen, min_score: float) -> floa
 
     A place is the median of a row's joints; limits are wide, for cameras that are a little wrong.
     """
-    found = placed(cameras, seen, min_score, 0.2, 0.25)
+    found = placed(cameras, seen, Limits(min_score, 0.2, 0.25))
     xyz = np.ma.masked_invalid(found.xyz.reshape(len(seen.track), -1, 3))
     middle = np.ma.median(xyz, axis=1).filled(np.nan)
     middle = middle[np.isfinite(middle).all(axis=1)]

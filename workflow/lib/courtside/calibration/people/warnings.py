@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration.people import unit, views, world_frame
-from courtside.calibration.people.adjustment import Limits
 from courtside.calibration.people.held_out import Score
-from courtside.calibration.people.views import Seen
+from courtside.calibration.people.views import Limits, Seen
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
 
@@ -71,7 +70,7 @@ def _narrow(cameras: Sequence[Camera], joints: NDArray) -> Iterator[str]:
 
 def _loose(cameras: Sequence[Camera], seen: Seen, limits: Limits) -> Iterator[str]:
     """Yield a warning for each camera that shares few joints with the others."""
-    accepted = views.placed(cameras, seen, limits.score, limits.limit, limits.fade).accepted
+    accepted = views.placed(cameras, seen, limits).accepted
     tied = accepted.sum(axis=1)
     usual = float(np.median(tied))
     for camera, count in zip(cameras, tied, strict=True):
