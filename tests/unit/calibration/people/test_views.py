@@ -60,7 +60,7 @@ def on_a_line(seen):
 @pytest.mark.parametrize(
     ("spoil", "line"),
     [
-        (one_camera, r"two cameras or more, found them in \['c0'\]"),
+        (one_camera, r"two cameras or more, found them in c0; name"),
         (on_a_line, "three or more that do not stand on one line, found 4"),
         (lambda seen: (CAMERAS, seen.of(np.arange(20))), "40 frames or more .* found 20"),
         (

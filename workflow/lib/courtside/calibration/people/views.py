@@ -111,8 +111,8 @@ def check(cameras: Sequence[Camera], seen: Seen, min_score: float) -> None:
     showing = [camera.name for camera, one in zip(cameras, usable, strict=True) if one.any()]
     if len(showing) < 2:
         raise InputError(
-            f"people: expected them in two cameras or more, found them in {showing or 'none'}; "
-            "name takes that several cameras film"
+            "people: expected them in two cameras or more, found them in "
+            f"{', '.join(showing) or 'none'}; name takes that several cameras film"
         )
     centres = np.stack([camera.centre_in_world for camera in cameras])
     extents = np.linalg.svd(centres - centres.mean(axis=0), compute_uv=False)
