@@ -95,9 +95,9 @@ def cost(network: Network, quadratic: Quadratic | None = None) -> float:
     return _state(network, quadratic).cost
 
 
-def normal_equations(network: Network, quadratic: Quadratic | None = None) -> Normal:
+def normal_equations(network: Network) -> Normal:
     """Build the `Normal` of a network."""
-    return _normal(_state(network, quadratic), quadratic)
+    return _normal(_state(network, None), None)
 
 
 @dataclass(frozen=True, eq=False)
