@@ -227,7 +227,9 @@ def _steps(
     matrix, right = (np.add.reduceat(part[:, order], first, axis=1) for part in equations)
     found = []
     for camera, gain in enumerate(_gains(matrix, right, times)):
-        when = [float(times[gain.argmax()])] * bool(gain.max() > 0) if at_s is None else at_s
+        when = at_s
+        if when is None:
+            when = [float(times[gain.argmax()])] if gain.max() > 0 else []
         for time_s in when:
             step = _step(equations, seen, camera, time_s)
             if step and step.gain >= LEAST_GAIN and np.linalg.norm(step.turn) >= LEAST_RAD:
@@ -299,10 +301,8 @@ def _adjusted(cameras, known, seen: Seen, limits: Limits, step: _Step | None):
     if step is None:
         return adjustment.refine(cameras, seen, prior.knowledge(cameras, known), limits)
     camera = cameras[step.camera]
-    before, names = (
-        [*cameras, replace(camera, name=f"{camera.name}, after")],
-        [one.name for one in cameras],
-    )
+    before = [*cameras, replace(camera, name=f"{camera.name}, after")]
+    names = [one.name for one in cameras]
     size = len(PARAMETERS)
     again = np.r_[: size * len(names), size * step.camera : size * (step.camera + 1)]
     covariance = known.of(names).covariance[np.ix_(again, again)]

@@ -177,9 +177,10 @@ def _sigma(known: CameraCovariance, at: int, name: str) -> float:
 def _measures(cameras: Sequence[Camera], scores: dict[str, Score]) -> pd.DataFrame:
     """Return the held-out measures of all cameras, by camera where they have one."""
     rows: list[dict] = []
-    for what in ("court_px", "static_px"):
-        of = {way: one.rms_px(what[:-3]) for way, one in scores.items()}
-        rows += [{"what": what, "camera": "all", **of}] * bool(np.isfinite(of["base"]))
+    for what in ("court", "static"):
+        of = {way: one.rms_px(what) for way, one in scores.items()}
+        if np.isfinite(of["base"]):
+            rows.append({"what": f"{what}_px", "camera": "all", **of})
     of = {way: 1000 * s.typical() for way, s in scores.items()}
     rows.append({"what": "joints_permille", "camera": "all", **of})
     each = {way: one.accepted_percent() for way, one in scores.items()}
@@ -206,9 +207,9 @@ def _numbers(ways: dict[str, list[Camera]], spread: CameraCovariance) -> pd.Data
             for way, one in here.items()
         }
         of = {"what": "turned_deg", **turned, "sigma": np.degrees(np.linalg.norm(sigma[:3]))}
-        rows += [of, {"what": "moved_cm", **moved, "sigma": 100 * np.linalg.norm(sigma[3:6])}]
+        own = [of, {"what": "moved_cm", **moved, "sigma": 100 * np.linalg.norm(sigma[3:6])}]
         for number, name in enumerate(LENS):
             of = {way: _lens(one)[number] for way, one in here.items()}
-            rows.append({"what": name, **of, "sigma": _sigma(spread, at, name)})
-        rows = [{"camera": base.name, **row} for row in rows]
+            own.append({"what": name, **of, "sigma": _sigma(spread, at, name)})
+        rows += [{"camera": base.name, **row} for row in own]
     return pd.DataFrame(rows, columns=list(COLUMNS))
