@@ -335,9 +335,9 @@ def summary(found: Found, seen: Corners, board: Board, *, stated: bool) -> dict[
     """Return for a JSON file how well the corners fit.
 
     By camera: corners, pictures, `rms_px` per axis, standard deviations of the place (mm) and of
-    the focal length. `neighbour_mm`: by how much corners that lie side by side on the board are
-    farther apart when two cameras or more place them, mean and standard deviation. `stated` says
-    whether the session names the picture on the floor.
+    the focal length. `neighbour_mm`: error of the distance between neighbouring corners,
+    triangulated from two cameras or more, mean and standard deviation. `stated` says whether the
+    session names the picture on the floor.
     """
     warnings = []
     if not stated:

@@ -86,25 +86,26 @@ def lens(name: str, size: Sequence[int], board: Board, seen: Corners, camera: in
 
 
 def poses(board: Board, seen: Corners, ideal: NDArray, world: str | None) -> Poses:
-    """Return cameras and boards from views of few corners; `ideal` (M, 2) are directions, z = 1.
+    """Return the poses of cameras and boards; each view of six corners or more gives one.
 
-    `world` names the picture whose board defines the world; None: the picture that most cameras
-    see, with most corners. Raises `InputError` if a group of cameras shares no picture of the board
-    with the others, or that picture shows none.
+    `ideal` (M, 2) are the directions of the corners, z = 1. `world` names the picture whose board
+    defines the world; None: the picture that most cameras see, with most corners. Raises
+    `InputError` if a group of cameras shares no picture of the board with the others, or that
+    picture shows none.
     """
     views = _posed(board, seen, ideal)
-    from_root = _from_root(board, seen, views)
+    cam_from_root = _from_root(board, seen, views)
     boards = np.full((len(seen.pictures), 3, 4), np.nan)
     most = np.zeros(len(seen.pictures))
     for (camera, picture), (rows, pose) in views.items():
         if len(rows) > most[picture]:
             most[picture] = len(rows)
-            boards[picture] = rotations.composed(rotations.invert(from_root[camera]), pose)
+            boards[picture] = rotations.composed(rotations.invert(cam_from_root[camera]), pose)
     at = _world(seen, views, world)
     world_from_root = rotations.invert(boards[at])
     root_from_world = boards[at]
     return Poses(
-        np.stack([rotations.composed(pose, root_from_world) for pose in from_root]),
+        np.stack([rotations.composed(pose, root_from_world) for pose in cam_from_root]),
         np.stack([rotations.composed(world_from_root, one) for one in boards]),
         at,
     )
@@ -123,8 +124,8 @@ def _posed(board: Board, seen: Corners, ideal: NDArray) -> dict[tuple[int, int],
     for camera in range(len(seen.cameras)):
         for rows in _views(seen, camera):
             xyz, at = board.corners[seen.corner[rows]], ideal[rows]
-            flat = np.linalg.svd(xyz - xyz.mean(axis=0), compute_uv=False)
-            if len(rows) < FEWEST_CORNERS or flat[1] < 0.1 * board.square_m:  # on one line
+            extent = np.linalg.svd(xyz - xyz.mean(axis=0), compute_uv=False)
+            if len(rows) < FEWEST_CORNERS or extent[1] < 0.1 * board.square_m:  # on one line
                 continue
             done, turned, shift, _ = cv2.solvePnPGeneric(
                 xyz, at, np.eye(3), None, flags=cv2.SOLVEPNP_IPPE

@@ -113,17 +113,17 @@ def in_all(
     cameras: Sequence[Camera],
     known: CameraCovariance,
     takes: Mapping[str, Seen],
-    read: Mapping[str, Mapping[str, Clock]],
+    clocks: Mapping[str, Mapping[str, Clock]],
     limits: Limits,
 ) -> tuple[Seen, list[dict[str, Any]]]:
-    """Return what was seen in all takes without knocks, and rows of all found; `read` has clocks.
+    """Return what was seen in all takes without knocks, and rows of all found.
 
-    Takes are in the order of time.
+    Takes are in the order of time; `clocks` are of each take and camera.
     """
     rows, still = [], {}
     for take, seen in takes.items():
         found = find(cameras, known, seen, limits)
-        rows += [{"take": take, **row(one, cameras, read[take])} for one in found]
+        rows += [{"take": take, **row(one, cameras, clocks[take])} for one in found]
         still[take] = undone(cameras, seen, found)
     seen, moves = between(cameras, known, still, limits)
     return seen, rows + moves
@@ -238,7 +238,7 @@ def _steps(
 
 
 def _measured(
-    cameras, known, seen: Seen, limits: Limits, step: _Step, said: tuple[float, dict[str, str]]
+    cameras, known, seen: Seen, limits: Limits, step: _Step, judged: tuple[float, dict[str, str]]
 ) -> Knock:
     """Return a step as the adjustment of all cameras measures it."""
     found = _adjusted(cameras, known, seen, limits, step)
@@ -251,7 +251,7 @@ def _measured(
     both = spread.covariance.reshape(count, len(PARAMETERS), count, len(PARAMETERS))
     ends = both[[step.camera, -1]][:, :3][:, :, [step.camera, -1]][..., :3]
     variance = ends[0, :, 0] + ends[1, :, 1] - ends[0, :, 1] - ends[1, :, 0]
-    return Knock(step.camera, step.time_s, turn, np.sqrt(np.diag(variance)), *said)
+    return Knock(step.camera, step.time_s, turn, np.sqrt(np.diag(variance)), *judged)
 
 
 def _judged(
@@ -264,8 +264,8 @@ def _judged(
     two_poses = _halves(cameras, known, seen, limits, step)
     before, after = (_score(halves, seen, step) for halves in (one_pose, two_poses))
     change = after.typical() / before.typical() - 1
-    said = held_out.verdicts(before, after)
-    return change, said if change < -LEAST_CHANGE else {"joints": "not better"}
+    verdicts = held_out.verdicts(before, after)
+    return change, verdicts if change < -LEAST_CHANGE else {"joints": "not better"}
 
 
 def _halves(cameras, known, seen: Seen, limits: Limits, step: _Step | None) -> list[list[Camera]]:
