@@ -321,11 +321,11 @@ def test_a_unit_is_that_of_a_file_that_states_none(tmp_path, unit, metres):
     stated = write_opencv(tmp_path / "stated.yml", T=TRANSLATION * 1000, unit="mm")
     assert_is_the_camera(file_formats.read(stated)[0], "stated")
     for other in (stated, write(tmp_path / "a.qca.txt", QUALISYS)):
-        with pytest.raises(InputError, match="the file or its format states it, found .*; remove"):
+        with pytest.raises(InputError, match=r"the file or its format states it, found .*; remove"):
             file_formats.read(other, unit)
     toml = tmp_path / "ours.toml"
     cameras.write_toml(toml, named("left"), source="test")
-    with pytest.raises(InputError, match="the file or its format states it, found .*; remove"):
+    with pytest.raises(InputError, match=r"the file or its format states it, found .*; remove"):
         file_formats.read(toml, unit)
 
 
@@ -418,7 +418,7 @@ def test_lenses_do_not_depend_on_where_their_cameras_stood(tmp_path):
     pose = np.column_stack([np.eye(3), [0.0, 0.0, 5000.0]])
     far = replace(cameras.plain("left", (1920, 1080), 1.0), cam_from_world=pose)
     cameras.write_toml(tmp_path / "mm.toml", [far], source="test")
-    with pytest.raises(InputError, match="within 300 m .* correct the one that the file states"):
+    with pytest.raises(InputError, match=r"within 300 m .* correct the one that the file states"):
         file_formats.read(tmp_path / "mm.toml")
     assert file_formats.known_lenses(tmp_path / "mm.toml", {"a": "left"}, [])["a"].K[0, 0] == 1920
 

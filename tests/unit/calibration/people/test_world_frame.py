@@ -39,7 +39,7 @@ def test_people_without_legs_or_trunk_tell_no_floor(hidden):
     joints = np.concatenate(WALK).copy()
     at = [k for k, name in enumerate(skeleton.JOINTS) if name.split("_")[1] in hidden]
     joints[:, at] = np.nan
-    with pytest.raises(InputError, match="hips, knees, ankles and shoulders .* in 20 frames"):
+    with pytest.raises(InputError, match=r"hips, knees, ankles and shoulders .* in 20 frames"):
         world_frame.floor(joints, TRUE)
 
 

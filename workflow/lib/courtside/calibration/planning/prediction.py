@@ -57,8 +57,8 @@ def predict(
     Without any image of a walk the cameras rest on clicked court points, and on what fixed cameras
     that stand near one another see alike. The hall and lenses are as for `tie_points.network`,
     `images_per_part` as for `walk_parts.split`; `tie_sigma` is the weight of ties in units of their
-    noise, as after a session; `thinning` are arguments of `selection.thin`, `**clicking` sigma, bias
-    and loss of clicks in `joint_adjustment.solve`.
+    noise, as after a session; `thinning` are arguments of `selection.thin`, `**clicking` sigma,
+    bias and loss of clicks in `joint_adjustment.solve`.
     """
     rng = np.random.default_rng([seed, len(walked)])
     ties = tie_points.network(fixed, walked, hall_m, texture, lens_prior, rng)

@@ -317,8 +317,6 @@ def _cameras(found: Adjusted, cameras, lenses) -> list[Camera]:
     names, sizes = [c.name for c in cameras], [c.size for c in cameras]
     solved = selection.cameras(found.state.network, names, sizes)
     return [
-        replace(lenses[one.name], cam_from_world=one.cam_from_world)
-        if one.name in lenses
-        else one
+        replace(lenses[one.name], cam_from_world=one.cam_from_world) if one.name in lenses else one
         for one in solved
     ]
