@@ -6,8 +6,20 @@ import pytest
 
 from courtside.study.configuration import configuration, yaml_files
 from courtside.study.jobs.job import Job
+from fixtures.study import yaml_read
 
 CONFIG = Path(__file__).parents[3] / "config"
+PARSING = "test_yaml_files.py"  # the tests of parsing itself
+
+
+@pytest.fixture(scope="module", autouse=True)
+def parsed_once(request):
+    """Parse each configuration file only once, where parsing is not what is tested."""
+    if request.path.name == PARSING:
+        yield
+    else:
+        with yaml_read.remembered():
+            yield
 
 
 def load(**changes):

@@ -8,8 +8,16 @@ import pytest
 from courtside.study.configuration import configuration, yaml_files
 from courtside.study.errors import InputError
 from courtside.validation import providers
+from fixtures.study import yaml_read
 
 CONFIG = Path(__file__).parents[3] / "config"
+
+
+@pytest.fixture(scope="module", autouse=True)
+def parsed_once():
+    """Parse each configuration file only once."""
+    with yaml_read.remembered():
+        yield
 
 
 def study(named):
