@@ -13,6 +13,7 @@ import pytest
 
 from courtside.study import paths
 from courtside.study.execution import digest
+from smoke.snakemake_runs import copy_digests
 
 ROOT = Path(__file__).parents[1]
 LIBRARY = ROOT / "workflow" / "lib"
@@ -307,6 +308,7 @@ def test_only_evaluations_take_truth_files():
 def jobs(tmp_path_factory):
     """Return (rule, inputs, outputs) of every job of the default study, planned from nothing."""
     folder = tmp_path_factory.mktemp("empty")
+    copy_digests(folder)
     command = [sys.executable, "-m", "snakemake", "-n", "--directory", str(folder)]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr

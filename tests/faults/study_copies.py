@@ -32,7 +32,6 @@ CUT = [JOBS[rule] for rule in ("export_take", "draw_skeletons", "draw_overlay")]
 def prepare_copy(root):
     """Copy what a study is made by; present pinned artefacts are packed into a mirror folder."""
     copy_repository(root)
-    (root / FOLDER).mkdir(parents=True)
     pack_mirror(root)
 
 

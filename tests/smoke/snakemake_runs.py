@@ -15,12 +15,14 @@ FOLDER = Path("tests") / "smoke"
 TINY = Path("config") / "tiny.yaml"
 TIMEOUT_S = 3600
 MADE_BY = ("Snakefile", "workflow", "config", "profiles", "environment.lock")
+DIGESTS = Path(".snakemake") / "courtside" / "code.json"  # of code, by its content
 
 
 def copy_repository(root, *further, copy_file=shutil.copy2):
     """Copy what a study is made by, and further files or folders of the repository, to a folder.
 
     Bytecode goes along: it is valid where files keep their dates, and saves compiling the library.
+    So do digests of code, which save parsing it.
     """
     left_out = shutil.ignore_patterns("*.pyc.*", "locks")  # half-written bytecode
     for name in (*MADE_BY, *map(str, further)):
@@ -30,6 +32,14 @@ def copy_repository(root, *further, copy_file=shutil.copy2):
             shutil.copytree(source, target, ignore=left_out, copy_function=copy_file)
         else:
             copy_file(source, target)
+    copy_digests(root / FOLDER)
+
+
+def copy_digests(folder):
+    """Copy the digests of code that the tiny study keeps, if any, to the folder of another run."""
+    (folder / DIGESTS).parent.mkdir(parents=True, exist_ok=True)
+    if (ROOT / FOLDER / DIGESTS).is_file():
+        shutil.copy2(ROOT / FOLDER / DIGESTS, folder / DIGESTS)
 
 
 def snakemake(*words, root, anew=False):

@@ -3,7 +3,7 @@
 import pytest
 import yaml
 
-from smoke.snakemake_runs import FOLDER, ROOT, copy_repository, planned, run
+from smoke.snakemake_runs import ROOT, copy_repository, planned, run
 
 TAKE = "results/walk-4cams-tiny/takes/balancing"
 METHOD = "file.all-robust.blazepose-full"
@@ -16,7 +16,6 @@ def gym(tmp_path_factory):
     """Return a function: it returns a repository copy with the real person's consent as said."""
     root = tmp_path_factory.mktemp("gym")
     copy_repository(root)
-    (root / FOLDER).mkdir(parents=True)
     name = "config/sessions/walk-4cams-tiny.yaml"
 
     def agreed(consent):

@@ -21,7 +21,7 @@ from courtside.study.errors import InputError
 from fixtures.cameras import wands_made
 from fixtures.recordings import onnx_files
 from fixtures.recordings.real_data import REAL, needs_real
-from smoke.snakemake_runs import TINY, copy_repository, snakemake
+from smoke.snakemake_runs import TINY, copy_digests, copy_repository, snakemake
 
 DOOR = REAL / "sfm-door"
 TINY_FEATURES = {"extract_features": {"first_octave": -1}}
@@ -32,6 +32,7 @@ def gym(tmp_path_factory):
     """Return a copy of the repository without results; each test adds a session of its own."""
     root = tmp_path_factory.mktemp("gym")
     copy_repository(root)
+    copy_digests(root)
     return root
 
 

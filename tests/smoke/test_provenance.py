@@ -20,7 +20,6 @@ def drawn(tmp_path_factory):
     """Return a copy of the repository in which one figure was drawn."""
     root = tmp_path_factory.mktemp("repository")
     copy_repository(root)
-    (root / FOLDER).mkdir(parents=True)
     run("--", FIGURE, root=root)
     return root
 
