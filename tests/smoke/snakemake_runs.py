@@ -65,7 +65,7 @@ def run(*options, root=ROOT, check=True, **settings):
 
 def planned(*options, root=ROOT, **settings):
     """Return the number of jobs of each rule that Snakemake would run now."""
-    done = run("-n", *options, root=root, **settings)
+    done = run("-n", "--quiet", "rules", *options, root=root, **settings)
     table = re.search(r"Job stats:\njob +count\n[- ]+\n(.*?)\n\n", done.stdout + done.stderr, re.S)
     if table is None:
         assert "Nothing to be done" in done.stdout + done.stderr
