@@ -14,6 +14,7 @@ from courtside.records.cameras import clicks
 from courtside.records.truth import session_truth
 from courtside.video import reader
 from fixtures.cameras import scene
+from fixtures.recordings import coarse_halls
 from virtualgym import worlds
 from virtualgym.cameras import layouts, row_warp
 from virtualgym.session import click_model, session
@@ -133,9 +134,11 @@ def test_clicks_are_where_the_points_are_to_their_error(folder, known):
     assert 0 < off_m.max() < 0.05, "painted lines are millimetres off"
 
 
-def test_the_files_do_not_depend_on_the_number_of_processes(folder, tmp_path):
-    session.simulate(SETTINGS, COURT, tmp_path, threads=2)
-    one, two = files(folder), files(tmp_path)
+def test_the_files_do_not_depend_on_the_number_of_processes(tmp_path):
+    with coarse_halls.built():
+        for threads in (1, 2):
+            session.simulate(SETTINGS, COURT, tmp_path / str(threads), threads=threads)
+    one, two = files(tmp_path / "1"), files(tmp_path / "2")
     assert one.keys() == two.keys()
     assert [name for name in one if one[name] != two[name]] == []
 

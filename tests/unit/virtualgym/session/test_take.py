@@ -14,6 +14,7 @@ from courtside.study.errors import InputError
 from courtside.video import reader
 from fixtures.cameras import balls, scene
 from fixtures.people import mannequin
+from fixtures.recordings import coarse_halls
 from virtualgym.body import shapes, skinned_body
 from virtualgym.movement import catalogue
 from virtualgym.session import session
@@ -53,11 +54,10 @@ class Runner(balls.Ball):
 def runner(monkeypatch):
     """Let a ball run instead of a body, in a hall that is built fast."""
     ball = Runner((2.5, 6.0, 1.2), (1.2, 1.0, 0.0), radius_m=0.8, bgr=(0, 0, 0))
-    build = session.hall.build
 
     def build_once(*arguments):
         if not HALLS:
-            HALLS.append(build(*arguments, floor_texel_m=0.1))
+            HALLS.append(coarse_halls.build(*arguments))
         return HALLS[0]
 
     monkeypatch.setattr(takes, "perform", lambda take, court, folder: {"p1": ball})
@@ -85,8 +85,9 @@ def test_a_take_has_its_files_which_do_not_depend_on_the_number_of_processes(tmp
     anny = mannequin.folder()
     one, two = tmp_path / "one" / "shot", tmp_path / "two" / "shot"
     take = replace(TAKE, devices={"suit": SUIT})
-    worn = takes.simulate_take(SESSION, take, COURT, anny, one)
-    takes.simulate_take(SESSION, take, COURT, anny, two, threads=2)
+    with coarse_halls.built():
+        worn = takes.simulate_take(SESSION, take, COURT, anny, one)
+        takes.simulate_take(SESSION, take, COURT, anny, two, threads=2)
     assert files(one).keys() == {"side.mp4", "back.mp4", "racket.csv", "truth.npz"}
     assert files(one) == files(two)
     for name in ("side", "back"):

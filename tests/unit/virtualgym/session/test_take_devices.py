@@ -14,6 +14,7 @@ from courtside.records.devices.hierarchy import forward
 from courtside.records.truth import take_truth
 from courtside.records.truth.take_truth import DeviceTruth
 from fixtures.people import mannequin
+from fixtures.recordings import coarse_halls
 from virtualgym.body import skinned_body
 from virtualgym.devices import depth_camera, inertial_suit
 from virtualgym.session import session, take, take_devices
@@ -33,7 +34,8 @@ TAKE = take.TakeSettings(
 def recorded(tmp_path_factory):
     """A take with a depth camera and a suit, filmed by two processes, in a coarse hall."""
     folder = tmp_path_factory.mktemp("take") / "claps"
-    worn = take.simulate_take(SESSION, TAKE, COURT, mannequin.folder(), folder, threads=2)
+    with coarse_halls.built():
+        worn = take.simulate_take(SESSION, TAKE, COURT, mannequin.folder(), folder, threads=2)
     return folder, worn, take_truth.read(folder / "truth.npz")
 
 
@@ -106,7 +108,8 @@ def test_the_suit_shows_the_truth_at_its_own_time(recorded):
 
 def test_recordings_do_not_depend_on_the_number_of_processes(recorded, tmp_path):
     folder, worn, _ = recorded
-    again = take.simulate_take(SESSION, TAKE, COURT, mannequin.folder(), tmp_path / "claps")
+    with coarse_halls.built():
+        again = take.simulate_take(SESSION, TAKE, COURT, mannequin.folder(), tmp_path / "claps")
     for name in ("d415.bag", "truth.npz"):
         assert (tmp_path / "claps" / name).read_bytes() == (folder / name).read_bytes()
     np.testing.assert_array_equal(again["suit"].parent_from_joint, worn["suit"].parent_from_joint)
