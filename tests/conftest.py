@@ -1,10 +1,16 @@
-"""How the tests share processes: a file stays in one, as do files that share bodies or a study."""
+"""How the tests share processes, and the folder of what one process makes for all.
+
+A file stays in one process, as do files that share bodies or a study.
+"""
 
 import os
 import sys
 from pathlib import PurePosixPath
 
+import pytest
 from xdist.scheduler import LoadFileScheduling
+
+from fixtures.study import once
 
 os.environ["OPENBLAS_NUM_THREADS"] = "1"  # as in the study; a third less time than with threads
 # Hundreds of jobs and programs import the library: let the first keep its bytecode.
@@ -40,3 +46,9 @@ def _scope(nodeid):
 def pytest_xdist_make_scheduler(config, log):
     config.option.loadscopereorder = False  # the study comes first, and takes longest
     return ByStudy(config, log)
+
+
+@pytest.fixture(scope="session")
+def run_folder(request, tmp_path_factory):
+    """Return the folder that all processes of this test run share."""
+    return once.folder_of_run(request.config, tmp_path_factory)

@@ -88,11 +88,12 @@ def study():
 
 
 @pytest.fixture(scope="module")
-def detected(study):
+def detected(study, run_folder):
     """Return the Keypoints2D of the four videos, found as the default study finds them."""
     joints = skeleton.read(ROOT / "config" / "skeletons" / "blazepose33.yaml").joints
-    find = BlazePoseDetector(networks.detector_onnx())
-    place = decoders.landmark_network(networks.landmarks_onnx(), joints, decoder="blazepose")
+    find = BlazePoseDetector(networks.detector_onnx(run_folder))
+    network = networks.landmarks_onnx(run_folder)
+    place = decoders.landmark_network(network, joints, decoder="blazepose")
     cv2.setNumThreads(1)
     return [detect(name, joints, find, place, study) for name in NAMES]
 

@@ -14,13 +14,12 @@ ASKED_FOR = (  # what the study makes only when it is asked for by name
 
 
 @pytest.fixture(scope="session")
-def tiny_study(request, tmp_path_factory):
+def tiny_study(run_folder):
     """Return the folder of the tiny study's results, made new where something changed.
 
     Of several processes one runs it, and the others wait for it.
     """
-    shared = once.folder_of_run(request.config, tmp_path_factory)
-    fault = once.made_once(shared, "tiny_study", fault_of_study)
+    fault = once.made_once(run_folder, "tiny_study", fault_of_study)
     if "from the package registry" in fault:
         pytest.skip("the pinned artefacts are neither fetched nor within reach")
     assert fault == ""

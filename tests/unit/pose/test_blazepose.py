@@ -19,10 +19,10 @@ JOINTS = skeleton.read(SHAPE).joints
 
 
 @pytest.fixture(scope="module")
-def blazepose_pair():
+def blazepose_pair(run_folder):
     return (
-        blazepose.BlazePoseDetector(networks.detector_onnx()),
-        blazepose.BlazePoseLandmarks(networks.landmarks_onnx()),
+        blazepose.BlazePoseDetector(networks.detector_onnx(run_folder)),
+        blazepose.BlazePoseLandmarks(networks.landmarks_onnx(run_folder)),
     )
 
 

@@ -12,12 +12,11 @@ GIVEN = {"size": [96, 128], "channels": "bgr"}
 JOINTS = ("nose", "left_hip", "right_hip")
 
 
-def test_blazepose_is_built():
-    network = decoders.landmark_network(
-        networks.landmarks_onnx(), ("joint",) * 33, decoder="blazepose"
-    )
+def test_blazepose_is_built(run_folder):
+    landmarks, detector = networks.landmarks_onnx(run_folder), networks.detector_onnx(run_folder)
+    network = decoders.landmark_network(landmarks, ("joint",) * 33, decoder="blazepose")
     assert isinstance(network, blazepose.BlazePoseLandmarks)
-    finder = decoders.person_detector(networks.detector_onnx(), decoder="blazepose", min_score=0.7)
+    finder = decoders.person_detector(detector, decoder="blazepose", min_score=0.7)
     assert isinstance(finder, blazepose.BlazePoseDetector)
     assert (finder.min_score, finder.side_px) == (0.7, 224)
     decoders.try_out(network)

@@ -59,10 +59,10 @@ def skiers():
 
 
 @pytest.fixture(scope="module")
-def pair():
+def pair(run_folder):
     return (
-        blazepose.BlazePoseDetector(networks.detector_onnx()),
-        blazepose.BlazePoseLandmarks(networks.landmarks_onnx()),
+        blazepose.BlazePoseDetector(networks.detector_onnx(run_folder)),
+        blazepose.BlazePoseLandmarks(networks.landmarks_onnx(run_folder)),
     )
 
 

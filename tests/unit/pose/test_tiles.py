@@ -74,11 +74,11 @@ def test_a_tile_outside_the_picture_shows_nobody():
 
 @needs_real
 @pytest.mark.parametrize("height_px", [170, 420, 900])
-def test_blazepose_finds_a_real_person_of_any_size_in_a_large_picture(height_px):
+def test_blazepose_finds_a_real_person_of_any_size_in_a_large_picture(height_px, run_folder):
     stream = cv2.VideoCapture(str(REAL / "walk-4cams" / "videos" / "cam03.mp4"))
     found, person = stream.read()
     assert found
-    detector = blazepose.BlazePoseDetector(networks.detector_onnx())
+    detector = blazepose.BlazePoseDetector(networks.detector_onnx(run_folder))
     known = detector.detect(person)[0]
     scale = height_px / (known.side / 1.4)  # the region's side is about 1.4 times the height
     small = cv2.resize(person, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)

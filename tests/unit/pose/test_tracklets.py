@@ -199,17 +199,17 @@ def test_nobody_at_all_is_one_empty_row():
 
 
 @needs_real
-def test_blazepose_finds_every_copy_of_a_real_skier():
+def test_blazepose_finds_every_copy_of_a_real_skier(run_folder):
     skier = cv2.imread(str(REAL / "people" / "000000000785.jpg"))
     smaller = cv2.resize(cv2.flip(skier, 1), None, fx=0.7, fy=0.7, interpolation=cv2.INTER_AREA)
     image = np.full((480, 1300, 3), 225, np.uint8)
     room = image.copy()
     image[20 : 20 + 425, 30 : 30 + 640] = skier
     image[100 : 100 + smaller.shape[0], 800 : 800 + smaller.shape[1]] = smaller
-    place = blazepose.BlazePoseLandmarks(networks.landmarks_onnx())
+    place = blazepose.BlazePoseLandmarks(networks.landmarks_onnx(run_folder))
     track = tracklets.track_people(
         [(0.0, image), (1 / 30, image)],
-        blazepose.BlazePoseDetector(networks.detector_onnx()),
+        blazepose.BlazePoseDetector(networks.detector_onnx(run_folder)),
         place,
         foreground.Foreground(room, 30),
         max_people=3,
