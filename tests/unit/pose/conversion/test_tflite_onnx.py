@@ -1,5 +1,7 @@
 """Converted networks against Google's interpreter, and what the converter refuses."""
 
+import functools
+
 import cv2
 import numpy as np
 import onnxruntime
@@ -9,7 +11,7 @@ import tflite
 from courtside.pose.conversion import tflite_onnx, tflite_operators
 from courtside.study.errors import InputError
 from fixtures.recordings.real_data import REAL, needs_real
-from fixtures.recordings.tflite_files import NETWORKS, Network, find, interpret, sparse_rows
+from fixtures.recordings.tflite_files import NETWORKS, Network, find, interpreter, sparse_rows
 
 # Of the largest magnitude in an output: float32 keeps 6e-8, and the networks add in other orders
 # through a hundred layers. The interpreter's own kernels (reference, optimised, XNNPACK) differ
@@ -24,13 +26,13 @@ SMALLEST = 1e-6
 OPERATOR_TOLERANCE = 1e-5
 
 
-def run(path, values):
+def opened(path):
+    """Return a function that runs a converted network; it is opened once."""
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = 1
     session = onnxruntime.InferenceSession(path, options)
-    names = [output.name for output in session.get_outputs()]
-    results = session.run(names, {session.get_inputs()[0].name: values})
-    return dict(zip(names, results, strict=True))
+    taken, names = session.get_inputs()[0].name, [output.name for output in session.get_outputs()]
+    return lambda values: dict(zip(names, session.run(names, {taken: values}), strict=True))
 
 
 def agree(results, expected, tolerance):
@@ -65,16 +67,29 @@ def photo(name, size):
 SIZES = dict(zip(NETWORKS, (256, 192, 192, 224, 256, 256), strict=True))
 
 
+@pytest.fixture(scope="module")
+def converted_once(tmp_path_factory):
+    """Return a function that converts a real network, each only once."""
+
+    @functools.cache
+    def convert(path):
+        target = tmp_path_factory.mktemp("converted") / "n.onnx"
+        tflite_onnx.convert(path, target)
+        return target
+
+    return convert
+
+
 @pytest.mark.parametrize("picture", [noise, photo])
 @pytest.mark.parametrize("name", NETWORKS)
-def test_a_real_network_computes_what_the_interpreter_does(tmp_path, name, picture):
+def test_a_real_network_computes_what_the_interpreter_does(converted_once, name, picture):
     path = real_network(name)
     values = picture(name, SIZES[name])
-    tflite_onnx.convert(path, tmp_path / "n.onnx")
-    results, expected = run(tmp_path / "n.onnx", values), interpret(path, values)
+    run = opened(converted_once(path))
+    results, expected = run(values), interpreter(path)(values)
     agree(results, expected, DEEP_TOLERANCE.get(name, NETWORK_TOLERANCE))
     # The picture must matter: another one moves the results by far more than the tolerance.
-    moved = run(tmp_path / "n.onnx", 1 - values / values.max())
+    moved = run(1 - values / values.max())
     first = next(iter(expected))
     distance = np.abs(moved[first] - expected[first]).max()
     assert distance > 10 * NETWORK_TOLERANCE * np.abs(expected[first]).max()
@@ -84,11 +99,12 @@ def converted(network, tmp_path):
     """Compare a small network of one image with the interpreter, on three random images."""
     path = network.write(tmp_path / "n.tflite")
     tflite_onnx.convert(path, tmp_path / "n.onnx")
+    ours, theirs = opened(tmp_path / "n.onnx"), interpreter(path)
     shape = network.graph.tensors[network.graph.inputs[0]].shape
     for seed in range(3):
         # Beyond 6, so that activations cut at both ends.
         values = 8 * np.random.default_rng(seed).standard_normal(shape).astype(np.float32)
-        agree(run(tmp_path / "n.onnx", values), interpret(path, values), OPERATOR_TOLERANCE)
+        agree(ours(values), theirs(values), OPERATOR_TOLERANCE)
 
 
 def floats(*shape):
@@ -270,25 +286,25 @@ def test_same_padding_is_the_least_that_gives_the_length(length):
         assert before + after == max(seen - length, 0)
 
 
-def test_outputs_left_out_change_no_other(tmp_path):
+def test_outputs_left_out_change_no_other(converted_once, tmp_path):
     path = real_network("blazepose-lite-0.8.10.2.tflite")
     values = noise(path.name, 256)
-    for name, outputs in (("all", None), ("some", ["Identity_4", "Identity"])):
-        tflite_onnx.convert(path, tmp_path / name, outputs=outputs)
-    results, expected = run(tmp_path / "some", values), run(tmp_path / "all", values)
+    whole, part = converted_once(path), tmp_path / "some"
+    tflite_onnx.convert(path, part, outputs=["Identity_4", "Identity"])
+    results, expected = opened(part)(values), opened(whole)(values)
     assert list(results) == ["Identity", "Identity_4"]
     agree(results, {name: expected[name] for name in results}, 1e-6)
-    assert (tmp_path / "some").stat().st_size < (tmp_path / "all").stat().st_size
+    assert part.stat().st_size < whole.stat().st_size
     with pytest.raises(InputError, match=r"among Identity, Identity_1, .*, found nonsense"):
         tflite_onnx.convert(path, tmp_path / "none", outputs=["Identity", "nonsense"])
     assert not (tmp_path / "none").exists()
 
 
 @needs_real
-def test_equal_networks_give_equal_bytes(tmp_path):
-    for name in ("a", "b"):
-        tflite_onnx.convert(real_network(NETWORKS[0]), tmp_path / name)
-    assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
+def test_equal_networks_give_equal_bytes(converted_once, tmp_path):
+    path = real_network(NETWORKS[0])
+    tflite_onnx.convert(path, tmp_path / "again")
+    assert (tmp_path / "again").read_bytes() == converted_once(path).read_bytes()
 
 
 def refused(path, match):
