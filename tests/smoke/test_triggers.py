@@ -13,6 +13,7 @@ import os
 import shutil
 import subprocess
 import sys
+from contextlib import ExitStack, contextmanager
 from importlib import metadata
 from pathlib import Path
 
@@ -163,41 +164,17 @@ def test_points_clicked_anew_spare_pictures_features_and_models(kept):
     assert jobs == together({"adjust_network": 2, "resect_cameras": 4}, TIES)
 
 
-def test_remarks_words_other_packages_and_new_dates_rerun_nothing(kept):
-    """All at once: what one of them reran, it would rerun among the others too."""
-    assert (kept / DEPTH).stat().st_size > 100e6  # no recording is too large to be compared
-    session, lock = kept / SESSIONS / "players-tiny.yaml", kept / "environment.lock"
-    text = session.read_text().replace("Virtual players", "Two virtual players", 1)
-    tests = f"\npytest=={pytest.__version__} "  # no rule runs tests
-    assert text != session.read_text() and lock.read_text().count(tests) == 1
-    packages = lock.read_text().replace(tests, "\npytest==99 ") + "\n# compiled again\n"
-    module = kept / "workflow/lib/courtside/geometry/triangulation.py"
-    script = kept / "workflow/scripts/detect_pose.py"
-    with (
-        changed(kept / DEMO / "videos/cam01.mp4"),
-        changed(kept / DEMO / "calibration/Calib.qca.txt"),
-        changed(kept / DEPTH),
-        changed(session, f"# a remark\n{text}".encode()),
-        changed(lock, packages.encode()),
-        changed(module, module.read_bytes() + b"\n# a remark\n"),
-        changed(script, script.read_bytes() + b"\n# a remark\n"),
-    ):
-        assert planned(root=kept) == {}
+def test_what_changes_no_result_reruns_nothing(kept):
+    """All at once: what one of them reran, it would rerun among the others too.
 
-
-def test_what_is_too_large_to_be_compared_goes_by_its_date(kept):
-    with changed(kept / DEMO / "videos/cam04.mp4"):
-        jobs = planned("--max-checksum-file-size", "1000", root=kept)
-    own = {"estimate_background": 1, "check_videos": 1, "detect_pose": 1}
-    assert jobs == together(own, REAL_FUSED)
-
-
-def test_an_older_date_hides_a_change_from_snakemake_but_not_from_verify_study(kept):
+    One video changed behind an older date: only verify_study tells this.
+    """
     video = kept / DEMO / "videos/cam01.mp4"
     state = video.stat()
     with changed(video, video.read_bytes() + b"\0"):
         os.utime(video, ns=(state.st_atime_ns, state.st_mtime_ns))
-        assert planned(root=kept) == {}
+        with fresh_checkout(kept), remarks_words_and_other_packages(kept), new_dates(kept):
+            assert planned(root=kept) == {}
         message = {
             line.split(":")[0] for line in by_file(verify(kept)) if "cam01.mp4 changed" in line
         }
@@ -207,6 +184,58 @@ def test_an_older_date_hides_a_change_from_snakemake_but_not_from_verify_study(k
     figures = {f"results/figures/archive.{kind}" for kind in ("csv", "pdf", "png")}
     of_all = {"results/report.html", "results/figures/study.csv", "results/figures/ways.csv"}
     assert others <= of_all | figures
+
+
+@contextmanager
+def fresh_checkout(root):
+    """Give all files of the repository the date of a checkout, later than all results."""
+    with ExitStack() as dates:
+        for path in root.rglob("*"):
+            if is_of_the_repository(path, root):
+                dates.enter_context(changed(path))
+        yield
+
+
+def is_of_the_repository(path, root):
+    parts = path.relative_to(root).parts
+    return path.is_file() and not {"results", ".snakemake"} & set(parts)
+
+
+@contextmanager
+def remarks_words_and_other_packages(root):
+    session, lock = root / SESSIONS / "players-tiny.yaml", root / "environment.lock"
+    text = session.read_text().replace("Virtual players", "Two virtual players", 1)
+    tests = f"\npytest=={pytest.__version__} "  # no rule runs tests
+    assert text != session.read_text() and lock.read_text().count(tests) == 1
+    packages = lock.read_text().replace(tests, "\npytest==99 ") + "\n# compiled again\n"
+    module = root / "workflow/lib/courtside/geometry/triangulation.py"
+    script = root / "workflow/scripts/detect_pose.py"
+    with (
+        changed(session, f"# a remark\n{text}".encode()),
+        changed(lock, packages.encode()),
+        changed(module, module.read_bytes() + b"\n# a remark\n"),
+        changed(script, script.read_bytes() + b"\n# a remark\n"),
+    ):
+        yield
+
+
+@contextmanager
+def new_dates(root):
+    """Give recordings the present date."""
+    assert (root / DEPTH).stat().st_size > 100e6  # no recording is too large to be compared
+    with (
+        changed(root / DEMO / "videos/cam02.mp4"),
+        changed(root / DEMO / "calibration/Calib.qca.txt"),
+        changed(root / DEPTH),
+    ):
+        yield
+
+
+def test_what_is_too_large_to_be_compared_goes_by_its_date(kept):
+    with changed(kept / DEMO / "videos/cam04.mp4"):
+        jobs = planned("--max-checksum-file-size", "1000", root=kept)
+    own = {"estimate_background": 1, "check_videos": 1, "detect_pose": 1}
+    assert jobs == together(own, REAL_FUSED)
 
 
 def verify(root, *words):
@@ -324,24 +353,6 @@ def test_a_take_that_is_removed_reruns_the_tables_that_it_was_in(kept):
     with changed(session, yaml.safe_dump(content, sort_keys=False).encode()):
         tables = {"tabulate_players": 1, "tabulate_angles": 1, "draw_reliability": 1}
         assert planned(root=kept) == {**tables, **OF_ALL_TAKES, "build_quality_page": 1}
-
-
-def test_a_fresh_checkout_over_kept_results_has_nothing_to_do(kept):
-    """All files of the repository have the date of the checkout, later than all results."""
-    checked_out = [path for path in kept.rglob("*") if is_of_the_repository(path, kept)]
-    states = {path: path.stat() for path in checked_out}
-    for path in checked_out:
-        os.utime(path)
-    try:
-        assert planned(root=kept) == {}
-    finally:
-        for path, state in states.items():
-            os.utime(path, ns=(state.st_atime_ns, state.st_mtime_ns))
-
-
-def is_of_the_repository(path, root):
-    parts = path.relative_to(root).parts
-    return path.is_file() and not {"results", ".snakemake"} & set(parts)
 
 
 def test_photos_in_a_folder_are_compared_one_by_one(tmp_path):

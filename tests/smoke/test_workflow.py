@@ -65,10 +65,6 @@ DOWNSTREAM_OF_3D = {
 }
 
 
-def test_a_copied_study_has_nothing_to_do(kept):
-    assert planned(root=kept) == {}
-
-
 def test_editing_a_module_reruns_exactly_what_imports_it(kept):
     module = kept / "workflow/lib/courtside/reconstruction/left_right.py"
     with edited(module, "APART = 2.0", "APART = 2.1"):
