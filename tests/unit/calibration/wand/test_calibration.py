@@ -8,12 +8,13 @@ import pytest
 
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
-from courtside.calibration.wand import calibration
+from courtside.calibration.wand import adjustment, calibration, start
 from courtside.calibration.wand.calibration import Floor
 from courtside.geometry import camera as cameras
 from courtside.geometry import similarity
 from courtside.geometry.triangulation import triangulate_all
 from courtside.study.errors import InputError
+from fixtures import remembered_calls
 from fixtures.cameras.wands_made import (
     LENSES,
     RIG,
@@ -27,6 +28,13 @@ from fixtures.cameras.wands_made import (
 )
 
 PLACES = np.stack(np.meshgrid([-1.5, 0, 1.5], [-1.5, 0, 1.5], [0.3, 1.1, 2.0]), -1).reshape(-1, 3)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def solved_once():
+    """Solve the same cameras only once: tests differ in what they do with them."""
+    with remembered_calls.of((start, "guess"), (adjustment, "adjust")):
+        yield
 
 
 def calibrate(found, wand=WAND, lenses=None, **more):
