@@ -15,6 +15,7 @@ from courtside.calibration.people.views import Limits
 from courtside.geometry import camera as cameras
 from courtside.geometry.similarity import umeyama
 from courtside.geometry.triangulation import triangulate_all
+from fixtures import remembered_calls
 from fixtures.cameras import corner_cameras, walkers
 
 TRUE = corner_cameras.four_cameras()
@@ -23,6 +24,13 @@ KNOWN = prior.stated(
     TRUE, rotation_deg=0.3, position_m=0.03, focal_percent=0.5, principal_point_percent=0.3, k1=0.01
 )
 WALK = walkers.joints(48)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def adjusted_once():
+    """Adjust the same cameras with the same views only once."""
+    with remembered_calls.of((adjustment, "refine")):
+        yield
 
 
 def refined(seed, clicks=None, **how):

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from courtside.calibration.file_check import faults
-from courtside.calibration.people import prior, refinement, resection, views
+from courtside.calibration.people import adjustment, prior, refinement, resection, views
 from courtside.calibration.people.held_out import Points
 from courtside.calibration.people.views import Limits
 from courtside.study.errors import InputError
+from fixtures import remembered_calls
 from fixtures.cameras import corner_cameras, walkers
 
 TRUE = corner_cameras.four_cameras()
@@ -19,6 +20,13 @@ KNOWN = prior.stated(
 )
 SEEN = walkers.seen(TRUE, walkers.joints(64))
 STATIC = Points(corner_cameras.seen_points(TRUE, 8, 0.5, seed=2))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def adjusted_once():
+    """Adjust the same cameras only once: points at rest only judge the result."""
+    with remembered_calls.of((adjustment, "refine")):
+        yield
 
 
 def test_disturbed_cameras_are_refined():
