@@ -1,5 +1,6 @@
 """Chessboards: drawn ones, real ones against another vendor's lenses, and every refusal."""
 
+import copy
 from dataclasses import replace
 from functools import cache
 
@@ -58,6 +59,13 @@ def folder(tmp_path_factory):
     return made
 
 
+@pytest.fixture(scope="module")
+def find(folder):
+    """Return a function that finds the boards of the folder only once, and gives copies."""
+    found = cache(lambda inner_corners: chessboard.find(folder, inner_corners))
+    return lambda inner_corners=INNER: copy.deepcopy(found(inner_corners))
+
+
 def some(folder, tmp_path, numbers):
     for at in numbers:
         (tmp_path / f"{at}.png").write_bytes((folder / f"{at}.png").read_bytes())
@@ -65,8 +73,8 @@ def some(folder, tmp_path, numbers):
 
 
 @pytest.mark.parametrize("inner_corners", [INNER, INNER[::-1]])
-def test_a_drawn_board_gives_its_lens(folder, inner_corners):
-    boards = chessboard.find(folder, inner_corners)
+def test_a_drawn_board_gives_its_lens(find, inner_corners):
+    boards = find(inner_corners)
     assert boards.size == SIZE and boards.dropped == {} and boards.xy.shape == (6, 35, 2)
     lens = chessboard.calibrate(boards)
     assert lens.n_used == 6 and lens.size == SIZE and lens.rms_px < 0.1
@@ -92,17 +100,17 @@ def test_unseen_and_blurred_boards_are_dropped_and_counted(folder, tmp_path):
     assert lens.n_used == 6
 
 
-def test_a_board_that_the_others_contradict_is_left_out(folder):
-    boards = chessboard.find(folder, INNER)
+def test_a_board_that_the_others_contradict_is_left_out(find):
+    boards = find()
     boards.xy[2] = boards.xy[2] * [1.0, 1.06] + 3 * np.random.default_rng(0).normal(size=(35, 2))
     lens = chessboard.calibrate(boards)
     assert {path.name: why for path, why in lens.dropped.items()} == {"2.png": "off"}
     assert lens.K[0, 0] == pytest.approx(600, rel=0.005)
 
 
-def test_the_lens_is_that_of_the_boards_that_are_left(folder, monkeypatch):
+def test_the_lens_is_that_of_the_boards_that_are_left(find, monkeypatch):
     """Where one board after the other is off, the last solution is of those that are counted."""
-    boards, solved = chessboard.find(folder, INNER), []
+    boards, solved = find(), []
     many = replace(boards, paths=boards.paths * 5, xy=np.concatenate([boards.xy] * 5))
 
     def solve(xy, _):
