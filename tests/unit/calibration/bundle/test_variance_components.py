@@ -1,6 +1,7 @@
 """Variance factors of clicks and ties: known because the errors were drawn."""
 
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -19,13 +20,19 @@ WEIGHTS = {"click_sigma_px": 3.0, "click_bias_px": 0.0, "click_loss": np.inf}  #
 EXACT = replace(COURT, sigma_m=np.full(18, 1e-4))
 
 
+@cache
+def exact():
+    """Return the network without errors, which nobody changes."""
+    return networks_made.exact_lens_prior(networks_made.make(6, 60))
+
+
 def solved(scatter_px, tie_sigma_px=1.0, points=None, seed=0, weights=WEIGHTS):
     """Solve from ties with errors of 1 px, and clicks with a scatter (2 cameras, 2 axes).
 
     Along edges that cross flat the clicks scatter more.
     """
     rng = np.random.default_rng(seed)
-    truth = networks_made.exact_lens_prior(networks_made.make(6, 60))
+    truth = exact()
     drawn = replace(truth, xy=truth.xy + rng.normal(size=truth.xy.shape))
     weighed = selection.weigh(drawn, sigma_px=tie_sigma_px, loss_scale=np.inf)
     knowledge = selection.marginalise(weighed, [0, 1])
@@ -94,8 +101,8 @@ def test_three_clicks_hold_nine_in_ten_of_the_errors_of_scattered_clicks():
     inside = []
     for seed in range(16):
         found, truth = solved(np.full((2, 2), 3.0), points=few, seed=seed)
-        exact = networks_made.fixed_cameras(truth)
-        seen = {camera.name: opencv_projection(camera, COURT.xyz) for camera in exact}
+        true = networks_made.fixed_cameras(truth)
+        seen = {camera.name: opencv_projection(camera, COURT.xyz) for camera in true}
         error = sfm_alignment.reconstruct(found.cameras, seen) - COURT.xyz
         distance = point_covariance.mahalanobis(error, found.point_covariance(COURT.xyz))
         inside.append(np.mean(distance <= point_covariance.ellipsoid(0.9)))
@@ -106,8 +113,8 @@ def test_the_covariance_holds_where_clicks_scatter_three_times_as_much():
     square = []
     for seed in range(30):
         found, truth = solved(np.full((2, 2), 3.0), seed=seed)
-        exact = networks_made.fixed_cameras(truth)
-        for v, (camera, known) in enumerate(zip(found.cameras, exact, strict=True)):
+        true = networks_made.fixed_cameras(truth)
+        for v, (camera, known) in enumerate(zip(found.cameras, true, strict=True)):
             by_focal = found.covariance[22 + 8 * v, 22 + 8 * v]
             square.append((camera.K[1, 1] - known.K[1, 1]) ** 2 / by_focal)
     assert 0.5 < np.mean(square) < 1.5
