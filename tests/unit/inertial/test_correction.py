@@ -162,7 +162,7 @@ def test_a_shift_of_the_clock_is_found():
 
 
 def test_a_row_that_nobody_performed_keeps_its_pose():
-    true = truth()
+    true = moved_bodies.moving(0, 4.0)
     first = PosedHierarchy(
         true.hierarchy,
         np.concatenate([[true.time_s[0] - 1 / 60], true.time_s]),
