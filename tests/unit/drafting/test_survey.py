@@ -1,6 +1,7 @@
 """What the files of a folder are, and the program that drafts a session of them."""
 
 import json
+import runpy
 import shutil
 import subprocess
 import sys
@@ -141,12 +142,17 @@ def run(root, *arguments):
 
 
 @pytest.mark.parametrize("court", ["Badminton", "curling", "../courts/badminton"])
-def test_an_unknown_court_is_refused_with_those_that_there_are(gym, court):
+def test_an_unknown_court_is_refused_with_those_that_there_are(gym, court, monkeypatch):
     (gym / "sessions").mkdir(exist_ok=True)
-    done = run(gym, "data/My Gym", "--court", court, "--name", "with-court")
+    words = ["data/My Gym", "--court", court, "--name", "with-court"]
+    monkeypatch.chdir(gym)
+    monkeypatch.setattr(sys, "argv", [str(PROGRAM), *words, "--sessions", str(gym / "sessions")])
+    with pytest.raises(SystemExit) as ended:
+        runpy.run_path(str(PROGRAM), run_name="__main__")
     known = "none, badminton, basketball, futsal, rectangle-10x5, sports-hall, tennis, volleyball"
-    assert done.stderr.startswith(f"Error: --court: expected one of {known}, found {court}; ")
-    assert done.returncode == 1 and done.stderr.count("\n") == 1
+    said = ended.value.code  # a text: the exit status is 1
+    assert said.startswith(f"Error: --court: expected one of {known}, found {court}; ")
+    assert len(said.splitlines()) == 1
     assert not list((gym / "sessions").glob("with-court*"))
 
 
