@@ -30,7 +30,8 @@ import pycolmap
 sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
 from courtside.calibration.bundle import selection
 from courtside.calibration.court import court as court_files
-from courtside.calibration.court import joint_adjustment, quality, sfm_alignment
+from courtside.calibration.court import joint_adjustment, sfm_alignment
+from courtside.evaluation import calibration
 from courtside.records.cameras import clicks, image_names
 from courtside.records.truth import session_truth
 from courtside.sfm import database, features, grid, mapping, matching, model, registration
@@ -124,13 +125,9 @@ def errors(folder, real, court, marked, parameters):
         click_sigma_px=options["click_sigma_px"],
         click_loss=options["click_loss"],
     )
-    volume = quality.volume(court)
-    return len(images), *(
-        quality.over_volume(quality.displaced(cameras, real.cameras, volume) - volume)[
-            "volume_rms_cm"
-        ]
-        for cameras in ([world_from_sfm.camera(camera) for camera in sfm], solved.cameras)
-    )
+    both = [world_from_sfm.camera(camera) for camera in sfm], solved.cameras
+    scored = [calibration.score(each, real.cameras, court, marked) for each in both]
+    return len(images), *(each["volume_rms_cm"] for each in scored)
 
 
 def compared_features(path, pairs=None):

@@ -37,10 +37,13 @@ import ways_to_calibrate
 from comparisons import pose
 from courtside.devices import openpose
 from courtside.geometry import camera as camera_models
+from courtside.geometry import similarity
 from courtside.pose.detector import Region
+from courtside.records.cameras import image_names
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.configuration import configuration, yaml_files
 from courtside.study.targets import together
+from fixtures.cameras import court_cameras
 
 ROOT = Path(__file__).parents[1]
 LOG = """Provided cores: 2
@@ -176,6 +179,37 @@ def test_what_a_benchmark_imports_is_there(path):
             assert file or elsewhere(node.module), node.module
             if file:
                 assert {one.name for one in node.names} <= defined(file), node.module
+
+
+def test_both_models_of_structure_from_motion_are_scored_over_the_volume(tmp_path):
+    """The true cameras, in another frame before the alignment, have no error."""
+    true = court_cameras.right_cameras(2)
+    names = [image_names.static(camera.name) for camera in true]
+    sfm_from_world = similarity.Sim3(0.3, np.eye(3)[[1, 2, 0]], np.array([1.0, 2, 3]))
+    sfm = [sfm_from_world.camera(camera) for camera in true]
+    network = SimpleNamespace(lens_of_image=[0, 1])
+    marked = dict(zip([c.name for c in true], court_cameras.views(true, noise_px=0), strict=True))
+    parameters = {
+        "adjust_network": {
+            "min_points": 15, "click_bias_px": 0.5, "click_sigma_px": 0.9, "click_loss": 4.0,
+            "tie_sigma": 4,
+        }
+    }  # fmt: skip
+    benched = structure_from_motion
+    with (
+        mock.patch.object(benched.model, "read", lambda _: (network, names, [(1920, 1080)] * 2)),
+        mock.patch.object(benched.registration, "outcome", lambda *_, **__: ""),
+        mock.patch.object(benched.selection, "fixed_cameras", lambda *_: sfm),
+        mock.patch.object(benched.selection, "residual_spread", lambda _: 0.3),
+        mock.patch.object(benched.joint_adjustment, "condense", lambda *_, **__: (None, [])),
+        mock.patch.object(
+            benched.joint_adjustment, "solve", lambda *_, **__: SimpleNamespace(cameras=true)
+        ),
+    ):
+        found = benched.errors(
+            tmp_path, SimpleNamespace(cameras=true), court_cameras.COURT, marked, parameters
+        )
+    assert found == (2, pytest.approx(0, abs=1e-3), pytest.approx(0, abs=1e-3))
 
 
 def test_scripts_are_called_by_benchmarks_that_the_next_tests_run():
