@@ -28,6 +28,13 @@ def test_the_folder_or_either_file_gives_the_cameras(tmp_path, given):
     np.testing.assert_allclose(xy, seen_by_opencv(theirs.POINTS), atol=1e-6)
 
 
+def test_serial_numbers_keep_all_digits_without_quotation_marks(tmp_path):
+    theirs.easymocap(tmp_path, names=("21418299", "2"))
+    text = (tmp_path / "intri.yml").read_text()
+    (tmp_path / "intri.yml").write_text(text.replace('"21418299"', "21418299").replace('"2"', "2"))
+    assert [camera.name for camera in file_formats.read(tmp_path)] == ["21418299", "2"]
+
+
 def test_what_we_write_is_what_opencv_reads(tmp_path):
     pose = np.column_stack([theirs.ROTATION, theirs.TRANSLATION])
     ours = cameras.Camera("left", theirs.SIZE, theirs.K, theirs.DIST, pose)

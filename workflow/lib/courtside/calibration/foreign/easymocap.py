@@ -30,8 +30,14 @@ def read(folder: Path, texts: tuple[str, str]) -> list[Camera]:
             f"{folder / INTRINSIC}: expected names of cameras, found none; write it with "
             "EasyMocap again"
         )
-    written = [f"{name:g}" if isinstance(name, float) else str(name) for name in names]
-    return [_camera(folder, name, lenses, places) for name in written]
+    return [_camera(folder, _written(name), lenses, places) for name in names]
+
+
+def _written(name: Any) -> str:
+    """Return a name as the file has it: without quotation marks it is read as a number."""
+    if not isinstance(name, float):
+        return str(name)
+    return f"{name:.0f}" if name.is_integer() else f"{name:g}"
 
 
 def _camera(folder: Path, name: str, lenses: Any, places: Any) -> Camera:
