@@ -7,6 +7,8 @@ import pytest
 import yaml
 
 from courtside.calibration.court import court as court_files
+from courtside.calibration.court import sfm_alignment
+from courtside.calibration.court_lines import walk_and_lines
 from courtside.study.errors import InputError
 
 FOLDER = Path(__file__).parents[4] / "config" / "courts"
@@ -181,3 +183,20 @@ def test_a_fault_is_one_line_that_names_it(tmp_path, keys, value, named):
     message = str(caught.value)
     assert "\n" not in message
     assert [word for word in [str(path), *named] if word not in message] == []
+
+
+def test_floor_points_a_centimetre_high_are_floor_for_all_that_uses_them(tmp_path):
+    content = yaml.safe_load((FOLDER / "badminton.yaml").read_text())
+    for point in content["points"].values():
+        point["xyz_m"][2] = point["xyz_m"][2] or 0.01
+    path = tmp_path / "badminton.yaml"
+    path.write_text(yaml.safe_dump(content))
+    found, flat = court_files.read(path), court()
+    assert found.on_floor.tolist() == (flat.xyz[:, 2] == 0).tolist()
+    np.testing.assert_array_equal(
+        court_files.to_line_centres(found), court_files.to_line_centres(flat)
+    )
+    assert np.isfinite(sfm_alignment.stretch(found, found.xyz)[1])
+    both = (walk_and_lines.of_points(each) for each in (found, flat))
+    for one, other in zip(*both, strict=True):
+        np.testing.assert_array_equal(one, other)

@@ -107,7 +107,7 @@ def paint_court(
                     else _shift(low, high, across, error, ends[line, end], axis, line)
                 )
     xyz = court.xyz.copy()
-    for point in np.flatnonzero(xyz[:, 2] == 0):
+    for point in np.flatnonzero(court.on_floor):
         for axis in (0, 1):
             xyz[point, axis] += _shift(low, high, across, error, court.xyz[point, :2], axis)
     net = None

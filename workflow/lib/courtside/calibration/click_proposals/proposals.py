@@ -114,7 +114,7 @@ def _point(view: View, at: int) -> _Found:
         return *NO_PLACE, "outside the picture"
     post = line_edges.post(court, at)
     edges = line_edges.named(court)[at]
-    if place[2] > 0:
+    if not court.on_floor[at]:
         if post is None:
             return *NO_PLACE, "neither on a line nor on a post"
         return post_tips.tip(view, post)
@@ -172,7 +172,7 @@ def _checked(view: View, found: Sequence[_Found], max_sigma_px: float) -> Propos
     for at, (place, covariance, share, reason) in enumerate(found):
         if not reason:
             off, alone = place - expected[at], covariance
-            if view.court.xyz[at, 2] == 0:
+            if view.court.on_floor[at]:
                 # Together with where the camera, moved to fit all lines, has it.
                 gain = covariance @ np.linalg.inv(covariance + CAMERA_PX**2 * np.eye(2))
                 place, covariance = place - gain @ off, covariance - gain @ covariance
@@ -189,7 +189,7 @@ def _model_error(view: View, at: int) -> float:
     """Return the standard deviation, px, of where the moved camera projects a point."""
     place, court = view.court.xyz[at], view.court
     away = np.linalg.norm(place - view.camera.centre_in_world)
-    off_m = np.hypot(court.sigma_m[at], HEIGHT_M * (place[2] > 0))
+    off_m = np.hypot(court.sigma_m[at], HEIGHT_M * (not court.on_floor[at]))
     return np.hypot(CAMERA_PX, off_m * view.camera.K[0, 0] / away)
 
 

@@ -42,6 +42,11 @@ class Court:
         ends = self.lines_m[:, :2], self.lines_m[:, 2:]
         return np.minimum(*ends), np.maximum(*ends)
 
+    @property
+    def on_floor(self) -> NDArray:
+        """Which points lie on the floor, (P,) bool."""
+        return ~is_raised(self.xyz)
+
     def other_end(self) -> NDArray:
         """Return the index of the point to which half a turn brings each one (P,); -1: none."""
         turned = np.array([*self.size_m, 0.0]) + self.xyz * [-1, -1, 1]
@@ -142,7 +147,7 @@ def to_line_centres(court: Court) -> NDArray:
     for line in range(len(low)):
         axis = across[line]
         inside = (places >= low[line] - ON_EDGE_M) & (places <= high[line] + ON_EDGE_M)
-        on = inside.all(axis=1) & (court.xyz[:, 2] == 0)
+        on = inside.all(axis=1) & court.on_floor
         middle = (low[line, axis] + high[line, axis]) / 2
         shift[on, axis] = middle - court.xyz[on, axis]
     return shift

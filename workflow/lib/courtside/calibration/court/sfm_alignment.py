@@ -216,7 +216,7 @@ def stretch(
     sigma : standard deviation of its logarithm; inf where the floor points are too few to tell
     """
     xyz_in_sfm = np.asarray(xyz_in_sfm, float)
-    floor = np.isfinite(xyz_in_sfm).all(axis=1) & (court.xyz[:, 2] == 0)
+    floor = np.isfinite(xyz_in_sfm).all(axis=1) & court.on_floor
     if floor.sum() < 5:
         return 1.0, np.inf
     design = np.column_stack([np.ones(floor.sum()), court.xyz[floor, :2]])

@@ -161,7 +161,7 @@ def _adjusted(
 
 def _painting_m(court: Court) -> float:
     """Return the standard deviation of a painted line from the court's file, m."""
-    return PAINTING * float(court.sigma_m[court.xyz[:, 2] == 0].mean())
+    return PAINTING * float(court.sigma_m[court.on_floor].mean())
 
 
 def _off_sigmas(base: Solution, name: str, seen: Edges, court: Court) -> float:
@@ -305,7 +305,7 @@ def of_points(court: Court) -> tuple[NDArray, NDArray]:
     """
     moved = np.zeros((len(court.points), 3, len(court.lines_m)))
     sigma = np.repeat(court.sigma_m[:, None], 3, axis=1)
-    sigma[court.xyz[:, 2] == 0, :2] = _painting_m(court)
+    sigma[court.on_floor, :2] = _painting_m(court)
     for point, lines in enumerate(line_edges.named(court)):
         for edge in lines:
             moved[point, edge.axis, edge.line] = 1.0

@@ -121,7 +121,7 @@ def locate(
     cameras: Sequence[Camera], xy: NDArray, court: Court, *, either_end: bool
 ) -> Place | None:
     """Find the place of a court on which most cameras agree; None if fewer than two show it."""
-    xy = np.where((court.xyz[:, 2] == 0)[:, None], xy, np.nan)
+    xy = np.where(court.on_floor[:, None], xy, np.nan)
     limit_px = np.array([LARGEST * max(camera.size) for camera in cameras])
     shown = [at for at, view in enumerate(xy) if _is_enough(np.isfinite(view[:, 0]), court)]
     views = _Views([cameras[at] for at in shown], xy[shown], court, limit_px[shown])

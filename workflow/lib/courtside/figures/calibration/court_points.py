@@ -55,7 +55,7 @@ def _draw_plan(axis: Axes, court: Court) -> None:
     for place in np.unique(court.xyz[:, :2], axis=0):
         here = [n for n in range(len(court.points)) if (court.xyz[n, :2] == place).all()]
         few = any(court.points[n] in court.sets.get(FEW, ()) for n in here)
-        raised = any(court.xyz[n, 2] > 0 for n in here)
+        raised = not court.on_floor[here].all()
         look = {"marker": "s" if few else "o", "markersize": 5 if few else 4}
         axis.plot(*place, color=style.RIGHT if raised else style.LEFT, zorder=4, **look)
         _number(axis, court, place, ", ".join(court.points[n] for n in here))
@@ -101,7 +101,7 @@ def _write_list(axis: Axes, court: Court) -> None:
 def _details(court: Court) -> list[int]:
     """Return the indices of points to enlarge, one for each wording of the edges."""
     flat = [court.points.index(points[0]) for points, _ in _groups(court)]
-    near = [n for n in flat if court.xyz[n, 2] == 0 and _lines_at(court, n) >= 2]
+    near = [n for n in flat if court.on_floor[n] and _lines_at(court, n) >= 2]
     return near or flat
 
 
@@ -139,12 +139,12 @@ def _draw_net(axis: Axes, court: Court, net: dict) -> None:
     axis.vlines([left, right], 0, post, color=court_plan.PAINT, linewidth=2)
     for n in np.flatnonzero(court.xyz[:, 1] == net["y_m"]):
         at, height = court.xyz[n, 0], court.xyz[n, 2]
-        colour = style.RIGHT if height > 0 else style.LEFT
+        colour = style.LEFT if court.on_floor[n] else style.RIGHT
         axis.plot(at, height, "o", color=colour, markersize=4, zorder=4)
         side = -1 if at < (left + right) / 2 else 1
         where = {"textcoords": "offset points", "va": "center"}
         where["ha"] = "right" if side < 0 else "left"
-        away = (AWAY_PT * side, 0 if height > 0 else -AWAY_PT)
+        away = (AWAY_PT * side, -AWAY_PT if court.on_floor[n] else 0)
         axis.annotate(court.points[n], (at, height), away, fontsize=7.5, **where)
     axis.text((left + right) / 2, middle - 0.12, f"{middle:g} m", ha="center", va="top", fontsize=7)
     room = 0.15 * (right - left)
