@@ -39,6 +39,11 @@ def clicks(seed=0, xyz=COURT.xyz, sigma_px=SIGMA_PX):
     }
 
 
+def checked(given):
+    table = click_checks.leave_one_out(IN_SFM, given, COURT)
+    return click_checks.check(COURT, IN_SFM, given, sigma_px=SIGMA_PX, table=table)
+
+
 def test_exact_clicks_leave_nothing_out():
     table = click_checks.leave_one_out(IN_SFM, clicks(sigma_px=0.0), COURT)
     assert table.cameras == ("side", "back", "corner") and table.points == COURT.points
@@ -67,7 +72,7 @@ def test_a_click_is_judged_by_the_others_alone():
 
 def test_good_clicks_are_not_accused():
     for seed in range(10):
-        assert click_checks.check(COURT, IN_SFM, clicks(seed), sigma_px=SIGMA_PX) == []
+        assert checked(clicks(seed)) == []
 
 
 @pytest.mark.parametrize("camera", ["side", "back", "corner"])
@@ -85,7 +90,7 @@ def test_a_wrong_click_in_one_of_two_cameras_is_named():
     given = clicks(2)
     given["corner"][:] = np.nan
     given["back"][1] += (30, 0)
-    lines = click_checks.check(COURT, IN_SFM, given, sigma_px=SIGMA_PX)
+    lines = checked(given)
     assert lines[0].startswith("camera back: point p02: expected")
     assert (
         "px away" in lines[0] and "click it again or delete it" in lines[0] and "\n" not in lines[0]
@@ -107,7 +112,7 @@ def test_line_centres_are_recognised_and_edges_are_not():
     centres = COURT.xyz + court.to_line_centres(COURT)
     shifts = []
     for seed in range(8):
-        lines = click_checks.check(COURT, IN_SFM, clicks(seed, centres), sigma_px=SIGMA_PX)
+        lines = checked(clicks(seed, centres))
         assert len(lines) == 1 and "line centres seem to be clicked" in lines[0]
         xyz = sfm_alignment.reconstruct(IN_SFM, clicks(seed, centres))
         shifts.append(click_checks.inward_shift_of_points(COURT, xyz))

@@ -83,6 +83,14 @@ def test_too_few_points_to_leave_one_out_are_said():
     assert any("3 are seen by two cameras" in line for line in found["warnings"])
 
 
+@pytest.mark.parametrize("line", [("p01", "p06", "p03"), ("p01", "p04", "p06", "p03")])
+def test_points_of_which_one_alone_is_beside_a_line_are_said_to_be_unchecked(line):
+    used = np.isin(COURT.points, [*line, "p02"])[:, None]
+    found = of_court({name: np.where(used, xy, np.nan) for name, xy in clicks_of().items()})
+    (said,) = [line for line in found["warnings"] if "a wrong click cannot be noticed" in line]
+    assert "without any one of them" in said and "\n" not in said
+
+
 @pytest.mark.parametrize(
     ("inwards", "n_warnings"), [((1.1, 0.15), 1), ((0.2, 0.15), 0), ((1, 0.4), 0)]
 )

@@ -1,5 +1,6 @@
 """Exchanged camera files are told from everything else that can be wrong with clicks."""
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -50,7 +51,8 @@ def test_two_exchanged_cameras_are_named(names, pair):
     clicks = clicks_of(fixed)
     one, other = pair
     clicks[one], clicks[other] = clicks[other], clicks[one]
-    for refuse in (sfm_alignment.refuse_exchanged_cameras, click_checks.check):
+    check = partial(click_checks.check, sigma_px=0.3, table=None)
+    for refuse in (sfm_alignment.refuse_exchanged_cameras, check):
         with pytest.raises(InputError, match="the camera files may be exchanged") as caught:
             refuse(COURT, fixed, clicks)
         message = str(caught.value)

@@ -12,7 +12,6 @@ from courtside.calibration.court import joint_adjustment, line_edges, sfm_alignm
 from courtside.calibration.court.court import ClickedPoints, Court, is_raised, to_line_centres
 from courtside.calibration.point_covariance import MEDIAN_2D, mahalanobis
 from courtside.geometry.camera import Camera, project
-from courtside.study.errors import InputError
 
 WRONG = 6.0  # ASSUME: a click this many sigmas off is wrong
 # Of a normal vector in two dimensions, sigma 1 per axis: length that half and 80 % stay within. The
@@ -115,7 +114,7 @@ def crossings(camera: Camera, xyz: NDArray) -> NDArray:
     return np.where(raised, RAISED**2 * np.eye(2), line_edges.crossings(camera, xyz))
 
 
-def find_wrong_clicks(table: LeaveOneOut, *, sigma_px: float = 1.0) -> list[WrongClick]:
+def find_wrong_clicks(table: LeaveOneOut, *, sigma_px: float) -> list[WrongClick]:
     """Return the clicks that contradict the others, the worst first.
 
     The `table` needs six points or more: with fewer, one wrong click corrupts the prediction from
@@ -181,28 +180,26 @@ def check(
     cameras: Sequence[Camera],
     clicks: ClickedPoints,
     *,
-    sigma_px: float = 1.0,
+    sigma_px: float,
+    table: LeaveOneOut | None,
     inwards: tuple[float, float] | None = None,
-    table: LeaveOneOut | None = None,
     adjust: Callable[[ClickedPoints], Sequence[Camera]] | None = None,
     causes_m: NDArray | None = None,
 ) -> list[str]:
     """Check clicked court points as far as the fixed cameras, in one frame, allow.
 
     Return warnings of one line: weak geometry, wrong clicks by camera and point, line centres.
-    `sigma_px` is that of a good click per axis. `inwards`, the shift of all clicks towards line
-    centres and its sigma, is from `inward_shift`, by default from `inward_shift_of_points`;
-    `adjust` is as for `sfm_alignment.refuse_exchanged_cameras`, `causes_m` as for
-    `sfm_alignment.stretch`. Raises `InputError` if the points cannot be this court: see
-    `sfm_alignment.check`.
+    `sigma_px` is that of a good click per axis; `table` is from `leave_one_out`, None where that
+    fails. `inwards`, the shift of all clicks towards line centres and its sigma, is from
+    `inward_shift`, by default from `inward_shift_of_points`; `adjust` is as for
+    `sfm_alignment.refuse_exchanged_cameras`, `causes_m` as for `sfm_alignment.stretch`. Raises
+    `InputError` if the points cannot be this court: see `sfm_alignment.check`.
     """
     sfm_alignment.refuse_exchanged_cameras(court, cameras, clicks, adjust)
     xyz = sfm_alignment.reconstruct(cameras, clicks)
     warnings = sfm_alignment.check(court, xyz, cameras, causes_m)
-    try:
-        table = table or leave_one_out(cameras, clicks, court)
-    except InputError:
-        return warnings  # too few points to leave one out, which `check` has said
+    if table is None:
+        return warnings + _unchecked(xyz)
     warnings += [str(click) for click in find_wrong_clicks(table, sigma_px=sigma_px)]
     shift, sigma = inwards or inward_shift_of_points(court, xyz)
     if CENTRES[0] < shift < CENTRES[1] and shift > CERTAIN * sigma:
@@ -212,6 +209,16 @@ def check(
             "to be clicked; click the edges that the court's file names"
         )
     return warnings
+
+
+def _unchecked(xyz_in_sfm: NDArray) -> list[str]:
+    """Return why no point can be left out; of three or fewer, `sfm_alignment.check` says it."""
+    if np.isfinite(xyz_in_sfm).all(axis=1).sum() < 4:
+        return []
+    return [
+        "court points: expected that the others can be aligned without any one of them, found that "
+        "they cannot: a wrong click cannot be noticed; click more points that are not on one line"
+    ]
 
 
 def inward_shift(
