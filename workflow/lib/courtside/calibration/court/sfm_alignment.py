@@ -63,7 +63,7 @@ def reconstruct(cameras: Sequence[Camera], clicks: ClickedPoints) -> NDArray:
 def paper_frame(court: Court, xyz_in_sfm: NDArray) -> PaperFrame:
     """Find the world frame as the paper does, from the origin and the ends of x and y.
 
-    Raises `InputError` if the court has no set "three", or one of its points is missing.
+    Raises `InputError` if one of these points is missing.
 
     [Shishido2020, eq 2-5]: e_i = (S_i - S_o) / |S_i - S_o| are the rows of R, t = -R S_o,
     D = [R t; 0 1]. They are called orthonormal there and never made so. A camera needs a rotation:
@@ -81,11 +81,6 @@ def paper_frame(court: Court, xyz_in_sfm: NDArray) -> PaperFrame:
     court : its set "three" names the origin, a point on the x axis and one on the y axis
     xyz_in_sfm : (P, 3) float; reconstructed court points; all three must be there
     """
-    if "three" not in court.sets or len(court.sets["three"]) != 3:
-        raise InputError(
-            f"court {court.name}: expected a set `three` of the origin, the end of x and the end "
-            "of y, found none; add it to the court's file"
-        )
     names = court.sets["three"]
     places = np.asarray(xyz_in_sfm, float)[court.indices("three")]
     missing = [name for name, place in zip(names, places, strict=True) if np.isnan(place).any()]
