@@ -58,10 +58,10 @@ def propose(
     is the end of its axis, which is fitted in the same way. A point that is not visible is not
     proposed, even if the camera predicts it.
 
-    The camera is known from two or three clicks: in its static picture (H, W, 3) uint8, the
-    predicted court may be wrong by up to `search_px`. A point whose expected error is above
-    `max_sigma_px` is not proposed. Against the floor the lines are "light", "dark" or "any". Raises
-    `ValueError` if the picture has not the camera's size.
+    The camera is known roughly: in its static picture (H, W, 3) uint8, the predicted court may be
+    wrong by up to `search_px`. A point whose expected error is above `max_sigma_px` is not
+    proposed. Against the floor the lines are "light", "dark" or "any". Raises `ValueError` if the
+    picture has not the camera's size.
     """
     if image.shape[1::-1] != tuple(camera.size):
         raise ValueError(f"expected a picture of {camera.size} px, found {image.shape[1::-1]}")

@@ -14,7 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from courtside.geometry import camera, rotations
 
-# Focal lengths to start from, in picture widths (fields of view of 90 to 28 degrees), 20 % apart.
+# Focal lengths to start from, in picture widths (fields of view of 90 to 28 degrees), 20 to 25 %
+# apart.
 FOCAL_WIDTHS = (0.5, 0.6, 0.72, 0.87, 1.05, 1.3, 1.6, 2.0)
 MAX_STEPS = 60  # ASSUME: far above what a start by SQPnP needs
 MIN_FALL = 1e-12  # relative fall of the cost, near rounding

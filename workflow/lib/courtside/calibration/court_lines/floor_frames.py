@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from courtside.geometry import rotations
 
 # ASSUME: all of these are tuned by hand on development sessions.
-FOCAL_WIDTHS = 0.5 * 1.13 ** np.arange(14)  # of the picture: fields of view of 90 to 16 degrees
+FOCAL_WIDTHS = 0.5 * 1.13 ** np.arange(14)  # of the picture: fields of view of 90 to 23 degrees
 TRIALS, KEPT = 900, 3  # samples and frames per focal length
 MOST_SEGMENTS = 350
 TOLERANCE_RAD, END_PX = np.deg2rad(1.0), 0.7  # of a segment's direction, and of its ends

@@ -1,7 +1,8 @@
 """How far views of static points and of people disagree.
 
 C cameras, N points. `xy` is (C, N, 2) px, NaN where unseen. Residuals are from a keypoint to the
-projection of the point that all views, or all other views, give.
+projection of the point that all views give, or to a keypoint from the projection of the point that
+all other views give.
 """
 
 from collections.abc import Sequence
@@ -101,10 +102,11 @@ def of_people(views: Sequence[NDArray]) -> NDArray:
 
 
 def height_px(views: Sequence[NDArray], standing_px: NDArray) -> float:
-    """Return the median height of people, px, from shoulders to ankles; inf without anybody.
+    """Return the median height of people, px, over their limb joints; inf without anybody.
 
-    `views` are their joints (T, J, 2) by camera. If no picture shows anybody whole, the height
-    follows from `standing_px` (C, T), that of each person, standing, in each picture.
+    `views` are these joints (T, J, 2) by camera: of somebody upright, from shoulders to ankles. If
+    no picture shows anybody whole, the height follows from `standing_px` (C, T), that of each
+    person, standing, in each picture.
     """
     whole = [view[np.isfinite(view).all(axis=(-2, -1))] for view in views]
     heights = [np.ptp(view[..., 1], axis=-1) for view in whole]
