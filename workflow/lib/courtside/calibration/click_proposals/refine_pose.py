@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera, project
 
-# ASSUME: how far a roughly known camera is off, standard deviation: of its rotation (3, rad), centre
-# (3, m), relative focal length, and k1.
+# ASSUME: how far a roughly known camera is off, standard deviation: of its rotation (3, rad),
+# centre (3, m), relative focal length, and k1.
 PRIOR_SIGMA = np.array([0.01] * 3 + [0.15] * 3 + [0.01] + [0.01])
 FLOOR_PX = 0.3  # ASSUME: painted lines are some mm from where the court's model has them
 

@@ -258,7 +258,9 @@ def refuse_exchanged_cameras(
 
     Parameters
     ----------
-    cameras : in one frame, of structure from motion: clicks must not have shaped it
+    cameras : in one frame, of structure from motion, which no click has shaped. Adjusted cameras
+        have followed their clicks as far as the ties allow: of these an exchange is found only
+        where the ties withstood it
     adjust : function from clicks to the fixed cameras after a joint adjustment with them. With few
         pictures, structure from motion is bent by more than the scatter of clicks: points that
         this bend can explain are judged after the adjustment
