@@ -206,10 +206,10 @@ def test_batches_do_not_change_the_result(batch, monkeypatch):
 
 
 def test_contradicting_shapes_and_too_few_views_are_refused():
-    with pytest.raises(ValueError, match="C = 2 cameras"):
-        triangulation.triangulate_robust(
-            scene.ring(2), np.zeros((3, 1, 2)), np.ones((3, 1)), sigma_px=1, **LIMITS
-        )
+    for n_views, n_scores in ((3, 3), (2, 1)):
+        xy, score = np.zeros((n_views, 1, 2)), np.ones((n_scores, 1))
+        with pytest.raises(ValueError, match="C = 2 cameras"):
+            triangulation.triangulate_robust(scene.ring(2), xy, score, sigma_px=1, **LIMITS)
     with pytest.raises(ValueError, match="min_views"):
         triangulation.triangulate_robust(
             scene.ring(2),

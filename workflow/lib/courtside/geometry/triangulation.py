@@ -155,7 +155,7 @@ def triangulate_robust(
 
 def check(cameras: Sequence[Camera], xy: NDArray, score: NDArray, min_views: int) -> None:
     """Raise `ValueError` where the inputs of a triangulation contradict each other."""
-    if xy.shape != (len(cameras), *score.shape[1:], 2) or score.ndim != 2:
+    if score.ndim != 2 or len(score) != len(cameras) or xy.shape != (*score.shape, 2):
         raise ValueError(
             f"expected xy (C, N, 2) and score (C, N) with C = {len(cameras)} cameras, "
             f"found {xy.shape} and {score.shape}"
