@@ -168,7 +168,7 @@ def by_hand(data, cameras, rate_hz):
     step = yaml_files.read(ROOT / "config" / "config.yaml")["triangulate"]
     step = {key: step[key] for key in ("min_score", "min_views")}
     flat = xy.reshape(len(cameras), -1, 2), score.reshape(len(cameras), -1)
-    found = triangulation.triangulate_robust(cameras, *flat, sigma_px=1, **step, **HAND_PX)
+    found = triangulation.triangulate_robust(cameras, *flat, **step, **HAND_PX)
     return np.arange(shape[1]) / rate_hz, found.xyz.reshape(*shape[1:], 3)
 
 

@@ -42,7 +42,7 @@ OPENPOSE = {name: 5 + 2 * at for at, name in enumerate(("shoulder", "elbow", "wr
 OPENPOSE |= {name: 11 + 2 * at for at, name in enumerate(("hip", "knee", "ankle"))}
 # Pose2Sim keeps all views until their mean error exceeds its limit; a wide fade comes closest.
 OPENPOSE_PX = {"max_error_px": 15, "fade_px": 20}  # of a person 700 px tall
-LIKE_POSE2SIM = {"sigma_px": 1, "max_error_px": 18, "fade_px": 36, "min_score": 0.1}
+LIKE_POSE2SIM = {"max_error_px": 18, "fade_px": 36, "min_score": 0.1}
 
 
 def openpose(folder, number):
@@ -110,10 +110,7 @@ def measured(cameras, seen, others, demo, step):
     own = {key: step["triangulate"][key] for key in ("min_score", "min_views")} | OPENPOSE_PX
     flat = others[..., :2].reshape(len(cameras), -1, 2), others[..., 2].reshape(len(cameras), -1)
     compared = {"TRC": reference(demo)}
-    for name, options in (
-        ("triangulated alike", own | {"sigma_px": 1}),
-        ("as Pose2Sim", LIKE_POSE2SIM),
-    ):
+    for name, options in (("triangulated alike", own), ("as Pose2Sim", LIKE_POSE2SIM)):
         xyz = triangulation.triangulate_robust(cameras, *flat, **options).xyz
         compared[f"OpenPose, same cameras, {name}"] = xyz.reshape(-1, len(limbs), 3)
     for stage, points in (("raw", raw), ("filtered", filtered(raw, step["filter_motion"]))):

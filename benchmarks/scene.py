@@ -78,4 +78,4 @@ def one_bad_view(count, frames=1000, seed=1):
 def packed(camera_matrix, matrices, xyz, xy, score):
     """Return the arrays as the methods read them."""
     return {"K": camera_matrix, "cam_from_world": matrices, "size": np.array(SIZE), "xyz": xyz,
-            "xy": xy, "score": score, "sigma_px": np.array(NOISE_PX)}  # fmt: skip
+            "xy": xy, "score": score}  # fmt: skip

@@ -251,7 +251,6 @@ def triangulated(views):
         views,
         seen[..., :2].reshape(4, -1, 2),
         seen[..., 2].reshape(4, -1),
-        sigma_px=1,
         max_error_px=18,
         fade_px=36,
         min_score=0.1,

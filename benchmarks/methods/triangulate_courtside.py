@@ -18,7 +18,7 @@ def main(scene_npz, result_npz, repeats):
         camera.Camera(f"cam_{at:02d}", size, scene["K"], np.zeros(5), matrix)
         for at, matrix in enumerate(scene["cam_from_world"])
     ]
-    limits = {"sigma_px": float(scene["sigma_px"]), "max_error_px": 15.0, "min_views": 2}
+    limits = {"max_error_px": 15.0, "min_views": 2}
     xy, score = scene["xy"], scene["score"]
     triangulation.triangulate_robust(views, xy[:, :100], score[:, :100], **limits)  # warm-up
     seconds = []

@@ -143,11 +143,10 @@ def test_click_errors_make_a_racket_longer_on_average():
         real,
         np.stack([xy[:2] for xy in exact.values()]),
         np.ones((2, 2)),
-        sigma_px=sigma_px,
         max_error_px=np.inf,
     )
     along = (ends[0, 0] - ends[0, 1]) / LENGTH_M
-    covariance = both.covariance.sum(axis=0)
+    covariance = sigma_px**2 * both.covariance.sum(axis=0)
     expected = np.trace((np.eye(3) - np.outer(along, along)) @ covariance) / (2 * LENGTH_M)
     error = np.std(off) / np.sqrt(n_frames)
     assert expected > 8 * error

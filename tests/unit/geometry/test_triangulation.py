@@ -23,7 +23,7 @@ def test_exact_keypoints_give_exact_points(n_cameras, dist):
     views = scene.ring(n_cameras, dist=dist)
     xyz = scene.points(200)
     xy = scene.views(views, xyz)
-    found = triangulation.triangulate_robust(views, xy, np.ones(xy.shape[:2]), sigma_px=1, **LIMITS)
+    found = triangulation.triangulate_robust(views, xy, np.ones(xy.shape[:2]), **LIMITS)
     np.testing.assert_allclose(found.xyz, xyz, atol=1e-8)
     assert found.accepted.all()
     assert found.error_px.max() < 1e-5
@@ -81,7 +81,7 @@ def test_one_wrong_view_is_left_out(n_cameras):
     xy = scene.views(views, xyz) + rng.normal(0, 1, (n_cameras, 500, 2))
     wrong = rng.integers(0, n_cameras, 500)
     xy[wrong, np.arange(500)] += rng.uniform(80, 400, (500, 1)) * rng.choice([-1, 1], (500, 2))
-    found = triangulation.triangulate_robust(views, xy, np.ones(xy.shape[:2]), sigma_px=1, **LIMITS)
+    found = triangulation.triangulate_robust(views, xy, np.ones(xy.shape[:2]), **LIMITS)
     error_m = np.linalg.norm(found.xyz - xyz, axis=1)
     kept = found.accepted[wrong, np.arange(500)]
     limit = 0.2 if n_cameras == 3 else 0.02  # two views cannot always tell which of three is wrong
@@ -93,9 +93,9 @@ def test_one_wrong_view_is_left_out(n_cameras):
 def test_covariance_holds_the_errors_it_promises():
     views, xyz = scene.ring(4, dist=LENS), scene.points(4000)
     xy = scene.views(views, xyz) + np.random.default_rng(3).normal(0, 2, (4, 4000, 2))
-    found = triangulation.triangulate_robust(views, xy, np.ones((4, 4000)), sigma_px=2, **LIMITS)
+    found = triangulation.triangulate_robust(views, xy, np.ones((4, 4000)), **LIMITS)
     error = found.xyz - xyz
-    squared = np.einsum("ni,nij,nj->n", error, np.linalg.inv(found.covariance), error)
+    squared = np.einsum("ni,nij,nj->n", error, np.linalg.inv(2**2 * found.covariance), error)
     # 90 % of a chi-squared variable with 3 degrees of freedom lie below 6.251.
     assert 0.87 <= np.mean(squared < 6.251) <= 0.92
 
@@ -106,7 +106,7 @@ def test_missing_and_low_scores_are_not_used():
     score = np.ones((3, 3))
     xy[1:, 0] = np.nan
     score[0, 1], xy[0, 1] = 0.1, xy[0, 1] + 300
-    found = triangulation.triangulate_robust(views, xy, score, sigma_px=1, min_score=0.3, **LIMITS)
+    found = triangulation.triangulate_robust(views, xy, score, min_score=0.3, **LIMITS)
     assert np.isnan(found.xyz[0]).all()
     np.testing.assert_allclose(found.xyz[1:], xyz[1:], atol=1e-8)
     assert not found.accepted[0, 1]
@@ -127,7 +127,7 @@ def weak_views(n=200, low=0.02, seed=5):
     return views, xyz, scene.views(views, xyz) + noise_px, score
 
 
-WEAK = {"sigma_px": 1, "max_error_px": 7.0, "min_score": 0.05}
+WEAK = {"max_error_px": 7.0, "min_score": 0.05}
 
 
 def test_low_scores_are_used_where_the_other_views_leave_a_direction_open():
@@ -176,7 +176,7 @@ def test_views_that_contradict_give_nothing():
     views, xyz = scene.ring(2), scene.points(1)
     xy = scene.views(views, xyz)
     xy[0] += [0, 400]
-    found = triangulation.triangulate_robust(views, xy, np.ones((2, 1)), sigma_px=1, **LIMITS)
+    found = triangulation.triangulate_robust(views, xy, np.ones((2, 1)), **LIMITS)
     assert np.isnan(found.xyz).all()
     assert not found.accepted.any()
 
@@ -191,7 +191,7 @@ def test_points_behind_the_cameras_are_refused():
     # The rays cross behind the cameras: the left camera sees the point further left than the right
     # one.
     xy = np.array([[[900.0, 500.0]], [[1300.0, 500.0]]])
-    found = triangulation.triangulate_robust(pair, xy, np.ones((2, 1)), sigma_px=1, **LIMITS)
+    found = triangulation.triangulate_robust(pair, xy, np.ones((2, 1)), **LIMITS)
     assert np.isnan(found.xyz).all()
 
 
@@ -199,9 +199,9 @@ def test_points_behind_the_cameras_are_refused():
 def test_batches_do_not_change_the_result(batch, monkeypatch):
     views, xyz = scene.ring(4), scene.points(50)
     xy = scene.views(views, xyz) + np.random.default_rng(4).normal(0, 8, (4, 50, 2))
-    whole = triangulation.triangulate_robust(views, xy, np.ones((4, 50)), sigma_px=1, **LIMITS)
+    whole = triangulation.triangulate_robust(views, xy, np.ones((4, 50)), **LIMITS)
     monkeypatch.setattr(triangulation, "BATCH", batch)
-    parts = triangulation.triangulate_robust(views, xy, np.ones((4, 50)), sigma_px=1, **LIMITS)
+    parts = triangulation.triangulate_robust(views, xy, np.ones((4, 50)), **LIMITS)
     np.testing.assert_allclose(parts.xyz, whole.xyz, atol=1e-9)
 
 
@@ -209,13 +209,12 @@ def test_contradicting_shapes_and_too_few_views_are_refused():
     for n_views, n_scores in ((3, 3), (2, 1)):
         xy, score = np.zeros((n_views, 1, 2)), np.ones((n_scores, 1))
         with pytest.raises(ValueError, match="C = 2 cameras"):
-            triangulation.triangulate_robust(scene.ring(2), xy, score, sigma_px=1, **LIMITS)
+            triangulation.triangulate_robust(scene.ring(2), xy, score, **LIMITS)
     with pytest.raises(ValueError, match="min_views"):
         triangulation.triangulate_robust(
             scene.ring(2),
             np.zeros((2, 1, 2)),
             np.ones((2, 1)),
-            sigma_px=1,
             max_error_px=9,
             min_views=1,
         )
@@ -232,7 +231,7 @@ def test_a_board_of_known_size_keeps_its_squares():
     for row in seen.itertuples():
         xy[row.cam_id, at[row.sync_index, row.keypoint_id]] = row.img_loc_x, row.img_loc_y
     score = np.where(np.isfinite(xy[..., 0]), 1.0, np.nan)
-    found = triangulation.triangulate_robust(views, xy, score, sigma_px=1, **LIMITS)
+    found = triangulation.triangulate_robust(views, xy, score, **LIMITS)
     places = seen.groupby("keypoint_id")[["obj_loc_x", "obj_loc_y"]].first()
     lengths_mm = []
     for (frame, corner), n in at.items():
@@ -255,7 +254,7 @@ PLAIN_XYZ = scene.points(50)
 def test_exact_views_give_the_points_whatever_the_lens():
     cameras = scene.ring(3, dist=(-0.1, 0.02, 1e-3, -1e-3, 0))
     found = triangulation.triangulate_plain(
-        cameras, scene.views(cameras, PLAIN_XYZ), np.ones((3, 50)), sigma_px=1.0
+        cameras, scene.views(cameras, PLAIN_XYZ), np.ones((3, 50))
     )
     np.testing.assert_allclose(found.xyz, PLAIN_XYZ, atol=1e-7)
     assert found.accepted.all() and found.error_px.max() < 1e-5
@@ -264,13 +263,13 @@ def test_exact_views_give_the_points_whatever_the_lens():
 def test_two_noisy_views_give_nearly_what_opencv_does():
     cameras = scene.ring(5)[:2]
     xy = scene.views(cameras, PLAIN_XYZ) + np.random.default_rng(0).normal(0, 3, (2, 50, 2))
-    found = triangulation.triangulate_plain(cameras, xy, np.ones((2, 50)), sigma_px=3.0)
+    found = triangulation.triangulate_plain(cameras, xy, np.ones((2, 50)))
     matrices = [camera.K @ camera.cam_from_world for camera in cameras]
     other = cv2.triangulatePoints(*matrices, xy[0].T.copy(), xy[1].T.copy())
     apart = np.linalg.norm(found.xyz - (other[:3] / other[3]).T, axis=1)
     error = np.linalg.norm(found.xyz - PLAIN_XYZ, axis=1)
     assert np.median(apart) < 0.1 * np.median(error)
-    sigma = np.sqrt(np.trace(found.covariance, axis1=1, axis2=2))
+    sigma = 3 * np.sqrt(np.trace(found.covariance, axis1=1, axis2=2))
     assert np.sqrt(np.mean(error**2)) == pytest.approx(np.sqrt(np.mean(sigma**2)), rel=0.25)
 
 
@@ -278,10 +277,10 @@ def test_a_wrong_view_is_used_and_a_doubtful_one_is_not():
     cameras = scene.ring(4)
     xy, score = scene.views(cameras, PLAIN_XYZ), np.ones((4, 50))
     xy[0] += 200
-    found = triangulation.triangulate_plain(cameras, xy, score, sigma_px=1.0)
+    found = triangulation.triangulate_plain(cameras, xy, score)
     assert np.linalg.norm(found.xyz - PLAIN_XYZ, axis=1).min() > 0.02
     score[0] = 0.1
-    found = triangulation.triangulate_plain(cameras, xy, score, sigma_px=1.0, min_score=0.5)
+    found = triangulation.triangulate_plain(cameras, xy, score, min_score=0.5)
     np.testing.assert_allclose(found.xyz, PLAIN_XYZ, atol=1e-7)
     assert not found.accepted[0].any()
 
@@ -290,7 +289,7 @@ def test_a_view_beyond_the_fold_of_its_lens_is_not_accepted():
     cameras = [replace(one, dist=np.array([-0.3, 0, 0, 0, 0])) for one in scene.ring(3)]
     xy = scene.views(cameras, PLAIN_XYZ)
     xy[0, 3] = [-9000.0, -9000.0]
-    found = triangulation.triangulate_plain(cameras, xy, np.ones((3, 50)), sigma_px=1.0)
+    found = triangulation.triangulate_plain(cameras, xy, np.ones((3, 50)))
     assert found.accepted[:, 3].tolist() == [False, True, True]
     np.testing.assert_allclose(found.xyz, PLAIN_XYZ, atol=1e-6)
 
@@ -301,12 +300,12 @@ def test_points_of_too_few_views_are_missing():
     xy[:2, 3] = np.nan
     xy[0, 4] = np.nan
     found = triangulation.triangulate_plain(
-        cameras, xy, np.ones((3, 50)), sigma_px=1.0, min_views=2
+        cameras, xy, np.ones((3, 50)), min_views=2
     )
     assert np.isnan(found.xyz[3]).all() and not found.accepted[:, 3].any()
     assert found.accepted[:, 4].tolist() == [False, True, True]
     with pytest.raises(ValueError, match="min_views"):
-        triangulation.triangulate_plain(cameras, xy, np.ones((3, 50)), sigma_px=1.0, min_views=1)
+        triangulation.triangulate_plain(cameras, xy, np.ones((3, 50)), min_views=1)
 
 
 def systems(count, seed=0):

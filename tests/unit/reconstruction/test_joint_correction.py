@@ -164,7 +164,7 @@ def seen_at(true, cameras):
             way /= np.linalg.norm(way, axis=1, keepdims=True)
             place = true[:, at] + 0.05 * (way * out).sum(axis=1, keepdims=True) * forward
             pictures.append(scene.opencv_projection(camera, place))
-        limits = {"sigma_px": 1.0, "max_error_px": 60.0, "fade_px": 1e6}
+        limits = {"max_error_px": 60.0, "fade_px": 1e6}
         seen = triangulation.triangulate_robust(cameras, np.stack(pictures), scores, **limits)
         found[:, at] = seen.xyz
     return found

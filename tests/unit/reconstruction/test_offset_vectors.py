@@ -36,7 +36,7 @@ def test_a_joint_moves_by_what_the_triangulation_makes_of_one_ray():
     for at, camera in enumerate(cameras):
         pictures = scene.views(cameras, xyz)
         pictures[at] = scene.opencv_projection(camera, xyz + step)
-        limits = {"sigma_px": 1.0, "max_error_px": 50.0, "fade_px": 1e6}
+        limits = {"max_error_px": 50.0, "fade_px": 1e6}
         found = triangulation.triangulate_robust(
             cameras, pictures, np.ones(accepted.T.shape), **limits
         )

@@ -36,7 +36,8 @@ class Triangulated:
     """Triangulated points."""
 
     xyz: NDArray  # (N, 3): NaN where too few views are usable or agree
-    covariance: NDArray  # (N, 3, 3) m2: from the keypoints' own noise; NaN where missing
+    # (N, 3, 3) m2: of keypoints whose standard deviation is 1 px per axis at score 1; NaN if missing
+    covariance: NDArray
     accepted: NDArray  # (C, N): views that the point rests on
     error_px: NDArray  # (C, N): from keypoint, accepted or not, to projection; NaN without either
     weight: NDArray  # (C, N): of the views before any of them fades, 1 for score 1; 0 if not used
@@ -85,7 +86,6 @@ def triangulate_robust(
     xy: NDArray,
     score: NDArray,
     *,
-    sigma_px: ArrayLike,
     max_error_px: ArrayLike,
     min_views: int = 2,
     min_score: float = 0.0,
@@ -114,8 +114,6 @@ def triangulate_robust(
     Parameters
     ----------
     score : (C, N) float; the weight of a view's squared error
-    sigma_px : float or (N,) float; standard deviation per axis of a keypoint with score 1: scales
-        the covariance only
     max_error_px : float or (C, N) float; the limit: a view is accepted if its keypoint lies this
         close to the projected point
     min_views : fewest accepted views of a point, at least 2
@@ -125,8 +123,7 @@ def triangulate_robust(
     weak_m : metres, from keypoints with a standard deviation of 0.4 of the limit; None solves no
         point again
     """
-    check(cameras, xy, score, min_views)
-    sigma_px = np.broadcast_to(sigma_px, xy.shape[1:2])
+    _check(cameras, xy, score, min_views)
     limit_px = np.broadcast_to(np.asarray(max_error_px, dtype=float), score.shape)
     fading_px = FADE * limit_px if fade_px is None else np.broadcast_to(fade_px, score.shape)
     pieces = [slice(at, at + BATCH) for at in range(0, max(xy.shape[1], 1), BATCH)]
@@ -135,7 +132,6 @@ def triangulate_robust(
             cameras,
             xy[:, piece],
             score[:, piece],
-            sigma_px[piece],
             min_views=min_views,
             min_score=min_score,
             limit_px=limit_px[:, piece],
@@ -153,7 +149,7 @@ def triangulate_robust(
     )
 
 
-def check(cameras: Sequence[Camera], xy: NDArray, score: NDArray, min_views: int) -> None:
+def _check(cameras: Sequence[Camera], xy: NDArray, score: NDArray, min_views: int) -> None:
     """Raise `ValueError` where the inputs of a triangulation contradict each other."""
     if score.ndim != 2 or len(score) != len(cameras) or xy.shape != (*score.shape, 2):
         raise ValueError(
@@ -168,7 +164,6 @@ def _solve(
     cameras: Sequence[Camera],
     xy: NDArray,
     score: NDArray,
-    sigma_px: NDArray,
     *,
     min_views: int,
     min_score: float,
@@ -178,16 +173,16 @@ def _solve(
 ) -> Triangulated:
     seen = np.isfinite(xy).all(axis=-1) & np.isfinite(score) & (score > 0)
     weight = np.where(seen & (score >= min_score), score, 0.0)
-    found = _weighted(cameras, xy, weight, sigma_px, min_views, limit_px, fade_px)
-    spread_m = _spread_m(found, sigma_px, limit_px)
+    found = _weighted(cameras, xy, weight, min_views, limit_px, fade_px)
+    spread_m = _spread_m(found, limit_px)
     weak = np.flatnonzero((spread_m > weak_m) & (seen.sum(axis=0) > 2))
     if not len(weak):
         return found
     root = np.sqrt(np.where(seen, score, 0.0)[:, weak])
     wider = np.clip(np.nan_to_num(score[:, weak]), LEAST_SCORE, 1.0) ** -WIDER
     limits_px = limit_px[:, weak] * wider, fade_px[:, weak] * wider
-    again = _weighted(cameras, xy[:, weak], root, sigma_px[weak], min_views, *limits_px)
-    better = _spread_m(again, sigma_px[weak], limit_px[:, weak]) < BETTER * spread_m[weak]
+    again = _weighted(cameras, xy[:, weak], root, min_views, *limits_px)
+    better = _spread_m(again, limit_px[:, weak]) < BETTER * spread_m[weak]
     return _replaced(found, weak[better], again, better)
 
 
@@ -195,7 +190,6 @@ def _weighted(
     cameras: Sequence[Camera],
     xy: NDArray,
     weight: NDArray,
-    sigma_px: NDArray,
     min_views: int,
     limit_px: NDArray,
     fade_px: NDArray,
@@ -208,16 +202,16 @@ def _weighted(
     if len(at):
         found = _select_and_refine(views.of(at), limit_px[:, at], fade_px[:, at], min_views)
         xyz[at], accepted[:, at] = found
-    covariance = _noise_covariance(views, xyz, accepted, sigma_px)
+    covariance = _noise_covariance(views, xyz, accepted)
     return Triangulated(xyz, covariance, accepted, _reprojection_px(cameras, xy, xyz), weight)
 
 
-def _spread_m(found: Triangulated, sigma_px: NDArray, limit_px: NDArray) -> NDArray:
+def _spread_m(found: Triangulated, limit_px: NDArray) -> NDArray:
     """Return the standard deviation (N,) m of points by keypoints of the usual error.
 
     NaN where missing; infinite where the views leave a direction open.
     """
-    usual = USUAL * np.median(limit_px, axis=0) / sigma_px
+    usual = USUAL * np.median(limit_px, axis=0)
     spread_m = np.sqrt(np.trace(found.covariance, axis1=1, axis2=2)) * usual
     return np.where(np.isnan(spread_m) & np.isfinite(found.xyz[:, 0]), np.inf, spread_m)
 
@@ -276,14 +270,14 @@ def _faded(views: Views, xyz: NDArray, scale_px: NDArray, widest_px: NDArray | f
     return views.weight / (1 + (error / scale_px) ** 2) ** 2 * (error <= widest_px)
 
 
-def _noise_covariance(views: Views, xyz: NDArray, accepted: NDArray, sigma_px: NDArray) -> NDArray:
-    """Return the covariance (N, 3, 3) m2 of points from the noise of their accepted views (C, N).
+def _noise_covariance(views: Views, xyz: NDArray, accepted: NDArray) -> NDArray:
+    """Return the covariance (N, 3, 3) m2 of points from 1 px of noise, with weight 1, per axis.
 
-    `sigma_px` (N,) is the standard deviation per axis of a keypoint with weight 1.
+    Only `accepted` views (C, N) count.
     """
     _, in_cam = views.residuals(np.nan_to_num(xyz))
     rows, weighted = views.jacobians(in_cam, views.weight * accepted)
-    return inverse_3x3(weighted @ rows) * (sigma_px**2)[:, None, None]
+    return inverse_3x3(weighted @ rows)
 
 
 def _reprojection_px(cameras: Sequence[Camera], xy: NDArray, xyz: NDArray) -> NDArray:
@@ -350,27 +344,26 @@ def triangulate_plain(
     xy: NDArray,
     score: NDArray,
     *,
-    sigma_px: ArrayLike,
     min_views: int = 2,
     min_score: float = 0.0,
 ) -> Triangulated:
     """Triangulate points by a DLT over all views that see them, without weights.
 
     The parameters are those of `triangulate_robust`, but `score` selects views and does not weigh
-    them: `accepted` are all views used, and `sigma_px` is that of every keypoint.
+    them: `accepted` are all views used, and `covariance` is for 1 px of noise in each.
 
     [Shishido2020, section 2]; Hartley & Zisserman 2004, sec. 12.2. The covariance is that of the
     least-squares point in the pictures, to which a DLT is close if the cameras are about equally
     far.
     """
-    check(cameras, xy, score, min_views)
+    _check(cameras, xy, score, min_views)
     used = np.isfinite(xy).all(axis=-1) & np.isfinite(score) & (score >= min_score) & (score > 0)
     used &= used.sum(axis=0) >= min_views
     views = Views(cameras, xy, used.astype(float))
     xyz = triangulate(views.xy, views.weight, views.matrix)
     return Triangulated(
         xyz=xyz,
-        covariance=_noise_covariance(views, xyz, used, np.broadcast_to(sigma_px, len(xyz))),
+        covariance=_noise_covariance(views, xyz, used),
         accepted=(views.weight > 0) & np.isfinite(xyz[:, 0]),
         error_px=_reprojection_px(cameras, xy, xyz),
         weight=views.weight,

@@ -132,7 +132,6 @@ def _placed(seen: Seen, rest: list[int], xy: NDArray, score: NDArray) -> NDArray
         [seen.cameras[at] for at in rest],
         xy[rest].reshape(len(rest), -1, 2),
         score[rest].reshape(len(rest), -1),
-        sigma_px=1.0,
         max_error_px=np.repeat(limit_px.reshape(len(rest), -1), score.shape[-1], axis=1),
         min_score=MIN_SCORE,
     )

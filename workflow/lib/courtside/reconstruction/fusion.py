@@ -60,7 +60,7 @@ def triangulate_take(
     time_s = resampling.common_times(views, clocks) if time_s is None else time_s
     xy, score = resampling.resample_all(views, clocks, time_s)
     swapped = np.zeros(score.shape, dtype=bool)
-    options: dict[str, Any] = {"min_views": min_views, "min_score": min_score, "sigma_px": 1.0}
+    options: dict[str, Any] = {"min_views": min_views, "min_score": min_score}
     solve: Callable[..., triangulation.Triangulated] = triangulation.triangulate_plain
     if rule == "robust":
         solve = triangulation.triangulate_robust

@@ -51,7 +51,6 @@ def _middle(
         cameras,
         xy.reshape(len(cameras), -1, 2),
         flat,
-        sigma_px=1.0,
         max_error_px=np.broadcast_to(AGREED * extent_px[:, None], flat.shape),
     )
     xyz = np.ma.masked_invalid(found.xyz.reshape(*score.shape[1:], 3))

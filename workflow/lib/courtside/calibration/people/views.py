@@ -98,7 +98,6 @@ def placed(cameras: Sequence[Camera], seen: Seen, limits: Limits) -> triangulati
         cameras,
         xy,
         score,
-        sigma_px=1.0,
         max_error_px=limits.limit * height_px,
         fade_px=limits.fade * height_px,
         min_score=limits.score,

@@ -202,7 +202,7 @@ def triangulated(cameras: Sequence[Camera], xy: NDArray) -> NDArray:
     limit = TOLERANCE * max(max(camera.size) for camera in cameras)
     score = np.isfinite(flat[..., 0]).astype(float)
     with np.errstate(divide="ignore", invalid="ignore"):  # markers that only one camera sees
-        found = triangulate_robust(cameras, flat, score, sigma_px=1.0, max_error_px=limit)
+        found = triangulate_robust(cameras, flat, score, max_error_px=limit)
     return found.xyz.reshape(*xy.shape[1:3], 3)
 
 
