@@ -45,8 +45,8 @@ def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, calibr
 def align(court, xyz_in_sfm, calibration):
     """Return the similarity from a model to the court, and its uncertainty."""
     if Calibration.parse(calibration).kind == "paper":
-        frame = sfm_alignment.paper_frame(court, xyz_in_sfm)
-        return frame.nearest, {"skew_deg": frame.skew_deg}
+        world_from_sfm, skew_deg = sfm_alignment.paper_frame(court, xyz_in_sfm)
+        return world_from_sfm, {"skew_deg": skew_deg}
     world_from_sfm, accepted = sfm_alignment.align(court, xyz_in_sfm)
     return world_from_sfm, {"n_points": int(accepted.sum())}
 

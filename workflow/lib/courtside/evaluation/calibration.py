@@ -68,7 +68,7 @@ def of_ties(
             errors = {"outcome": str(error)}
         rows.append({"method": "sim3", **row, **errors})
     try:
-        frame = sfm_alignment.paper_frame(court, xyz_in_sfm).nearest
+        frame, _ = sfm_alignment.paper_frame(court, xyz_in_sfm)
         errors = score([frame.camera(camera) for camera in sfm], truth, court, clicks)
     except InputError as error:
         errors = {"outcome": str(error)}

@@ -94,7 +94,7 @@ def _by_paper(record, court: Court, clicks, truth):
     if record.outcome:
         raise InputError(record.outcome)
     sfm = record.sfm_cameras
-    frame = sfm_alignment.paper_frame(court, sfm_alignment.reconstruct(sfm, clicks)).nearest
+    frame, _ = sfm_alignment.paper_frame(court, sfm_alignment.reconstruct(sfm, clicks))
     return _cameras([frame.camera(camera) for camera in sfm], truth)
 
 

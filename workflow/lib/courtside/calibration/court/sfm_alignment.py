@@ -5,11 +5,10 @@ the other.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from courtside.calibration.court.court import ClickedPoints, Court
 from courtside.geometry import similarity, triangulation
@@ -29,27 +28,6 @@ EXCHANGE_GAIN = 5.0
 MOST_SUBSETS = 10000  # of three points each: all of 40 points
 
 
-@dataclass(frozen=True, eq=False)
-class PaperFrame:
-    """The published way into the world frame, from three court points.
-
-    Attributes
-    ----------
-    world_from_sfm : (4, 4) float; the matrix D with the scale in it, for points; its axes are as
-        far from perpendicular as the points are
-    nearest : the same with the nearest rotation, for cameras
-    skew_deg : how far the angle between the court's sides, as reconstructed, is from 90 degrees
-    """
-
-    world_from_sfm: NDArray
-    nearest: Sim3
-    skew_deg: float
-
-    def points(self, x_in_sfm: ArrayLike) -> NDArray:
-        """Return points (..., 3) of the SfM frame in the world, by D."""
-        return np.asarray(x_in_sfm) @ self.world_from_sfm[:3, :3].T + self.world_from_sfm[:3, 3]
-
-
 def reconstruct(cameras: Sequence[Camera], clicks: ClickedPoints) -> NDArray:
     """Triangulate clicked court points by least squares of the pixel errors.
 
@@ -60,15 +38,16 @@ def reconstruct(cameras: Sequence[Camera], clicks: ClickedPoints) -> NDArray:
     return triangulation.triangulate_all(cameras, xy)
 
 
-def paper_frame(court: Court, xyz_in_sfm: NDArray) -> PaperFrame:
+def paper_frame(court: Court, xyz_in_sfm: NDArray) -> tuple[Sim3, float]:
     """Find the world frame as the paper does, from the origin and the ends of x and y.
 
+    Also return how far the angle between these sides, as reconstructed, is from 90 degrees.
     Raises `InputError` if one of these points is missing.
 
     [Shishido2020, eq 2-5]: e_i = (S_i - S_o) / |S_i - S_o| are the rows of R, t = -R S_o,
     D = [R t; 0 1]. They are called orthonormal there and never made so. A camera needs a rotation:
-    the nearest one (polar factor of R). Where the court's own origin is another point than S_o, t
-    moves S_o to its place.
+    the nearest one (polar factor of R) replaces R, and D itself is not kept. Where the court's own
+    origin is another point than S_o, t moves S_o to its place.
 
     # ASSUME: S_z, a point on the z axis, is S_o + e_x x e_y: no court point lies above the origin,
     # and the paper does not say how it is found.
@@ -98,12 +77,10 @@ def paper_frame(court: Court, xyz_in_sfm: NDArray) -> PaperFrame:
     e_x, e_y = sides / lengths[:, None]
     e_z = np.cross(e_x, e_y)
     rows = np.stack([e_x, e_y, e_z / np.linalg.norm(e_z)])
-    matrix = np.eye(4)
-    matrix[:3, :3], matrix[:3, 3] = scale * rows, known[0] - scale * rows @ origin
     left, _, right = np.linalg.svd(rows)
-    nearest = Sim3(float(scale), left @ right, known[0] - scale * (left @ right) @ origin)
+    world_from_sfm = Sim3(float(scale), left @ right, known[0] - scale * (left @ right) @ origin)
     skew_deg = abs(90 - np.degrees(np.arccos(np.clip(e_x @ e_y, -1, 1))))
-    return PaperFrame(matrix, nearest, float(skew_deg))
+    return world_from_sfm, float(skew_deg)
 
 
 def align(court: Court, xyz_in_sfm: NDArray) -> tuple[Sim3, NDArray]:
