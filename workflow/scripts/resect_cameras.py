@@ -39,14 +39,14 @@ def main(
         way, court, marked, sizes, lenses, click_sigma_px=click_sigma_px
     )
     for result in results.values():
-        if way.linear and result.degenerate:
+        if way.linear and result.reason:
             log.logger.warning("%s", result.reason)
     found = known_points.cameras(results)
     sigma_px = joint_adjustment.largest_click_sigma(click_sigma_px, found)
     report = {
         "calibration": calibration,
         "rms_px": {camera: round(result.rms_px, 4) for camera, result in results.items()},
-        "degenerate": {c: r.reason for c, r in results.items() if way.linear and r.degenerate},
+        "degenerate": {c: r.reason for c, r in results.items() if way.linear and r.reason},
         **quality.check_cameras(
             court, found, marked, click_sigma_px=sigma_px, strict=not way.linear
         ),

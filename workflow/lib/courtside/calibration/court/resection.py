@@ -44,8 +44,7 @@ class Linear:
     # How many times larger than a click's error a projected point's error is, at worst, in the box
     # around the points up to half its short side (the playing volume); inf for points in one plane.
     magnification: float
-    degenerate: bool  # whether the points do not determine the camera
-    reason: str  # one sentence if so, else empty
+    reason: str  # one sentence if the points do not determine the camera, else empty
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,9 +66,9 @@ def dlt(
     """Calibrate a camera linearly from known points: a projection matrix of eleven free numbers.
 
     Hartley & Zisserman 2004, alg. 7.1 without its last step; normalised by their sec. 4.4. No lens
-    distortion. `degenerate` comes from the covariance of the linear solution. It detects points in
-    one plane. It also detects a camera in the plane of the net, which the residuals do not show:
-    the only points above the floor, the tips of the posts, are then behind one another. Raises
+    distortion. `reason` comes from the covariance of the linear solution. It detects points in one
+    plane. It also detects a camera in the plane of the net, which the residuals do not show: the
+    only points above the floor, the tips of the posts, are then behind one another. Raises
     `InputError` if fewer than six points are clicked.
 
     Known places `xyz` (P, 3) are m, clicks `xy` (P, 2) px, NaN where missing. The picture's size is
@@ -95,7 +94,6 @@ def dlt(
         camera=_decompose(matrix, size, name),
         rms_px=float(np.sqrt(np.mean(off**2))),
         magnification=magnification,
-        degenerate=not magnification < MAX_MAGNIFICATION,
         reason=_why(xyz, magnification, name),
     )
 
