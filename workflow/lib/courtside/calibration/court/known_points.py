@@ -1,6 +1,5 @@
 """Calibrate fixed cameras from known court points alone: the methods of the study by name."""
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -11,12 +10,12 @@ from courtside.calibration.court import joint_adjustment, line_edges, resection
 from courtside.calibration.court.court import ClickedPoints, Court
 from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError
+from courtside.study.methods import Calibration
 
 Found = resection.Linear | resection.Fitted
 # Of the expected scatter: that of a good click. Points alone carry the camera here, and with the
 # whole scatter mirrored points and another court find cameras that nearly fit.
 GOOD = 0.43
-NAME = re.compile(r"(dlt|known)(\d+)(-board)?")
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,18 +33,15 @@ def method(name: str, court: Court) -> Method:
     `known18`, `known8-board`, `dlt18`: the number is that of the court's points or of a set of
     them. Raises `InputError` if the court has no set of that many points.
     """
-    matched = NAME.fullmatch(name)
-    if matched is None:
-        raise ValueError(f"expected dlt or known with a number of points, found {name!r}")
-    kind, number, board = matched.groups()
-    sets = [points for points in court.sets.values() if len(points) == int(number)]
+    parsed = Calibration.parse(name)
+    sets = [points for points in court.sets.values() if len(points) == parsed.n_points]
     if not sets:
         there = {key: len(points) for key, points in court.sets.items()}
         raise InputError(
-            f"calibration {name}: expected a set of {number} points in court {court.name}, found "
-            f"{there}; name one of these numbers"
+            f"calibration {name}: expected a set of {parsed.n_points} points in court "
+            f"{court.name}, found {there}; name one of these numbers"
         )
-    return Method(kind == "dlt", board is not None, court.indices(sets[0]))
+    return Method(parsed.kind == "dlt", parsed.board, court.indices(sets[0]))
 
 
 def calibrate(
