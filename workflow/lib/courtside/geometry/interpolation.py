@@ -42,9 +42,9 @@ def linear(time_s: NDArray, values: NDArray, wanted_s: NDArray) -> NDArray:
 def nearest(
     time_s: NDArray, wanted_s: NDArray, equal: Literal["left", "right"] = "right"
 ) -> NDArray:
-    """Return the index of the sample nearest to each wanted time, the later of two equally near.
+    """Return the index of the sample nearest to each wanted time.
 
-    With `equal` "left" the earlier of two equally near.
+    Of two samples that are `equal`ly near, the "right" one, which is later, or the "left" one.
     """
     return np.searchsorted((time_s[:-1] + time_s[1:]) / 2, wanted_s, equal)
 

@@ -18,7 +18,7 @@ WRONG = 6.0  # ASSUME: a click this many sigmas off is wrong
 # second counts scatter that differs from point to point.
 NORMAL_2D = np.array([MEDIAN_2D, 1.794])
 RAISED = 2.0  # ASSUME: times the error across an edge: of points above the floor
-CERTAIN = 4.0  # ASSUME: the inward shift must be this many standard deviations from none
+CERTAIN = 4.0  # ASSUME: the inward shift must be this many standard deviations from zero
 CENTRES = (0.5, 1.6)  # ASSUME: of half a line width: shifts that mean line centres
 # In half line widths: edges, half way, line centres; three points determine a parabola.
 SHIFTS = (0.0, 0.5, 1.0)

@@ -13,9 +13,10 @@ from courtside.study.errors import InputError
 from courtside.study.methods import Calibration
 
 Found = resection.Linear | resection.Fitted
-# Of the expected scatter: that of a good click. Points alone carry the camera here, and with the
-# whole scatter mirrored points and another court find cameras that nearly fit.
-GOOD = 0.43
+# Sigma of a good click, as a share of the scatter that all clicks are expected to have. Points
+# alone carry the camera here, and with the whole scatter mirrored points and another court find
+# cameras that nearly fit.
+GOOD_CLICK = 0.43
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +70,7 @@ def calibrate(
             xyz,
             xy,
             size,
-            sigma_px=GOOD * joint_adjustment.click_sigma(click_sigma_px, size),
+            sigma_px=GOOD_CLICK * joint_adjustment.click_sigma(click_sigma_px, size),
             xyz_sigma=court.sigma_m[way.points],
             edges=line_edges.on_lines(court)[way.points],
             name=name,

@@ -26,8 +26,9 @@ COARSE_PX, FINE_PX = 8.0, 2.5  # per 1280 px of width: tolerance before and afte
 COARSE_SAMPLES, FINE_M = 120, 0.3  # of all lines; between samples of a line
 SHORTLIST, REFINED = 2000, 24  # cameras
 APART_WIDTHS = 0.008  # of the picture: cameras nearer than this see the same
-# Share by which lenses pull the picture's corners in, and how often the random search is repeated:
-# each next one, and each next time, if no camera before was accepted.
+# Lenses tried in turn, by the share by which they pull the picture's corners in; all are tried
+# `DRAWS` times, each time with other random samples. The search stops at the first camera that is
+# accepted.
 BARREL, DRAWS = (0.0, 0.07, 0.15, 0.22), 2
 SETTLED, ROUNDS, STILL_PX = 3, 4, 0.3  # best cameras, refined again until they stay; per 1280 px
 NEIGHBOURS, BESIDE_M, BESIDE_STEP_M = 2, 16.0, 0.15  # the search for a like court beside this

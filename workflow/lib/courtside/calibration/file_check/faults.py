@@ -90,7 +90,8 @@ def scaled_picture(camera: Camera, scale: float) -> Camera:
 def turned_picture(camera: Camera, turns: int) -> Camera:
     """Return a camera whose picture is turned by so many quarter turns, of unchanged size.
 
-    A quarter turn takes x to y, and y to the width less x; the size stated in the file is kept.
+    A quarter turn shows a point (x, y) at (width - 1 - y, x), the width being the new picture's.
+    The size stated in the file is kept.
     """
     for _ in range(turns % 4):
         quarter = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
