@@ -25,8 +25,11 @@ SHIFTS = (0.0, 0.5, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
-class LeaveOneOut:
-    """Every clicked point against an alignment to all the other points."""
+class ClickErrors:
+    """Every clicked point against where cameras have it.
+
+    From `leave_one_out`, the cameras are aligned to all the other points.
+    """
 
     points: tuple[str, ...]
     cameras: tuple[str, ...]
@@ -78,7 +81,7 @@ class WrongClick:
         )
 
 
-def leave_one_out(cameras: Sequence[Camera], clicks: ClickedPoints, court: Court) -> LeaveOneOut:
+def leave_one_out(cameras: Sequence[Camera], clicks: ClickedPoints, court: Court) -> ClickErrors:
     """Compare each court point with its prediction from all the other points.
 
     The cameras, in one frame of structure from motion or the world, stay fixed. The similarity to
@@ -101,7 +104,7 @@ def leave_one_out(cameras: Sequence[Camera], clicks: ClickedPoints, court: Court
             projected[row, at] = project(fitted.camera(camera), court.xyz[at])
             crossing[row, at] = crossings(fitted.camera(camera), court.xyz[[at]])[0]
     names = tuple(camera.name for camera in cameras)
-    return LeaveOneOut(court.points, names, residual, projected, clicked, crossing)
+    return ClickErrors(court.points, names, residual, projected, clicked, crossing)
 
 
 def crossings(camera: Camera, xyz: NDArray) -> NDArray:
@@ -114,7 +117,7 @@ def crossings(camera: Camera, xyz: NDArray) -> NDArray:
     return np.where(raised, RAISED**2 * np.eye(2), line_edges.crossings(camera, xyz))
 
 
-def find_wrong_clicks(table: LeaveOneOut, *, sigma_px: float) -> list[WrongClick]:
+def find_wrong_clicks(table: ClickErrors, *, sigma_px: float) -> list[WrongClick]:
     """Return the clicks that contradict the others, the worst first.
 
     The `table` needs six points or more: with fewer, one wrong click corrupts the prediction from
@@ -181,7 +184,7 @@ def check(
     clicks: ClickedPoints,
     *,
     sigma_px: float,
-    table: LeaveOneOut | None,
+    table: ClickErrors | None,
     inwards: tuple[float, float] | None = None,
     adjust: Callable[[ClickedPoints], Sequence[Camera]] | None = None,
     causes_m: NDArray | None = None,

@@ -76,7 +76,7 @@ def calibrate(
     clicked = np.stack([np.asarray(clicks[name], float) for name in sizes])
     crossing = np.stack([click_checks.crossings(c, court.xyz) for c in solved.cameras])
     unplaced = np.full_like(court.xyz, np.nan)
-    table = click_checks.LeaveOneOut(
+    table = click_checks.ClickErrors(
         court.points, tuple(sizes), unplaced, projected, clicked, crossing
     )
     sigma_px = joint_adjustment.largest_click_sigma(click_sigma_px, solved.cameras)

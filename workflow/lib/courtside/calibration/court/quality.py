@@ -161,7 +161,7 @@ def map_warning(support: Support) -> str:
 
 def leave_one_out_errors(
     court: Court, cameras: Sequence[Camera], clicks: ClickedPoints
-) -> tuple[click_checks.LeaveOneOut | None, str | dict[str, dict]]:
+) -> tuple[click_checks.ClickErrors | None, str | dict[str, dict]]:
     """Leave each court point out; return the table, and for JSON its errors by point.
 
     Where there is no table, the reason stands in place of the errors.
