@@ -55,10 +55,10 @@ def point_covariance(network: Network, covariance: NDArray, xyz: NDArray) -> NDA
 
 
 def field(network: Network, covariance: NDArray) -> Callable[[NDArray], NDArray]:
-    """Return a function from places (N, 3) m to how far causes move points there, (N, 3, R) m.
+    """Return a function from places (N, 3) m to how far errors of the cameras move points there.
 
-    The causes are independent, of standard deviation 1, and the same for all places: the errors of
-    the cameras at two places are correlated as their covariance says. Parameters as for
+    The result is (N, 3, R) m. The R errors are independent, each of one standard deviation, and the same for all
+    places: those at two places are correlated as the covariance says. Parameters as for
     `point_covariance`, which is the product of the result with its transpose.
     """
     scale = np.sqrt(np.diag(covariance))

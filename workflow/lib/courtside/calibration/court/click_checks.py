@@ -187,7 +187,7 @@ def check(
     table: ClickErrors | None,
     inwards: tuple[float, float] | None = None,
     adjust: Callable[[ClickedPoints], Sequence[Camera]] | None = None,
-    causes_m: NDArray | None = None,
+    error_modes_m: NDArray | None = None,
 ) -> list[str]:
     """Check clicked court points as far as the fixed cameras, in one frame, allow.
 
@@ -195,12 +195,12 @@ def check(
     `sigma_px` is that of a good click per axis; `table` is from `leave_one_out`, None where that
     fails. `inwards`, the shift of all clicks towards line centres and its sigma, is from
     `inward_shift`, by default from `inward_shift_of_points`; `adjust` is as for
-    `sfm_alignment.refuse_exchanged_cameras`, `causes_m` as for `sfm_alignment.stretch`. Raises
+    `sfm_alignment.refuse_exchanged_cameras`, `error_modes_m` as for `sfm_alignment.stretch`. Raises
     `InputError` if the points cannot be this court: see `sfm_alignment.check`.
     """
     sfm_alignment.refuse_exchanged_cameras(court, cameras, clicks, adjust)
     xyz = sfm_alignment.reconstruct(cameras, clicks)
-    warnings = sfm_alignment.check(court, xyz, cameras, causes_m)
+    warnings = sfm_alignment.check(court, xyz, cameras, error_modes_m)
     if table is None:
         return warnings + _unchecked(xyz)
     warnings += [str(click) for click in find_wrong_clicks(table, sigma_px=sigma_px)]

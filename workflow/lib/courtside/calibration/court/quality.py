@@ -39,7 +39,7 @@ def check_cameras(
     click_sigma_px: float,
     inwards: tuple[float, float] | None = None,
     adjust: Callable[[ClickedPoints], Sequence[Camera]] | None = None,
-    causes_m: NDArray | None = None,
+    error_modes_m: NDArray | None = None,
     strict: bool = True,
 ) -> dict[str, Any]:
     """Check cameras, in the court's frame, against the clicked court points, each left out in turn.
@@ -51,11 +51,11 @@ def check_cameras(
     Parameters
     ----------
     click_sigma_px : of a good click, in the largest picture
-    inwards, adjust, causes_m : as for `click_checks.check`
+    inwards, adjust, error_modes_m : as for `click_checks.check`
     """
     table, each = leave_one_out_errors(court, cameras, clicks)
     known: dict[str, Any] = {"sigma_px": click_sigma_px, "inwards": inwards, "table": table}
-    known |= {"adjust": adjust, "causes_m": causes_m}
+    known |= {"adjust": adjust, "error_modes_m": error_modes_m}
     try:
         warnings = click_checks.check(court, cameras, clicks, **known)
     except InputError as error:
@@ -98,7 +98,7 @@ def adjust_and_check(
         click_sigma_px=sigma_px,
         inwards=_inwards(court, ties, clicks, solved.factors, **weights),
         adjust=adjust,
-        causes_m=field(solved.network, solved.covariance)(court.xyz),
+        error_modes_m=field(solved.network, solved.covariance)(court.xyz),
     )
     known = camera_covariance.of_network([c.name for c in solved.cameras], solved.covariance)
     quality |= expected_volume(court, solved.cameras, known)

@@ -96,7 +96,7 @@ def check(
     court: Court,
     xyz_in_sfm: NDArray,
     cameras: Sequence[Camera] = (),
-    causes_m: NDArray | None = None,
+    error_modes_m: NDArray | None = None,
 ) -> list[str]:
     """Check that reconstructed points can be this court, seen the right way round.
 
@@ -107,14 +107,14 @@ def check(
     ----------
     xyz_in_sfm : (P, 3) float; reconstructed court points; NaN where missing
     cameras : those that saw them, in the same frame: they must be above the floor
-    causes_m : as for `stretch`
+    error_modes_m : as for `stretch`
 
     Returns
     -------
     warnings : one line each, without those of `click_checks.check` on single clicks
     """
     world_from_sfm, _ = align(court, xyz_in_sfm)
-    _check_size(court, xyz_in_sfm, causes_m)
+    _check_size(court, xyz_in_sfm, error_modes_m)
     off_m = misfit_m(court, world_from_sfm, xyz_in_sfm)
     if off_m > MAX_MISFIT * np.max(court.size_m):
         short_m, long_m = court.size_m
@@ -154,9 +154,9 @@ def _weak(court: Court, known: NDArray) -> list[str]:
     return warnings
 
 
-def _check_size(court: Court, xyz_in_sfm: NDArray, causes_m: NDArray | None) -> None:
+def _check_size(court: Court, xyz_in_sfm: NDArray, error_modes_m: NDArray | None) -> None:
     """Raise if the court's two sides have different scales: it is not the court of the file."""
-    ratio, sigma = stretch(court, xyz_in_sfm, causes_m)
+    ratio, sigma = stretch(court, xyz_in_sfm, error_modes_m)
     if abs(np.log(ratio)) > max(MAX_STRETCH, 5 * sigma):
         short_m, long_m = court.size_m
         raise InputError(
@@ -167,7 +167,7 @@ def _check_size(court: Court, xyz_in_sfm: NDArray, causes_m: NDArray | None) -> 
 
 
 def stretch(
-    court: Court, xyz_in_sfm: NDArray, causes_m: NDArray | None = None
+    court: Court, xyz_in_sfm: NDArray, error_modes_m: NDArray | None = None
 ) -> tuple[float, float]:
     """Find whether the reconstructed floor has the court's proportions.
 
@@ -178,9 +178,9 @@ def stretch(
     Parameters
     ----------
     xyz_in_sfm : (P, 3) float; NaN where missing
-    causes_m : (P, 3, R) float; displacement of points by independent errors of the cameras, each
-        of one standard deviation (`point_covariance.field`). These errors bend all points together,
-        which the points' scatter does not show
+    error_modes_m : (P, 3, R) float; displacement of points by R independent errors of the cameras,
+        each of one standard deviation (`point_covariance.field`). These errors bend all points
+        together, which the points' scatter does not show
 
     Returns
     -------
@@ -203,9 +203,9 @@ def stretch(
     lengths = np.linalg.norm(columns[1:], axis=1)
     spread = np.diag(np.linalg.inv(design.T @ design))[1:] * variance
     variance = (spread / lengths**2).sum()
-    if causes_m is not None:
-        moved = np.linalg.pinv(design)[1:] @ causes_m[used].transpose(2, 0, 1)
-        longer = (moved * columns[1:]).sum(axis=2) / lengths**2  # relative, by cause
+    if error_modes_m is not None:
+        moved = np.linalg.pinv(design)[1:] @ error_modes_m[used].transpose(2, 0, 1)
+        longer = (moved * columns[1:]).sum(axis=2) / lengths**2  # relative, by error
         variance += ((longer[:, 0] - longer[:, 1]) ** 2).sum()
     return float(lengths[0] / lengths[1]), float(np.sqrt(variance))
 
