@@ -30,7 +30,7 @@ TESTED_THROUGH = {  # parts of one thing: the tests of the whole cover them
     "courtside/calibration/wand/adjustment": "test_calibration.py",
     "courtside/calibration/wand/world": "test_calibration.py",
     "courtside/calibration/wand/timing": "test_quality.py",
-    "courtside/calibration/foreign/known": "../test_file_formats.py",
+    "courtside/calibration/foreign/forms": "../test_file_formats.py",
     "courtside/calibration/foreign/opencv": "../test_file_formats.py",
     "courtside/calibration/foreign/qualisys": "../test_file_formats.py",
     "courtside/calibration/foreign/xml_fields": "../test_file_formats.py",

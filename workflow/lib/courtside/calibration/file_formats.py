@@ -12,7 +12,7 @@ import numpy as np
 from courtside.calibration.foreign import (
     colmap,
     easymocap,
-    known,
+    forms,
     opencap,
     opencv,
     optitrack,
@@ -56,7 +56,7 @@ Found = tuple[list[Camera], str | None]
 def read(path: StrPath, unit: str | None = None) -> list[Camera]:
     """Read the cameras of a calibration, choosing the reader by what the file or folder holds.
 
-    It is one of `foreign.known.FORMS`; a folder holds EasyMocap's two files, a COLMAP model,
+    It is one of `foreign.forms.FORMS`; a folder holds EasyMocap's two files, a COLMAP model,
     OpenCap's pickles, or files of OpenCV, one camera each. Cameras are in the file's order under
     the file's names, in metres, with the file's world frame (of OptiTrack and OpenCap turned so
     that z is up). `unit` is that of its lengths where the file does not state one; where nobody
@@ -174,7 +174,7 @@ def with_principal_points(
 
 
 def _bytes(path: Path) -> bytes:
-    with reading(path, f"a file, {known.FORMS}", "check it"):
+    with reading(path, f"a file, {forms.FORMS}", "check it"):
         if path.stat().st_size > LARGEST_BYTES:
             raise InputError(
                 f"{path}: expected a calibration, found {path.stat().st_size} bytes; give the "
@@ -186,7 +186,7 @@ def _bytes(path: Path) -> bytes:
 def _text(path: Path) -> str:
     data = _bytes(path)
     wide = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) or data[1:2] == b"\0"
-    with reading(path, f"a text file, {known.FORMS}", "check it"):
+    with reading(path, f"a text file, {forms.FORMS}", "check it"):
         # Motive writes .mcal in UTF-16, with or without its mark.
         return data.decode("utf-16" if wide else "utf-8-sig")
 
@@ -208,7 +208,7 @@ def _in_folder(path: Path) -> Found:
         return [opencap.read(p, _bytes(p), name) for name, p in pickles.items()], None
     files = sorted(file for file in path.iterdir() if file.suffix.lower() in OPENCV_SUFFIXES)
     if not files:
-        raise known.refused(path, "a folder without them", "give one of these")
+        raise forms.refused(path, "a folder without them", "give one of these")
     texts = [_text(file) for file in files]
     found = [c for file, text in zip(files, texts, strict=True) for c in opencv.read(file, text)]
     return found, _unit_of(*texts)
@@ -220,7 +220,7 @@ def _in_file(path: Path) -> Found:
     if path.suffix in opencap.SUFFIXES:
         return [opencap.read(path, _bytes(path), path.stem)], None
     if path.suffix.lower() == ".cal":
-        raise known.refused(path, "a file of older Motive (.cal), which is closed", OF_MOTIVE)
+        raise forms.refused(path, "a file of older Motive (.cal), which is closed", OF_MOTIVE)
     text = _text(path)
     start = text.lstrip()[:2000]
     if start.startswith("%YAML") or "<opencv_storage" in start:
@@ -228,7 +228,7 @@ def _in_file(path: Path) -> Found:
     if start.startswith("<"):
         return _read_xml(path, text), None
     if start.startswith("Format Version,"):
-        raise known.refused(path, "a take of OptiTrack Motive (.csv), without lenses", OF_MOTIVE)
+        raise forms.refused(path, "a take of OptiTrack Motive (.csv), without lenses", OF_MOTIVE)
     return _read_toml(path, text)
 
 
@@ -244,12 +244,12 @@ def _read_xml(path: Path, text: str) -> list[Camera]:
     if next(root.iter(optitrack.LENS), None) is not None or path.suffix.lower() == ".mcal":
         return optitrack.read(path, root)
     if qualisys.is_theia(root):
-        raise known.refused(path, "a calibration of Theia3D, its sensors in px", OF_THEIA)
+        raise forms.refused(path, "a calibration of Theia3D, its sensors in px", OF_THEIA)
     return qualisys.read(path, root)
 
 
 def _read_toml(path: Path, text: str) -> Found:
-    with reading(path, f"{known.FORMS} (read as TOML)", "check it"):
+    with reading(path, f"{forms.FORMS} (read as TOML)", "check it"):
         content = camera_fields.toml(text)
     tables, metadata = content.get("cameras", content), content.get("metadata")
     if not isinstance(tables, dict):

@@ -57,9 +57,9 @@ def point_covariance(network: Network, covariance: NDArray, xyz: NDArray) -> NDA
 def field(network: Network, covariance: NDArray) -> Callable[[NDArray], NDArray]:
     """Return a function from places (N, 3) m to how far errors of the cameras move points there.
 
-    The result is (N, 3, R) m. The R errors are independent, each of one standard deviation, and the same for all
-    places: those at two places are correlated as the covariance says. Parameters as for
-    `point_covariance`, which is the product of the result with its transpose.
+    The result is (N, 3, R) m. The R errors are independent, each of one standard deviation, and the
+    same for all places: those at two places are correlated as the covariance says. Parameters as
+    for `point_covariance`, which is the product of the result with its transpose.
     """
     scale = np.sqrt(np.diag(covariance))
     unit = np.where(scale > 0, scale, 1.0)

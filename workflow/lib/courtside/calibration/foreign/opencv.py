@@ -6,7 +6,7 @@ from typing import Any
 
 import cv2
 
-from courtside.calibration.foreign import known
+from courtside.calibration.foreign import forms
 from courtside.geometry import camera as camera_files
 from courtside.geometry import camera_fields
 from courtside.geometry.camera import Camera
@@ -53,14 +53,14 @@ def read(path: Path, text: str) -> list[Camera]:
     _kept, root = opened(path, text)
     keys = list(root.keys()) if root.isMap() else []
     if any(pair <= {key.lower() for key in keys} for pair in STEREO):
-        raise known.refused(path, f"a stereo pair ({', '.join(keys[:4])} ...)", PAIR)
+        raise forms.refused(path, f"a stereo pair ({', '.join(keys[:4])} ...)", PAIR)
     if child(root, KEYS["matrix"]) is not None:
         return [_camera(path, root, path.stem, root)]
     maps = [(key, root.getNode(key)) for key in keys]
     maps = [(key, node) for key, node in maps if node.isMap() and child(node, ("data",)) is None]
     if not maps:
         found = ", ".join(keys[:6]) or "nothing"
-        raise known.refused(path, f"no camera_matrix among: {found}", "check it")
+        raise forms.refused(path, f"no camera_matrix among: {found}", "check it")
     return [_camera(path, node, key, root) for key, node in maps]
 
 
