@@ -21,7 +21,6 @@ from courtside.records.cameras.click_proposals import EITHER
 FOUND, AMBIGUOUS, NOT_FOUND = "found", "ambiguous", "not found"
 # ASSUME: all of these are tuned by hand on development sessions.
 MOST_RIVAL, LEAST_MARGIN = 0.92, 30.0  # of the next best: share of the score, and difference
-POSE = np.eye(4)[:3]  # of a camera that was not found
 LIKE_SCORE, WHITER, LEAST_WHITE = 0.4, 1.3, 0.3  # score and whiteness of like courts
 
 BLUR_PX = 0.8  # of pictures, standard deviation
@@ -170,7 +169,8 @@ def proposed(
     n = len(court.points)
     if verdict.outcome != FOUND or verdict.camera is None:
         nothing, reason = np.full(n, np.nan), f"court {verdict.outcome}: {verdict.reason}"
-        camera = verdict.camera or Camera("", image.shape[1::-1], np.eye(3), np.zeros(5), POSE)
+        nowhere = Camera("", image.shape[1::-1], np.eye(3), np.zeros(5), np.eye(3, 4))
+        camera = verdict.camera or nowhere
         return Proposals(np.full((n, 2), np.nan), nothing, np.zeros(n), (reason,) * n, camera)
     found = proposals.propose(
         verdict.camera, image, court, search_px=search_px, max_sigma_px=max_sigma_px, lines=lines
