@@ -51,10 +51,9 @@ def shift(stretch: Stretch, *, polarity: int = 1, blur_px: float = 0.8) -> Shift
         found = _refine(stretch, (low + high) / 2, slope, polarity, sides, blur_px)
         if found is None:
             return None
-        moves, turn, rest = found
+        moves, turn, sigma, kept = found
         middle, slope = (low + high) / 2, slope + turn
         low, high = middle + moves[0], middle + moves[-1]
-    sigma, kept = rest
     nearest = np.abs(stretch.along_px) <= np.abs(stretch.along_px).min() + NEAR_PX
     shares = kept.mean(), kept[nearest].mean()
     return Shift(low, high, slope, sigma, *shares, score, rival)
@@ -104,7 +103,7 @@ def _best_line(match, along_px, width_px) -> tuple[float, float, float, float]:
 
 
 def _refine(stretch, offset, slope, polarity, sides, blur_px):
-    """Return the shifts of the edges at the origin, slope, (sigma, kept); None if lost."""
+    """Return the edges' shifts at the origin, slope, sigma, and which samples fit; None if lost."""
     n, width = stretch.paint.shape
     moved_px = (offset + slope * stretch.along_px)[:, None]
     columns = (stretch.seen.shape[1] - 1) / 2 + moved_px / STEP_PX
@@ -131,7 +130,7 @@ def _refine(stretch, offset, slope, polarity, sides, blur_px):
     parts = [rate] if sides == 1 else [np.where(t < 0, rate, 0), np.where(t >= 0, rate, 0)]
     moved, spread = _moves(seen, np.array(floor), stretch.paint, parts, used, noise)
     moves, turn, sigma = _line(moved, spread, stretch.along_px, kept)
-    return moves, turn, (sigma, kept)
+    return moves, turn, sigma, kept
 
 
 def _at(values: NDArray, columns: NDArray) -> NDArray:
