@@ -235,9 +235,10 @@ def inward_shift(
     rest. Both numbers mean what they mean there; `**weights` are those of `joint_adjustment.solve`.
     """
     inwards, costs = to_line_centres(court), []
+    options = {"max_iterations": joint_adjustment.SOLVE_ITERATIONS, **weights}
     for share in SHIFTS:
         moved = replace(court, xyz=court.xyz + share * inwards)
-        solved = joint_adjustment.solve(ties, clicks, moved, max_iterations=30, **weights)
+        solved = joint_adjustment.solve(ties, clicks, moved, **options)
         known = joint_adjustment.knowledge(ties, solved.factors, weights.get("lines"))
         costs.append(solver.cost(solved.network, known))
     bend, slope, _ = np.polyfit(SHIFTS, costs, 2)

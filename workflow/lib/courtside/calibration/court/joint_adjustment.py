@@ -28,6 +28,7 @@ UHD = 3840  # picture width at which click sigmas are stated
 # cm off instead of 0.9, and without a court the fixed cameras of one in five were 4 to 7 degrees
 # off instead of 1.2 to 1.7.
 MAX_ITERATIONS, TOLERANCE = 200, 1e-6
+SOLVE_ITERATIONS = 30  # at most, of a `solve` whose cameras are kept or judged
 # Of the clicks' loss. Where a lens is still wrong, a good click near the edge of the picture looks
 # like a false one, and the loss keeps it so: one session in thirty was 3.1 cm off instead of 0.8.
 WIDE_LOSS = 10.0

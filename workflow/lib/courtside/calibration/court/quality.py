@@ -83,12 +83,12 @@ def adjust_and_check(
     where clicks are 1 cm off. The adjustment removes as much of the bend as the ties' own
     covariance allows: what is left is the fault of the clicks or the court.
     """
+    options = {"max_iterations": joint_adjustment.SOLVE_ITERATIONS, **weights}
 
     def adjust(clicks: ClickedPoints) -> list[Camera]:
-        return joint_adjustment.solve(ties, clicks, court, max_iterations=30, **weights).cameras
+        return joint_adjustment.solve(ties, clicks, court, **options).cameras
 
     if solved is None:
-        options = {"max_iterations": 30, **weights}
         solved = joint_adjustment.solve_with_factors(ties, clicks, court, **options)
     sigma_px = joint_adjustment.found_click_sigma(weights["click_sigma_px"], solved)
     quality = check_cameras(
@@ -115,7 +115,7 @@ def _inwards(court, ties, clicks, factors, **weights) -> tuple[float, float]:
         return found
     centres = replace(court, xyz=court.xyz + to_line_centres(court))
     solved = joint_adjustment.solve_with_factors(
-        ties, clicks, centres, max_iterations=30, **weights
+        ties, clicks, centres, max_iterations=joint_adjustment.SOLVE_ITERATIONS, **weights
     )
     return click_checks.inward_shift(ties, clicks, court, factors=solved.factors, **weights)
 

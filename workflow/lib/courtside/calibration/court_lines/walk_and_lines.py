@@ -36,7 +36,6 @@ LOSS = 3.0  # ASSUME: sigmas; scale of the Cauchy loss of a stretch
 PAINTING = 2.0
 PAINTING_PRIOR = 6.0  # ASSUME: weight of the court's file, in lines, for the painting deviation
 ON_LINE_M = 0.001  # ASSUME: standard deviation of a named point across its painted line
-MAX_ITERATIONS = 30  # of each adjustment
 ROUNDS = 4  # of adjusting, reweighting, and estimating the painting deviation
 # ASSUME: limit in sigmas for the root mean square distance of a camera's edges from the walk's
 # prediction: 0.4 to 1 in development sessions, far more for another court or other lines.
@@ -76,7 +75,7 @@ def of_pictures(
     The prediction comes from walk and clicks; `search_share` is the search range as a share of the
     picture's width. `**weights` are those of `joint_adjustment.solve`.
     """
-    weights = {**weights, "max_iterations": MAX_ITERATIONS}
+    weights = {**weights, "max_iterations": joint_adjustment.SOLVE_ITERATIONS}
     base = joint_adjustment.solve_with_factors(ties, clicks, court, **weights)
     found, warnings = {}, []
     for camera in base.cameras:
