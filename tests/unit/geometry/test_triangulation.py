@@ -299,9 +299,7 @@ def test_points_of_too_few_views_are_missing():
     xy = scene.views(cameras, PLAIN_XYZ)
     xy[:2, 3] = np.nan
     xy[0, 4] = np.nan
-    found = triangulation.triangulate_plain(
-        cameras, xy, np.ones((3, 50)), min_views=2
-    )
+    found = triangulation.triangulate_plain(cameras, xy, np.ones((3, 50)), min_views=2)
     assert np.isnan(found.xyz[3]).all() and not found.accepted[:, 3].any()
     assert found.accepted[:, 4].tolist() == [False, True, True]
     with pytest.raises(ValueError, match="min_views"):

@@ -36,7 +36,7 @@ class Triangulated:
     """Triangulated points."""
 
     xyz: NDArray  # (N, 3): NaN where too few views are usable or agree
-    # (N, 3, 3) m2: of keypoints whose standard deviation is 1 px per axis at score 1; NaN if missing
+    # (N, 3, 3) m2: of keypoints with a sigma of 1 px per axis at score 1; NaN where missing
     covariance: NDArray
     accepted: NDArray  # (C, N): views that the point rests on
     error_px: NDArray  # (C, N): from keypoint, accepted or not, to projection; NaN without either
