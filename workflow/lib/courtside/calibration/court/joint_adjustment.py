@@ -124,12 +124,9 @@ def condense(
                 tied = _adjusted_freely(tied, at)
                 straight = _fixed_cameras(tied, fixed, at, sizes)
                 tied = selection.transform(tied, _alignment(court, straight, clicks))
-            marked = {
-                "clicks": dict(zip(at, [clicks[name] for name in fixed], strict=True)),
-                "sigma_px": dict(zip(at, sigma_px, strict=True)),
-                "loss_scale": click_loss,
-            }
-            yield replace(part, network=_adjusted(tied, court, **marked))
+            marked = dict(zip(at, [clicks[name] for name in fixed], strict=True))
+            sigmas = dict(zip(at, sigma_px, strict=True))
+            yield replace(part, network=_adjusted(tied, court, marked, sigmas, click_loss))
 
     def adjusted_cameras(clicks: ClickedPoints) -> list[Camera]:
         part = next(adjusted(clicks, straightened=True))
@@ -155,8 +152,14 @@ def _adjusted_freely(network: Network, fixed: Sequence[int]) -> Network:
     return _in_free_frame(network, fixed)  # which nothing held in place
 
 
-def _adjusted(network: Network, court: Court, **marked: Any) -> Network:
-    """Return a network adjusted with clicked court points, without these.
+def _adjusted(
+    network: Network,
+    court: Court,
+    clicks: Mapping[int, NDArray],
+    sigma_px: Mapping[int, float],
+    click_loss: float,
+) -> Network:
+    """Return a network adjusted with clicks on court points, by image, without these points.
 
     Adjusted from two starts, the second with a wide loss first: a graduated loss (Blake &
     Zisserman 1987). The lower cost wins.
@@ -164,9 +167,9 @@ def _adjusted(network: Network, court: Court, **marked: Any) -> Network:
     n_ties, n_seen = len(network.xyz), len(network.xy)
 
     def with_clicks(network: Network, widened: float) -> tuple[Network, float]:
-        loss_scale = widened * marked["loss_scale"]
+        loss_scale = widened * click_loss
         both = selection.add_control_points(
-            network, court.xyz, court.sigma_m, **{**marked, "loss_scale": loss_scale}
+            network, court.xyz, court.sigma_m, clicks, sigma_px=sigma_px, loss_scale=loss_scale
         )
         if not np.isfinite(solver.cost(both)):
             raise InputError(
