@@ -340,6 +340,11 @@ def test_good_sessions_have_no_fault(root, content):
         ),
         (
             RECORDED
+            | {"subjects": {"p1": None}, "takes": {"t": {"devices": {"raw": {"file": "a.mp4"}}}}},
+            ["takes.t.devices: expected names that no stage of skeletons has, found 'raw'"],
+        ),
+        (
+            RECORDED
             | {"subjects": {"p1": None}}
             | {"takes": {"t": {"videos": {"a": "a.mp4"}, "clocks": {"up": {"offset_s": 1.0}}}}},
             ["takes.t.clocks: expected one of ['a'], found 'up'"],

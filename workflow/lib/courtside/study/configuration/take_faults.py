@@ -5,6 +5,7 @@ from pathlib import Path
 
 from courtside.study.configuration.session_files import KINDS, kind_of
 from courtside.study.configuration.yaml_files import Content
+from courtside.study.methods import STAGE_WORDS
 
 MEANT_FOR = {"unit": ("inertial", "nuitrack"), "angles": ("inertial",)}  # keys of devices
 OF_VIRTUAL_SUITS = ("strength",)  # keys of virtual devices; the others are of depth cameras
@@ -216,6 +217,11 @@ def _device_faults(
                 )
         if name in {*cameras, "cameras"}:
             yield f"{where}.devices: expected names that no camera has, found {name!r}; rename it"
+        if name in STAGE_WORDS.values():
+            yield (
+                f"{where}.devices: expected names that no stage of skeletons has, found {name!r}; "
+                "rename it"
+            )
 
 
 def _filmed_faults(
