@@ -49,7 +49,8 @@ class Fit:
 
     shift_s: float  # the marker system's time less the take's
     truth_from_world: Sim3  # of scale 1
-    # Extent of the measured joints over that of the true ones: 1.01 is 1 % too large. Not used.
+    # Extent of the measured joints over that of the true ones: 1.01 is 1 % too large. It is stated,
+    # not taken out of the errors.
     scale: float
     error: NDArray  # (T, J, 3): measured minus true, m, in the world's axes; NaN where missing
     known: NDArray  # (T,) bool: frames with truth

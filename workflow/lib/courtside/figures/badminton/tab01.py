@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from courtside.figures.style import bars, style
 
 ALL = "all"
-PANELS = (  # row of the table, title, filled marks
+PANELS = (  # rows of the table, title
     (("rounded", "rounded_published"), "B  round trip, rounded (mm)"),
     (("reprojection", "left_out"), "C  detection to reprojection (px)"),
     (("truth",), "D  distance to the truth (mm)"),

@@ -7,9 +7,9 @@ computers often lack.
 
 In the browser `courtside.viewer` gives tests and scripts: `ready` (a promise), `state()` (time,
 frame, speed, colours, shown layers, picked joint), `seek(time_s)`, `play()`, `pause()`,
-`position(layer, person, joint, frame)` in metres, `covariance(...)` in square metres, `drawn()`
-(places of the joints in the canvas, px) and `opened_ms` (from the start of loading to the first
-picture).
+`position(layer, person, joint, frame)` in metres, `covariance(...)` in square metres,
+`reprojection_px(...)`, `drawn()` (places of the joints in the canvas, px) and `opened_ms` (from the
+start of loading to the first picture).
 """
 
 from collections.abc import Sequence
