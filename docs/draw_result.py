@@ -10,12 +10,12 @@ import sys
 from pathlib import Path
 
 import numpy as np
-import scipy.stats
 from matplotlib.patches import Ellipse
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
+from courtside.calibration import point_covariance
 from courtside.calibration.court import court as court_files
 from courtside.evaluation import joints as pose_errors
 from courtside.figures.style import oblique_view, picture_crops, stick_figure, style
@@ -27,7 +27,7 @@ from courtside.video import reader
 SESSION, TAKE, TIME_S = "players-b", "shot", 2.37
 CALIBRATION, FUSION, NETWORK = "sfm-n40-lines", "all-robust", "blazepose-heavy-flip"
 LARGE, CLOSE = "front", ("oblique", "back", "mirror")
-RADIUS = np.sqrt(scipy.stats.chi2.ppf(0.9, 3))  # standard deviations: an ellipsoid for nine in ten
+RADIUS = np.sqrt(point_covariance.ellipsoid(0.9))  # standard deviations
 SIGHT = oblique_view.Sight(azimuth_deg=-60.0, elevation_deg=10.0)
 TRUE = "#222222"
 
