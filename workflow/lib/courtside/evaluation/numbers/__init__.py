@@ -2,7 +2,7 @@
 
 register: `Number`, `Source`, `listed`, `read`, `write`, `stale`: the register, and what it rests on
 markers: `View`, `render`, `fill`: tables of documents, filled from the register
-views: `VIEWS`: the columns of each table; those of stated numbers stand in `stated`
+views: `VIEWS`: the columns of each table; stated_views: those of stated numbers
 study: `numbers`, `summary`, `write`, `filled`, `report`: all of them
 calibration: `calibrations`, `ways`, `growth`, `strengths`, `capture`
 players: `sessions`, `takes`, `angles`, `measures`, `held`
