@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from courtside.evaluation.numbers import markers, register, study
+from courtside.evaluation.numbers import document_tables, register, study
 from courtside.evaluation.numbers.views import VIEWS
 from fixtures.study import results_made
 
@@ -29,14 +29,14 @@ def test_tables_are_exactly_those_of_the_register(name):
 
 def test_every_table_of_the_register_is_shown_and_every_view_used():
     texts = [(ROOT / name).read_text(encoding="utf-8") for name in study.DOCUMENTS]
-    shown = {name for text in texts for name in markers.names(text)}
+    shown = {name for text in texts for name in document_tables.names(text)}
     assert shown == set(VIEWS)
     assert {VIEWS[name].table for name in shown} == {number.table for number in numbers()}
 
 
 def test_the_documents_have_no_table_of_numbers_outside_the_markers():
     for name in study.DOCUMENTS:
-        text = markers.BLOCK.sub("", (ROOT / name).read_text(encoding="utf-8"))
+        text = document_tables.BLOCK.sub("", (ROOT / name).read_text(encoding="utf-8"))
         rows = re.findall(r"^\| .* \|$", text, flags=re.M)
         assert [row for row in rows if re.search(MEASURED, row)] == []
 

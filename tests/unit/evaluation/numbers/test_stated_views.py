@@ -1,6 +1,6 @@
 """Views of stated numbers say who measured them."""
 
-from courtside.evaluation.numbers.markers import cell
+from courtside.evaluation.numbers.document_tables import cell
 from courtside.evaluation.numbers.register import BENCHMARK, Number
 from courtside.evaluation.numbers.stated_views import made
 

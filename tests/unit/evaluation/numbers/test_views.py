@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from courtside.evaluation.numbers.markers import FIELD
+from courtside.evaluation.numbers.document_tables import FIELD
 from courtside.evaluation.numbers.views import VIEWS
 
 

@@ -1,7 +1,7 @@
 """Numbers of the README and of docs/measured.md: each from its source, kept in one register.
 
 register: `Number`, `Source`, `listed`, `read`, `write`, `stale`: the register, and what it rests on
-markers: `View`, `render`, `fill`: tables of documents, filled from the register
+document_tables: `View`, `render`, `fill`: tables of documents, filled from the register
 views: `VIEWS`: the columns of each table; stated_views: those of stated numbers
 study: `numbers`, `summary`, `write`, `filled`, `report`: all of them
 calibration: `calibrations`, `ways`, `growth`, `strengths`, `capture`

@@ -9,8 +9,8 @@ from pathlib import Path
 from courtside.evaluation.numbers import (
     calibration,
     devices,
+    document_tables,
     footage,
-    markers,
     networks,
     players,
     published,
@@ -111,13 +111,13 @@ def summary(others: Sequence[Number]) -> list[Number]:
     found = []
     for label, (table, row, pattern) in SUMMED_UP.items():
         parts = {n.part: n for n in others if n.table == table and re.search(row, n.row)}
-        named = [part for part, _ in markers.FIELD.findall(pattern)]
+        named = [part for part, _ in document_tables.FIELD.findall(pattern)]
         if missing := [part for part in named if part not in parts]:
             raise InputError(
                 f"register: expected {missing[0]} in the row {row!r} of the table {table}, found "
                 "none; run docs/make_tables.py"
             )
-        text, first = markers.cell(pattern, label, parts), parts[named[0]]
+        text, first = document_tables.cell(pattern, label, parts), parts[named[0]]
         shown = replace(first, table=SUMMARY, row=label, part="error", printed=text)
         found.append(replace(shown, value=math.nan, unit=""))
     return found
@@ -145,7 +145,7 @@ def write(numbers_: list[Number], repository: StrPath) -> list[str]:
 def filled(numbers_: list[Number], repository: StrPath) -> dict[str, str]:
     """Return the documents with their tables of these numbers, by the documents' names."""
     texts = {name: (Path(repository) / name).read_text(encoding="utf-8") for name in DOCUMENTS}
-    return {name: markers.fill(text, VIEWS, numbers_) for name, text in texts.items()}
+    return {name: document_tables.fill(text, VIEWS, numbers_) for name, text in texts.items()}
 
 
 def report(results: StrPath, repository: StrPath, made: Collection[str]) -> list[str]:

@@ -1,7 +1,7 @@
 """The tables of the documents: which columns each shows of a table of the register."""
 
 from courtside.evaluation.numbers import stated_views
-from courtside.evaluation.numbers.markers import View
+from courtside.evaluation.numbers.document_tables import View
 from courtside.evaluation.numbers.stated_views import made
 
 STAGES = ("raw", "filtered", "corrected")

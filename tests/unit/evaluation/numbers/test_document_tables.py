@@ -2,8 +2,8 @@
 
 import pytest
 
-from courtside.evaluation.numbers import markers, register
-from courtside.evaluation.numbers.markers import View
+from courtside.evaluation.numbers import document_tables, register
+from courtside.evaluation.numbers.document_tables import View
 from courtside.study.errors import InputError
 
 TEXT = "Before.\n\n<!-- table: joints -->\nold\n<!-- end -->\n\nAfter 12.\n"
@@ -20,25 +20,25 @@ VIEW = View("joints", {"what": "{row}", "both": "{a} / {b}", "first": "{a} mm", 
 
 
 def test_a_table_is_written_between_its_markers_and_nothing_else_changes():
-    filled = markers.fill(TEXT, {"joints": VIEW}, NUMBERS)
+    filled = document_tables.fill(TEXT, {"joints": VIEW}, NUMBERS)
     assert filled == TEXT.replace(
         "old\n",
         "| what | both | first | n |\n| --- | --- | --- | --- |\n"
         "| one | 1.0 / 2.0 | 1.0 mm | 9 |\n| two | - / 3.0 | | |\n",
     )
-    assert markers.fill(filled, {"joints": VIEW}, NUMBERS) == filled
+    assert document_tables.fill(filled, {"joints": VIEW}, NUMBERS) == filled
 
 
 def test_a_view_shows_the_rows_that_it_asks_for():
-    shown = markers.render(View("joints", {"what": "{row}"}, "^tw"), NUMBERS)
+    shown = document_tables.render(View("joints", {"what": "{row}"}, "^tw"), NUMBERS)
     assert shown.splitlines()[2:] == ["| two |"]
     with pytest.raises(InputError, match="found none"):
-        markers.render(View("joints", {"what": "{row}"}, "three"), NUMBERS)
+        document_tables.render(View("joints", {"what": "{row}"}, "three"), NUMBERS)
 
 
 def test_a_number_that_is_not_in_the_register_is_refused():
     with pytest.raises(InputError, match="expected c in the table joints"):
-        markers.render(View("joints", {"what": "{c}"}), NUMBERS)
+        document_tables.render(View("joints", {"what": "{c}"}), NUMBERS)
 
 
 @pytest.mark.parametrize(
@@ -47,4 +47,4 @@ def test_a_number_that_is_not_in_the_register_is_refused():
 )
 def test_unknown_tables_and_open_markers_are_refused(text, words):
     with pytest.raises(InputError, match=words):
-        markers.fill(text, {"joints": VIEW}, NUMBERS)
+        document_tables.fill(text, {"joints": VIEW}, NUMBERS)
