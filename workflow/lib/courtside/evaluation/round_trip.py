@@ -1,7 +1,7 @@
 """Parts of an error in mm: round trips, rounded pixels, reprojection, true 3D error."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
@@ -92,7 +92,7 @@ def table(
     joints: Sequence[str],
     chosen: Span,
     *,
-    published_width: int = 3840,
+    published_width: int,
     truth: joint_errors.Truth | None = None,
     others: Sequence[tuple[Camera, Keypoints2D, Clock | None]] = (),
 ) -> pd.DataFrame:
@@ -119,7 +119,7 @@ def table(
             )
     used = [known[name] for name in points.cameras]
     at = [list(points.joints).index(joint) for joint in joints if joint in points.joints]
-    part = _part(points, chosen.frames, at)
+    part = points.frames(chosen.frames).some_joints(at)
     values = round_trips(used, part.xyz, published_width)
     values["reprojection"] = ("px", part.reproj_error_px)
     if others:
@@ -160,13 +160,6 @@ def round_trips(
         "rounded": ("mm", distance_after(cameras, xyz, np.ones(len(cameras)))),
         "rounded_published": ("mm", distance_after(cameras, xyz, published)),
     }
-
-
-def _part(points: Keypoints3D, frames: slice, at: list[int]) -> Keypoints3D:
-    keys = ["xyz", "covariance_2d", "covariance_camera", "covariance_network", "offset"]
-    keys += ["outlier", "reproj_error_px"]
-    cut = {key: getattr(points, key)[:, frames][:, :, at] for key in keys}
-    return replace(points, joints=points.joints[at], time_s=points.time_s[frames], **cut)
 
 
 def _statistics(values: NDArray, joints: NDArray, words: str) -> Iterator[tuple]:
