@@ -3,12 +3,9 @@
 Reads 3D keypoints of one take and the truth; writes paired differences.
 """
 
-import numpy as np
-
-from courtside.evaluation import camera_sets
-from courtside.evaluation import joints as pose_errors
+from courtside.evaluation import camera_sets, joints
 from courtside.records import tables
-from courtside.records.keypoints import keypoints, skeleton
+from courtside.records.keypoints import keypoints
 from courtside.records.truth import take_truth
 from courtside.study.execution.script import run
 
@@ -17,10 +14,7 @@ def main(pose3d_npz, truth_npz, gains_csv, *, fusions, pairs, labels):
     truth, distance_mm = take_truth.read(truth_npz), {}
     for name, path in zip(fusions, pose3d_npz, strict=True):
         points = keypoints.read_3d(path).between(truth.time_s[0], truth.time_s[-1])
-        true = pose_errors.true_places(points, truth)
-        joints, error, _ = pose_errors.errors(points, truth.joints, true)
-        of = [joints.index(limb) for limb in skeleton.JOINTS]
-        distance_mm[name] = 1000 * np.linalg.norm(error[:, :, of], axis=-1)
+        distance_mm[name] = joints.limb_distances(points, truth)
     rows = camera_sets.gains(distance_mm, pairs, points.rate_hz)
     tables.write(gains_csv, rows, labels)
 

@@ -25,7 +25,7 @@ def main(errors_csv, table_csv, *, labels, skeleton_labels, networks, pose3d_npz
     for key, pictures in takes.items():
         space = ()
         if key in points:
-            space = compared.in_space(points[key], take_truth.read(truths[key]))
+            space = compared.errors_3d(points[key], take_truth.read(truths[key]))
         found.append(compared.ComparedTake(key[0], key[2], pictures, *space))
     table = compared.table(found, networks)
     for row in table[table["measure"] == "pck"].itertuples():

@@ -150,19 +150,23 @@ def truth(points, first_s=-0.1, last_s=1.0):
 def test_a_constant_shift_is_found_at_any_time():
     points = take([0.03, 0.0, 0.04])
     points.xyz[0, 20, 3] = np.nan
-    error = pose_errors.true(points, truth(points))
+    error = pose_errors.distance_to_truth(points, truth(points))
     assert np.isnan(error[0, 20, 3])
     known = np.isfinite(points.xyz[0, ..., 0])
     assert known.sum() == known.size - 1
     np.testing.assert_allclose(error[0][known], 50.0, atol=1e-9)
     assert np.nanmin(error[1]) > 1000.0
+    limbs = pose_errors.limb_distances(points, truth(points))
+    names = points.joints.tolist()
+    np.testing.assert_array_equal(limbs[..., 0], error[..., names.index("left_shoulder")])
+    assert limbs.shape == (*error.shape[:2], 12)
 
 
 def test_errors_are_empty_outside_the_truth_and_for_joints_it_lacks():
     points = take(0.0)
     real = truth(points, 0.2, 0.5)
     real = true_motion.Truth(real.joints[:-2], real.person_id, real.time_s, real.xyz[:, :, :-2])
-    error = pose_errors.true(points, real)
+    error = pose_errors.distance_to_truth(points, real)
     inside = (points.time_s >= 0.2) & (points.time_s <= real.time_s[-1])
     assert np.isfinite(error[0, inside, 2:]).all()
     assert np.isnan(error[:, ~inside]).all()
@@ -174,7 +178,7 @@ def test_a_truth_of_other_persons_is_refused():
     real = truth(points)
     real = true_motion.Truth(real.joints, np.array(["x", "y"]), real.time_s, real.xyz)
     with pytest.raises(InputError, match=r"found \['x', 'y'\]"):
-        pose_errors.true(points, real)
+        pose_errors.distance_to_truth(points, real)
 
 
 def test_truth_is_derived_only_for_joints_with_the_same_definition():
@@ -200,7 +204,7 @@ def test_a_view_that_was_left_out_is_compared_with_its_own_tracklets():
     )
     xy = np.stack([xy[1] + [40.0, 0.0], xy[0] + [0.0, 3.0]])
     view = keypoints_made.view(cameras[3], points.joints, points.time_s + 0.25, xy)
-    error = pose_errors.left_out(points, cameras[3], view, Clock(offset_s=0.25))
+    error = pose_errors.distance_to_unused_view(points, cameras[3], view, Clock(offset_s=0.25))
     known = np.isfinite(points.xyz[..., 0])
     np.testing.assert_allclose(error[0][known[0]], 3.0, atol=1e-6)
     np.testing.assert_allclose(error[1][known[1]], 40.0, atol=1e-6)

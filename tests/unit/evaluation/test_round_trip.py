@@ -121,7 +121,9 @@ def test_rows_state_mean_deviation_count_and_population():
     points.xyz[0] = moving
     points.xyz[0, 20, 3] = np.nan
     joints = [points.joints[3], points.joints[5], "no_such_joint"]
-    rows = round_trip.table(points, cameras, joints, round_trip.span(points, 17), truth=real, published_width=3840)
+    rows = round_trip.table(
+        points, cameras, joints, round_trip.span(points, 17), truth=real, published_width=3840
+    )
     first = rows[rows["person"] == points.person_id[0]].set_index(["row", "joint"])
     true = first.loc[("truth", joints[1])]
     np.testing.assert_allclose([true["mean"], true["sd"]], [50.0, 0.0], atol=1e-9)
@@ -146,6 +148,8 @@ def test_a_truth_of_other_persons_and_a_camera_without_calibration_are_refused()
     real.person_id = np.array(["x", "y"])
     chosen = round_trip.span(points, 5)
     with pytest.raises(InputError, match=r"found \['x', 'y'\]"):
-        round_trip.table(points, cameras, points.joints[:2], chosen, truth=real, published_width=3840)
+        round_trip.table(
+            points, cameras, points.joints[:2], chosen, truth=real, published_width=3840
+        )
     with pytest.raises(InputError, match="camera c2: expected one of"):
         round_trip.table(points, cameras[:2], points.joints[:2], chosen, published_width=3840)

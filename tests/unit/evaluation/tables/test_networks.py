@@ -152,7 +152,7 @@ def test_skeletons_are_compared_person_by_person_on_common_frames():
         if np.shape(getattr(moved, field.name))[:2] == (2, 30)
     }
     late = replace(moved, time_s=moved.time_s[5:], **cut)
-    found, rate_hz = networks.in_space({"all": moved, "late": late}, truth)
+    found, rate_hz = networks.errors_3d({"all": moved, "late": late}, truth)
     assert rate_hz == pytest.approx(50)
     np.testing.assert_allclose(found["all"], np.broadcast_to([[[100]], [[50]]], (2, 30, 12)))
     assert np.isnan(found["late"][:, :5]).all()

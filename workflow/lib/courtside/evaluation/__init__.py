@@ -1,7 +1,7 @@
 """Comparison with truth: joints, detection, kinematics, sources, calibration, racket.
 
-joints: `errors`, `table`, `true`, `left_out`: errors of 3D joints, against the truth and
-    against other views
+joints: `errors`, `table`, `distance_to_truth`, `limb_distances`, `distance_to_unused_view`: errors
+    of 3D joints, against the truth and against other views
 reliability: `counts`, `pooled`: how often ellipsoids hold, and how well outliers are flagged
 error_fit: `joints_of`: what the model of joint errors is fitted on
 detection: `evaluate`, `against`, `torso_px`: errors of a network's 2D joints in the pictures

@@ -193,7 +193,7 @@ def derive_truth(truth: Truth, table: DerivedJoints, skeleton: str, names: Seque
     return replace(truth, joints=joints, xyz=np.concatenate([truth.xyz, more], axis=2))
 
 
-def true(points: Keypoints3D, truth: Truth) -> NDArray:
+def distance_to_truth(points: Keypoints3D, truth: Truth) -> NDArray:
     """Return the distance to the truth, (P, T, J) mm; NaN where either is missing.
 
     The truth is interpolated at the times of `points`, never extrapolated. `InputError` if none of
@@ -213,7 +213,13 @@ def true(points: Keypoints3D, truth: Truth) -> NDArray:
     return error
 
 
-def left_out(
+def limb_distances(points: Keypoints3D, truth: Truth) -> NDArray:
+    """Return the distances of the 12 limb joints to the truth, (P, T, 12) mm, as those of all."""
+    names = points.joints.tolist()
+    return distance_to_truth(points, truth)[:, :, [names.index(joint) for joint in limbs.JOINTS]]
+
+
+def distance_to_unused_view(
     points: Keypoints3D, camera: Camera, view: Keypoints2D, clock: Clock | None = None
 ) -> NDArray:
     """Return the distances (P, T, J) px between a view's detections and projected points.

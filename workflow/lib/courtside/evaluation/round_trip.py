@@ -124,11 +124,12 @@ def table(
     values["reprojection"] = ("px", part.reproj_error_px)
     if others:
         left_out = [
-            joint_errors.left_out(points, *other)[:, chosen.frames][:, :, at] for other in others
+            joint_errors.distance_to_unused_view(points, *other)[:, chosen.frames][:, :, at]
+            for other in others
         ]
         values["left_out"] = ("px", np.stack(left_out, axis=-1))
     if truth is not None:
-        values["truth"] = ("mm", joint_errors.true(part, truth))
+        values["truth"] = ("mm", joint_errors.distance_to_truth(part, truth))
     rows = []
     for person, name in enumerate(points.person_id):
         for row, (unit, of_all) in values.items():

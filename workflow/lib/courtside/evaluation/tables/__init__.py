@@ -3,7 +3,7 @@
 angles: `read`, `table`: errors of joint angles
 calibration: read, tidy, table: errors of calibrations; pick, summary, spread, structures_of: parts
     of it
-networks: `in_space`, `table`: networks on the same frames, with intervals
+networks: `errors_3d`, `table`: networks on the same frames, with intervals
 players: `read`, `together`, `table`: errors of simulated players
 racket: `read`, `table`: lengths of a racket
 ways: `from_quality`, `against_truth`, `accepted`: all calibrations of sessions side by side

@@ -59,7 +59,7 @@ class Series:
     rate_hz: float
 
 
-def in_space(
+def errors_3d(
     points: Mapping[str, Keypoints3D], truth: joints.Truth
 ) -> tuple[dict[str, NDArray], float]:
     """Return the errors of the limb joints (P, T, 12) mm by network, and frames per second.
@@ -72,8 +72,7 @@ def in_space(
     shape = len(truth.person_id), max(at[-1] for at in slots.values()) + 1, len(skeleton.JOINTS)
     known, found = list(map(str, truth.person_id)), {}
     for name, record in points.items():
-        place = [record.joints.tolist().index(joint) for joint in skeleton.JOINTS]
-        error_mm = joints.true(record, truth)[:, :, place]
+        error_mm = joints.limb_distances(record, truth)
         found[name] = np.full(shape, np.nan)
         for at, person in enumerate(map(str, record.person_id)):
             if person in known:
@@ -102,7 +101,7 @@ def table(takes: Sequence[ComparedTake], networks: Sequence[str]) -> pd.DataFram
 def _measured(group: Sequence[ComparedTake], networks: Sequence[str]) -> Iterator[dict]:
     """Yield the rows of the takes of one session."""
     seen = [_of_pictures(take, networks) for take in group]
-    space = [_of_space(take) for take in group if take.error_3d]
+    space = [_series_3d(take) for take in group if take.error_3d]
     for name, (unit, key, percentile) in MEASURES.items():
         series = space if key == "error_3d" else seen
         names = [name for name in networks if series and name in series[0]]
@@ -229,7 +228,7 @@ def _values(one: pd.DataFrame, both: NDArray) -> dict[str, NDArray]:
     }
 
 
-def _of_space(take: ComparedTake) -> dict[str, Series]:
+def _series_3d(take: ComparedTake) -> dict[str, Series]:
     """Return the 3D errors of each network, of the places that all have."""
     known = np.logical_and.reduce([np.isfinite(error) for error in take.error_3d.values()])
     found = {}
