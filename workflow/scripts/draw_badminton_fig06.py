@@ -17,11 +17,11 @@ def main(ties_npz, summary_json, court_yaml, pdf, png, csv, *, n_images):
     rows = fig06.table(
         {count: tie_points.read(path) for count, path in zip(n_images, ties_npz, strict=True)}
     )
-    registered = {
+    n_all = {
         count: json.loads(Path(path).read_text(encoding="utf-8"))["n_images"]
         for count, path in zip(n_images, summary_json, strict=True)
     }
-    drawing = fig06.draw(rows, court.read(court_yaml), registered)
+    drawing = fig06.draw(rows, court.read(court_yaml), n_all)
     style.save(drawing, rows, pdf, png, csv)
 
 

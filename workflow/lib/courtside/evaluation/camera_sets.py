@@ -7,6 +7,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from courtside.evaluation import joints
+from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.statistics import moving_blocks
 
@@ -58,7 +59,6 @@ def gains(
     rate_hz: float,
     *,
     block_s: float = 1.0,
-    seed: int = 0,
 ) -> pd.DataFrame:
     """Return how much nearer to the truth one fusion is than another, with 95 % intervals.
 
@@ -85,7 +85,7 @@ def gains(
         if both.any():
             found = _difference(one[both], other[both])
             row |= dict(zip(("median_mm", "p95_mm"), found, strict=True))
-            row |= _intervals(one, other, max(1, round(block_s * rate_hz)), seed)
+            row |= _intervals(one, other, max(1, round(block_s * rate_hz)))
         rows.append(row)
     return pd.DataFrame(rows, columns=GAINS)
 
@@ -116,9 +116,7 @@ def _distances(distance_mm: NDArray, known: NDArray) -> dict:
 
 
 def _exchanged(xyz: NDArray, reference: NDArray, names: list[str], limbs: list[int]) -> float:
-    turn = {"left": "right", "right": "left"}
-    sides = [names[at].split("_", 1) for at in limbs]
-    mirror = [names.index(f"{turn[side]}_{limb}") for side, limb in sides]
+    mirror = np.array(limbs)[skeleton.mirror([names[at] for at in limbs])]
     apart = np.linalg.norm(xyz[:, limbs] - reference[:, limbs], axis=-1)
     crossed = np.linalg.norm(xyz[:, limbs] - reference[:, mirror], axis=-1)
     both = np.isfinite(apart) & np.isfinite(crossed)
@@ -131,11 +129,11 @@ def _difference(one: NDArray, other: NDArray) -> NDArray:
     return np.percentile(one, (50, 95)) - np.percentile(other, (50, 95))
 
 
-def _intervals(one: NDArray, other: NDArray, block: int, seed: int) -> dict[str, float]:
+def _intervals(one: NDArray, other: NDArray, block: int) -> dict[str, float]:
     n_frames = one.shape[1]
     if n_frames < 4 * block:
         return {}
-    drawn = moving_blocks.frames(n_frames, block, seed=seed)
+    drawn = moving_blocks.frames(n_frames, block)
     found = np.empty((len(drawn), 2))
     for replicate, at in zip(found, drawn, strict=True):
         known = np.isfinite(one[:, at])

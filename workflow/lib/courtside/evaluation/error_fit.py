@@ -98,10 +98,8 @@ def joints_of(
     names, error, _ = joints.errors(placed, truth.joints.tolist(), joints.true_places(raw, truth))
     error = error[:, :, [names.index(joint) for joint in limbs.JOINTS]]
     at = [raw.joints.tolist().index(joint) for joint in limbs.JOINTS]
-    covariance, columns = (
-        raw.covariance_2d[:, :, at],
-        joint_errors.design(signs, raw.joints.tolist()),
-    )
+    covariance = raw.covariance_2d[:, :, at]
+    columns = joint_errors.design(signs, raw.joints.tolist())
     used = np.zeros(error.shape[:-1], dtype=bool)
     used[:, thin(raw)] = True
     known = used & np.isfinite(error).all(axis=-1) & np.isfinite(covariance).all(axis=(-2, -1))

@@ -33,6 +33,7 @@ JOINTS = {
         "wrist": "Hand",
     }.items()
 }
+MOST_S = 0.5  # of the time shifts that are tried, to either side
 STEP_S = 0.02  # ASSUME: of the first search over time shifts; a wrist turns within 0.1 s
 SOFT_M = 0.03  # ASSUME: errors below it have full weight in the motion, larger ones less
 FEWEST = 0.5  # ASSUME: of the joints: a shift that leaves fewer beside the truth is no match
@@ -56,13 +57,11 @@ class Fit:
     known: NDArray  # (T,) bool: frames with truth
 
 
-def fit(
-    time_s: NDArray, xyz: NDArray, true_s: NDArray, true_xyz: NDArray, *, most_s: float = 0.5
-) -> Fit:
+def fit(time_s: NDArray, xyz: NDArray, true_s: NDArray, true_xyz: NDArray) -> Fit:
     """Find the time shift and the rigid motion of least error, robustly.
 
     Measured joints (T, J, 3) m at `time_s` (T,), true ones (U, J, 3) m, the same joints, at
-    `true_s` (U,). Both times are taken from their first value; shifts of up to `most_s` to either
+    `true_s` (U,). Both times are taken from their first value; shifts of up to `MOST_S` to either
     side are tried. The error that is least is the mean distance of all joints. Raises `InputError`
     where no shift leaves half of the joints to compare.
     """
@@ -79,7 +78,7 @@ def fit(
         motion = _motion(xyz[both], true[both])
         return float(np.linalg.norm(motion.points(xyz[both]) - true[both], axis=1).mean())
 
-    tried = np.arange(-most_s, most_s + STEP_S / 2, STEP_S)
+    tried = np.arange(-MOST_S, MOST_S + STEP_S / 2, STEP_S)
     costs = [cost(shift) for shift in tried]
     if not np.isfinite(costs).any():
         raise InputError("truth: expected joints at the take's times, found none; check its times")

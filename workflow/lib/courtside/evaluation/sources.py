@@ -150,21 +150,25 @@ def split(source: BodyMotion, reference: BodyMotion, *, form: str = "fixed") -> 
                 at_s = shift_s if "time" in subset else 0.0
             fits[frozenset(subset)] = _fit(source, reference, form, inside, at_s, subset)
     total, (remainder, values) = fits[frozenset()][0], fits[frozenset(PARTS)]
-    left = {subset: fit[0] for subset, fit in fits.items()}
-    shares = {part: _share(part, left) for part in PARTS} | {"remainder": remainder, "all": total}
+    remaining = {subset: fit[0] for subset, fit in fits.items()}
+    shares = {part: _share(part, remaining) for part in PARTS} | {
+        "remainder": remainder,
+        "all": total,
+    }
     rows = pd.DataFrame(shares.items(), columns=["part", "mean_square_mm2"])
     rows["percent"] = 100 * rows["mean_square_mm2"] / (total or np.nan)
     return rows.assign(value=rows["part"].map(values | {"time": shift_s}))
 
 
-def _share(part: str, left: dict[frozenset[str], float]) -> float:
+def _share(part: str, remaining: dict[frozenset[str], float]) -> float:
     """Return the mean reduction by a part over all orders of the corrections."""
     others = [other for other in PARTS if other != part]
     share = 0.0
     for size in range(len(others) + 1):
         weight = factorial(size) * factorial(len(others) - size) / factorial(len(PARTS))
         for subset in combinations(others, size):
-            share += weight * (left[frozenset(subset)] - left[frozenset((*subset, part))])
+            without, fitted = remaining[frozenset(subset)], remaining[frozenset((*subset, part))]
+            share += weight * (without - fitted)
     return share
 
 
@@ -186,18 +190,18 @@ def _best_shift(
     thin = {key: getattr(source, key)[every] for key in ("time_s", "fixed", "following")}
     some, inside = replace(source, **thin), inside[every]
 
-    def left(shift_s):
+    def remaining(shift_s):
         return _fit(some, reference, form, inside, shift_s, subset)[0]
 
     coarse = np.linspace(-MOST_SHIFT_S, MOST_SHIFT_S, 25)
-    at_s = coarse[int(np.argmin([left(shift_s) for shift_s in coarse]))]
+    at_s = coarse[int(np.argmin([remaining(shift_s) for shift_s in coarse]))]
     step_s = coarse[1] - coarse[0]
     limits = max(at_s - step_s, -MOST_SHIFT_S), min(at_s + step_s, MOST_SHIFT_S)
     found = scipy.optimize.minimize_scalar(
-        left, bounds=limits, method="bounded", options={"xatol": 1e-5}
+        remaining, bounds=limits, method="bounded", options={"xatol": 1e-5}
     )
     # No shift at all must not be worse than the one found.
-    return float(found.x) if found.fun < left(0.0) else 0.0
+    return float(found.x) if found.fun < remaining(0.0) else 0.0
 
 
 def _fit(

@@ -63,17 +63,17 @@ def _splits(
     true: pd.DataFrame, landed: pd.DataFrame, inside: tuple[float, float]
 ) -> Iterator[dict[str, object]]:
     """Yield a row for each true and each false split step; times are of the landing."""
-    left = landed.index.tolist()
+    remaining = landed.index.tolist()
     for answer in true.dropna(subset="split_stop_s").itertuples():
         true_s = answer.split_stop_s
-        near = [k for k in left if abs(landed.stop_s[k] - true_s) <= SAME_S]
+        near = [k for k in remaining if abs(landed.stop_s[k] - true_s) <= SAME_S]
         row = {"what": SPLIT, "hit_s": answer.hit_s, "true_s": true_s, "result": "missed"}
         if near:
             best = min(near, key=lambda k: abs(landed.stop_s[k] - true_s))
-            left.remove(best)
+            remaining.remove(best)
             row |= _compared(true_s, landed.stop_s[best], landed.stop_sigma_s[best])
         yield row if inside[0] < true_s < inside[1] else {**row, "result": "cut"}
-    for k in left:
+    for k in remaining:
         result = "false" if inside[0] < landed.stop_s[k] < inside[1] else "cut"
         yield {"what": SPLIT, "result": result, "found_s": landed.stop_s[k]}
 

@@ -25,16 +25,16 @@ def table(strokes: pd.DataFrame, points: Keypoints3D, truth: TakeTruth) -> pd.Da
     rows, ends = [], points.time_s[[0, -1]] + (CUT_S, -CUT_S)
     for at, person in enumerate(map(str, points.person_id)):
         found, own = signals.of_person(points, at), strokes[strokes.person == person]
-        left = own.index.tolist()
+        remaining = own.index.tolist()
         for true_s in hits(truth, person):
-            near = [k for k in left if abs(own.time_s[k] - true_s) <= SAME_S]
+            near = [k for k in remaining if abs(own.time_s[k] - true_s) <= SAME_S]
             row = {"person": person, "true_s": true_s, "result": "missed"}
             if near:
                 best = min(near, key=lambda k: abs(own.time_s[k] - true_s))
-                left.remove(best)
+                remaining.remove(best)
                 row |= {"result": "found", **_errors(own.loc[best], true_s, found)}
             rows.append(row if ends[0] < true_s < ends[1] else {**row, "result": "cut"})
-        for k in left:
+        for k in remaining:
             result = "false" if ends[0] < own.time_s[k] < ends[1] else "cut"
             rows.append({"person": person, "result": result, **_words(own.loc[k])})
     return pd.DataFrame(rows, columns=COLUMNS)

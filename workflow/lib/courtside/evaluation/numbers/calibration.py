@@ -1,11 +1,12 @@
 """Numbers of calibrations: a walk against clicked points alone, every hall, and over halls."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from courtside.evaluation.numbers.register import Builder, Cut, Number, Settings, Source
+from courtside.evaluation.numbers.register import Builder, Cut, Number, Source
 from courtside.evaluation.tables import calibration
 from courtside.statistics import intervals
 
@@ -100,10 +101,10 @@ def calibrations(source: Source) -> list[Number]:
 
 def _one_way(
     build: Builder, row: str, names: tuple[str, str, str], of: pd.DataFrame, cut: Cut
-) -> Settings:
+) -> dict[str, Any]:
     """Add median, 95 % and points of a way under these names; return how they were counted."""
     found, part = calibration.spread(of["value"]), of["part"].iloc[0]
-    count: Settings = {"n": found["n"], "n_failed": len(of) - found["n"], "unit": "cm"}
+    count: dict[str, Any] = {"n": found["n"], "n_failed": len(of) - found["n"], "unit": "cm"}
     median, p95, points = names
     where = f"{part}, volume_rms_cm"
     build.add(row, median, found["median"], cut, f"{where}: median of trials", **count)
@@ -126,7 +127,7 @@ def _difference(build: Builder, row: str, rows: pd.DataFrame, cut: Cut) -> None:
         if means.isna().all():
             continue
         low, high = intervals.bootstrap(pairs, np.nanmean)
-        count: Settings = {"n": int(pairs["value"].notna().sum()), "unit": "cm"}
+        count: dict[str, Any] = {"n": int(pairs["value"].notna().sum()), "unit": "cm"}
         count["n_failed"] = len(pairs) - count["n"]
         name = f"{part}_less_known18"
         where = f"{part} less known18, same clicks"
@@ -142,7 +143,7 @@ def _together(build: Builder, row: str, rows: pd.DataFrame, cut: Cut) -> None:
         if part not in OVER_HALLS or medians.isna().all():
             continue
         n = int(of["value"].notna().sum())
-        count: Settings = {"n": n, "n_failed": len(of) - n, "unit": "cm"}
+        count: dict[str, Any] = {"n": n, "n_failed": len(of) - n, "unit": "cm"}
         where = f"{part}, volume_rms_cm"
         low, high = intervals.bootstrap(of, np.nanmedian)
         build.add(row, str(part), medians.median(), cut, f"{where}: median over halls", **count)
@@ -177,7 +178,7 @@ def growth(source: Source) -> list[Number]:
             cut = Cut(source, file, where, session)
             name = f"`{session}`, {of['structure'].nunique()} x {n_images:.0f} images"
             found = calibration.spread(of["value"])
-            count: Settings = {"n": found["n"], "n_failed": len(of) - found["n"]}
+            count: dict[str, Any] = {"n": found["n"], "n_failed": len(of) - found["n"]}
             for part in ("median", "p95"):
                 build.add(name, part, found[part], cut, "volume_rms_cm", unit="cm", **count)
             count |= {"unit": "%", "decimals": 0}
@@ -203,11 +204,11 @@ def strengths(source: Source) -> list[Number]:
         for _, row in of.sort_values(["session", "strength"], kind="stable").iterrows():
             cut = Cut(source, TABLE, f"{row['session']}, {part}, N = 40, in-sample", row["session"])
             name = f"`{row['session']}`, scatter x{row['strength']:g}"
-            count: Settings = {"n": row["n"], "n_failed": row["n_failed"]}
+            count: dict[str, Any] = {"n": row["n"], "n_failed": row["n_failed"]}
             ends = ("median", "p95")
             shown = {f"{part}_{end}": (f"volume_rms_cm_{end}", 2, "cm") for end in ends}
             build.add_columns(name, row, shown, cut, **count)
-            more: Settings = {**count, "decimals": 0, "unit": "%"}
+            more: dict[str, Any] = {**count, "decimals": 0, "unit": "%"}
             covered = 100 * row["coverage90"]
             build.add(name, f"{part}_coverage", covered, cut, "coverage90", **more)
     return build.numbers
@@ -224,7 +225,7 @@ def capture(source: Source) -> list[Number]:
             way = f"{row['way']}{'' if row['in_sample'] else ' (scored points left out)'}"
             cut = Cut(source, file, f"{setting}, way {way}", f"{file.split('/')[-1][:-4]}-*")
             shown = {part: (part, 2, "cm") for part in ("median", "p95")}
-            count: Settings = {"n": row["n"], "n_failed": row["n_failed"]}
+            count: dict[str, Any] = {"n": row["n"], "n_failed": row["n_failed"]}
             words = CAPTURED.get(row["way"], row["way"])
             words += "" if row["in_sample"] else " without the two scored ones"
             build.add_columns(f"{setting}: {words}", row, shown, cut, **count)

@@ -1,9 +1,11 @@
 """Numbers of virtual players: joints, joint angles, paths, speeds, clocks; raw and corrected."""
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 
-from courtside.evaluation.numbers.register import Builder, Cut, Number, Settings, Source
+from courtside.evaluation.numbers.register import Builder, Cut, Number, Source
 from courtside.evaluation.tables.calibration import pick
 from courtside.evaluation.tables.players import STAGES as STAGE_OF
 from courtside.evaluation.tables.players import furthest
@@ -76,7 +78,7 @@ def sessions(source: Source) -> list[Number]:
 
 
 def _of_session(build: Builder, row: str, stage: str, of: pd.DataFrame, cut: Cut) -> None:
-    count: Settings = {"n": of["n"].sum(), "decimals": 0}
+    count: dict[str, Any] = {"n": of["n"].sum(), "decimals": 0}
     for part in ("median", "p95", "unshifted", "unshifted_p95"):
         column = PER_STAGE[part][0]
         values = of[column]
@@ -114,13 +116,13 @@ ORDER = [
 
 
 def _of_angle(build: Builder, row: str, stage: str, of: pd.DataFrame, cut: Cut) -> None:
-    count: Settings = {"n": of["n"].sum()}
+    count: dict[str, Any] = {"n": of["n"].sum()}
     weights = of["n"]
     for part in ("bias", "rmse"):
         values = of[f"{part}_deg"]
         mean = np.average(values, weights=weights)
         mean = mean if part == "bias" else np.sqrt(np.average(values**2, weights=weights))
-        more: Settings = {**count, "decimals": 1, "unit": "degrees"}
+        more: dict[str, Any] = {**count, "decimals": 1, "unit": "degrees"}
         build.add(row, f"{stage}_{part}", mean, cut, f"{part}_deg, by n", **more)
     held = np.average(of["within_90_percent"], weights=weights)
     count = {**count, "decimals": 0, "unit": "%"}
@@ -154,7 +156,7 @@ def held(source: Source) -> list[Number]:
             large = large[large["group"].isin(LARGE_MM)]
             if group == "limbs" and len(large):
                 share = np.average(large[part], weights=large["n"])
-                more: Settings = {"n": large["n"].sum(), "decimals": 0, "unit": "%"}
+                more: dict[str, Any] = {"n": large["n"].sum(), "decimals": 0, "unit": "%"}
                 build.add(name, f"{stage}_large", share, cut, f"{part}, errors", **more)
     return build.numbers
 
@@ -182,7 +184,7 @@ def measures(source: Source) -> list[Number]:
             for part, (column, decimals, unit) in PATHS.items():
                 cut = Cut(source, file, f"{point}, furthest person", session)
                 value = of[column].min() if part == "held" else furthest(of[column])
-                more: Settings = {"decimals": decimals, "unit": unit, "n": of["n"].sum()}
+                more: dict[str, Any] = {"decimals": decimals, "unit": unit, "n": of["n"].sum()}
                 build.add(row, f"{point}_{part}", value, cut, column, **more)
         same = (table["session"] == session) & (table["take"] == take) & (table["fusion"] == fusion)
         for _, one in table[same & table["clock_error_ms"].notna()].iterrows():

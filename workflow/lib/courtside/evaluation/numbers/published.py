@@ -1,9 +1,11 @@
 """Numbers beside published ones: points, a walk, the length of a racket, the paper's table 1."""
 
+from typing import Any
+
 import pandas as pd
 
 from courtside.evaluation.numbers import calibration
-from courtside.evaluation.numbers.register import PUBLISHED, Builder, Cut, Number, Settings, Source
+from courtside.evaluation.numbers.register import PUBLISHED, Builder, Cut, Number, Source
 
 TABLE_1 = "config/published/badminton_tab01.csv"
 RACKET = "figures/badminton_fig12.csv"
@@ -83,7 +85,7 @@ def racket(source: Source) -> list[Number]:
         name = f"`{session}`, ends clicked within {sigma_px:g} px"
         for _, row in theirs.iterrows():
             cut = Cut(source, RACKET, f"mean_abs_mm, published, {row['reference']}", "")
-            more: Settings = {"decimals": 1, "unit": "mm", "origin": PUBLISHED}
+            more: dict[str, Any] = {"decimals": 1, "unit": "mm", "origin": PUBLISHED}
             build.add(name, THEIRS[row["reference"]], row["median"], cut, "median", **more)
         _ways(build, name, source, part[part["way"].isin(RACKETS)])
     return build.numbers
@@ -115,7 +117,7 @@ def table_1(documents: Source) -> list[Number]:
     """Return the authors' table 1, the mean over their joints, from the repository's copy."""
     table = documents.table(TABLE_1)
     build, cut = Builder("table-1"), Cut(documents, TABLE_1, "all joints", "")
-    more: Settings = {"unit": "mm", "n": len(table), "origin": PUBLISHED}
+    more: dict[str, Any] = {"unit": "mm", "n": len(table), "origin": PUBLISHED}
     for part, column in (("published", "mean_mm"), ("published_sd", "sd_mm")):
         name = "the authors' table 1, called reprojection error"
         build.add(name, part, table[column].mean(), cut, f"{column}: mean", **more)

@@ -17,7 +17,6 @@ from courtside.study.execution import files
 STUDY, BENCHMARK, BY_HAND, PUBLISHED = "study", "benchmark", "by hand", "published"
 ORIGINS = (STUDY, BENCHMARK, BY_HAND, PUBLISHED)
 MISSING = "-"  # printed where there is no value
-Settings: TypeAlias = dict[str, Any]  # named arguments of `Builder.add`
 Parts: TypeAlias = Mapping[str, tuple[str, int, str]]  # column, decimals and unit of each part
 KEPT = 8  # digits of an exact value
 DIGITS = 16  # of a checksum
@@ -199,7 +198,7 @@ class Builder:
     ) -> None:
         """Add the columns of one row of a source; `counts` are `n` and `n_failed` of them all."""
         for part, (column, decimals, unit) in parts.items():
-            how: Settings = {"decimals": decimals, "unit": unit, **counts}
+            how: dict[str, Any] = {"decimals": decimals, "unit": unit, **counts}
             self.add(row, part, values[column], cut, column, **how)
 
 

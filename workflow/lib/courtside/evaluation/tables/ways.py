@@ -37,8 +37,8 @@ def against_truth(cameras: Sequence[Camera], truth: Sequence[Camera], court: Cou
     grid = quality.volume(court)
     seen = np.stack([camera_models.project(true, grid) for true in truth])
     xyz = triangulate_all([own[true.name] for true in truth], seen)
-    left = {"volume_rms_cm": xyz - grid, "shape_cm": umeyama(xyz, grid).points(xyz) - grid}
-    return {name: quality.over_volume(off)["volume_rms_cm"] for name, off in left.items()}
+    remaining = {"volume_rms_cm": xyz - grid, "shape_cm": umeyama(xyz, grid).points(xyz) - grid}
+    return {name: quality.over_volume(off)["volume_rms_cm"] for name, off in remaining.items()}
 
 
 def accepted(takes: Sequence[Keypoints3D]) -> dict:

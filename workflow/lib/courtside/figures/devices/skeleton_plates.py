@@ -22,17 +22,8 @@ LOWEST, ROOM = -1.45, 0.25  # of the feet, at least; below them, for words
 AXES = (((0, 1), 0.0, "from the front"), ((2, 1), ASIDE, "from the right"))
 TPOSE, SCHEMATIC = "T-pose", "schematic"
 COLUMNS = [
-    "source",
-    "skeleton",
-    "number",
-    "joint",
-    "device_name",
-    "x",
-    "y",
-    "z",
-    "stands_for",
-    "pose",
-]
+    "source", "skeleton", "number", "joint", "device_name", "x", "y", "z", "stands_for", "pose",
+]  # fmt: skip
 WORDS = {  # of derived joints, in the table
     "head_centre": "centre of the head",
     "head_mass": "mass of the head",

@@ -62,10 +62,10 @@ def plain_log(axis: Axes, which: str = "y") -> None:
     scale.set_minor_formatter(NullFormatter())
 
 
-def name_rows(axis: Axes, joints: Sequence[str]) -> None:
-    """Name the rows of an axis after joints, 0 at the top."""
-    axis.set_yticks(range(len(joints)), [joint.replace("_", " ") for joint in joints])
-    axis.set_ylim(len(joints) - 0.5, -0.5)
+def name_rows(axis: Axes, names: Sequence[str]) -> None:
+    """Name the rows of an axis, 0 at the top."""
+    axis.set_yticks(range(len(names)), [name.replace("_", " ") for name in names])
+    axis.set_ylim(len(names) - 0.5, -0.5)
 
 
 def named(axes: Iterable[Axes]) -> dict[str, Artist]:
