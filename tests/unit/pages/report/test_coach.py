@@ -39,10 +39,10 @@ def test_a_mark_has_a_shape_and_a_word_beside_its_colour():
 
 def test_a_take_says_distance_speeds_and_angles():
     measures = {
-        "neck_distance": (29.3274, 0.376, "m", True),
-        "neck_speed_mean": (1.2254, 0.0155, "m/s", True),
-        "left_knee_flexion_min": (12.8, 9.5, "degrees", False),
-        "left_knee_flexion_max": (89.7, 9.4, "degrees", False),
+        "neck_distance": (29.3274, 0.376, "m"),
+        "neck_speed_mean": (1.2254, 0.0155, "m/s"),
+        "left_knee_flexion_min": (12.8, 9.5, "degrees"),
+        "left_knee_flexion_max": (89.7, 9.4, "degrees"),
     }
     facts = FACTS | {
         "persons": {"p1": measures},
@@ -59,11 +59,11 @@ def test_a_take_says_distance_speeds_and_angles():
 
 def test_a_take_says_what_the_feet_did():
     feet = {
-        "steps": (66.0, math.nan, "", False),
-        "lunges": (5.0, math.nan, "", False),
-        "split_steps": (2.0, math.nan, "", False),
-        "stance_time": (0.4325, 0.0082, "s", False),
-        "swing_time": (math.nan, math.nan, "s", False),
+        "steps": (66.0, math.nan, ""),
+        "lunges": (5.0, math.nan, ""),
+        "split_steps": (2.0, math.nan, ""),
+        "stance_time": (0.4325, 0.0082, "s"),
+        "swing_time": (math.nan, math.nan, "s"),
     }
     take = {"id": "take-x", "name": "drill", "links": []}
     facts = FACTS | {"persons": {"p1": {}, "p2": {}}, "footwork": {"p1": feet}}
@@ -90,7 +90,7 @@ def test_strokes_are_counted_with_their_hand_where_there_are_any():
 def test_a_simulated_take_compares_the_distance_with_the_truth():
     row = {"person": "p1", "point": "neck", "distance_error_percent": -2.3}
     facts = FACTS | {
-        "persons": {"p1": {"neck_distance": (1.0, 0.1, "m", True)}},
+        "persons": {"p1": {"neck_distance": (1.0, 0.1, "m")}},
         "true_paths": [row],
     }
     html = coach.take({"id": "t", "name": "t", "links": []}, facts, [])
@@ -105,7 +105,7 @@ def test_warnings_for_information_only_are_folded_away():
 
 
 def test_text_of_users_is_escaped():
-    measures = {"neck_distance": (1.0, 0.1, ROGUE, True)}
+    measures = {"neck_distance": (1.0, 0.1, ROGUE)}
     facts = FACTS | {"persons": {ROGUE: measures}, "devices": [{"source": ROGUE}]}
     take = {"id": "t", "name": ROGUE, "links": [(ROGUE, ROGUE)]}
     html = coach.take(take, facts, [Warned(LOOK, ROGUE)], ROGUE)

@@ -211,7 +211,7 @@ def test_a_truth_outside_the_error_bar_gives_a_warning():
     ],
 )
 def test_an_uncertain_distance_gives_a_warning(value, half, expected):
-    measures = {"neck_distance": (value, half, "m", True)}
+    measures = {"neck_distance": (value, half, "m")}
     assert level(warned.distance("p1", measures)) == expected
 
 

@@ -18,7 +18,7 @@ ANGLES = {
 }
 
 
-def with_error(value: float, half: float, unit: str, *_: object) -> Markup:
+def with_error(value: float, half: float, unit: str) -> Markup:
     """Return a number with its error bar as HTML, with two digits of the error.
 
     `half` is half of the 90 % interval, NaN if unknown.

@@ -23,12 +23,11 @@ FOOTWORK = ("person", "measure", "value", "sigma", "unit", "n")
 def of_take(files: dict) -> dict:
     """Read the facts of a take.
 
-    `persons`: {person: {measure: (value, half of the 90 % interval, unit, whether the error of the
-    calibration is known)}}; `footwork` likewise; `strokes`: {person: rows}; `left_out`: {person:
-    (frames without a neck, frames, {reason: frames})}; `seconds`; `joints` and `cameras` as
-    `of_skeleton` returns them; `clocks`: {camera: Clock}; `shake`: lines; `movement`, `devices`,
-    `truth`, `true_paths` and `quality`: rows. Empty without a file. `InputError` if a file is
-    missing or has another content.
+    `persons`: {person: {measure: (value, half of the 90 % interval, unit)}}; `footwork` likewise;
+    `strokes`: {person: rows}; `left_out`: {person: (frames without a neck, frames, {reason:
+    frames})}; `seconds`; `joints` and `cameras` as `of_skeleton` returns them; `clocks`: {camera:
+    Clock}; `shake`: lines; `movement`, `devices`, `truth`, `true_paths` and `quality`: rows. Empty
+    without a file. `InputError` if a file is missing or has another content.
 
     `files` are paths by `summary` and `frames` (kinematics), `footwork`, `strokes`, `pose3d`,
     `sync`, `movement` (a list), `shake` (text), `checks` (clocks of devices), `errors` and
@@ -132,7 +131,7 @@ def _measures(table: pd.DataFrame) -> dict:
     for row in table.itertuples():
         whole = np.hypot(row.sigma, 0 if np.isnan(row.sigma_camera) else row.sigma_camera)
         unit = row.unit if isinstance(row.unit, str) else ""
-        value = (float(row.value), WITHIN_90 * float(whole), unit, not np.isnan(row.sigma_camera))
+        value = (float(row.value), WITHIN_90 * float(whole), unit)
         found.setdefault(str(row.person), {})[row.measure] = value
     return found
 

@@ -218,7 +218,7 @@ def joints(found: dict) -> list[Warned]:
 
 def distance(person: str, measures: dict) -> Warned | None:
     """Return a warning if a distance is known badly; `measures` are those of `facts.of_take`."""
-    value, half = measures.get("neck_distance", (math.nan, math.nan))[:2]
+    value, half, _ = measures.get("neck_distance", (math.nan, math.nan, "m"))
     if math.isnan(value):
         return Warned(DOUBT, f"{person}: the distance of the neck could not be measured.")
     share = half / value if value > 0 else math.nan
