@@ -61,7 +61,9 @@ def test_data_is_json_that_cannot_end_early():
 
 def test_pictures_go_where_they_are_shown():
     body = '<img src="image:a" alt="x"><img src="image:a" alt="y">'
-    made = page.build("t", body, images={"a": b"\x89PNG", "b.1": (b"\xff\xd8", "image/jpeg")})
+    made = page.build(
+        "t", body, images={"a": (b"\x89PNG", page.PNG), "b.1": (b"\xff\xd8", "image/jpeg")}
+    )
     read = Elements(made)
     for has, _ in read.all("img"):
         kind, _, content = has["src"].partition(";base64,")
@@ -72,11 +74,14 @@ def test_pictures_go_where_they_are_shown():
     assert held["b.1"].startswith("data:image/jpeg;base64,")
 
 
-def test_scripts_and_styles_stay_in_their_elements(tmp_path):
+def test_scripts_and_styles_stay_in_their_elements(tmp_path, monkeypatch):
+    monkeypatch.setattr(page, "ASSETS", tmp_path)
+    for name in ("page.js", "page.css"):
+        (tmp_path / name).touch()
     script, style = tmp_path / "a.js", tmp_path / "a.css"
     script.write_text('const a = "</SCRIPT><script><!--";')
     style.write_text('p::after { content: "</style><b>"; }')
-    read = Elements(page.build("t", "<i>end</i>", js=[script], css=[style]))
+    read = Elements(page.build("t", "<i>end</i>", js=["a.js"], css=["a.css"]))
     assert len(read.all("script")) == 3
     assert read.all("b") == []
     assert [text.strip() for _, text in read.all("script")][-1].endswith('!--";')
@@ -90,7 +95,7 @@ def test_a_policy_forbids_all_addresses_outside():
     assert not any(word in policy for word in ("http", "*", "'self'", "'unsafe-eval'"))
 
 
-@pytest.mark.parametrize("parts", [{"data": {"a b": 1}}, {"images": {'"': b""}}])
+@pytest.mark.parametrize("parts", [{"data": {"a b": 1}}, {"images": {'"': (b"", page.PNG)}}])
 def test_names_are_plain(parts):
     with pytest.raises(ValueError, match="expected a name of letters"):
         page.build("t", "", **parts)

@@ -27,29 +27,27 @@ TEMPLATES = jinja2.Environment(
     lstrip_blocks=True,
 )
 
-Picture = bytes | tuple[bytes, str]  # content, MIME type
-
 
 def build(
     title: str,
     body_html: str,
     *,
-    css: Iterable[StrPath] = (),
-    js: Iterable[StrPath] = (),
+    css: Iterable[str] = (),
+    js: Iterable[str] = (),
     data: Mapping[str, object] | None = None,
-    images: Mapping[str, Picture] | None = None,
+    images: Mapping[str, tuple[bytes, str]] | None = None,
 ) -> str:
     """Return the content of a page, to be written by `write`.
 
     title : of the window; any text
     body_html : trusted HTML, as `render` returns it; `<img src="image:NAME" alt="...">` shows a
         picture of `images`
-    css, js : names of files in `pages/assets`, or other paths (a plotting library); `page.css` and
-        `page.js` come first; scripts run after the body, in this order
+    css, js : names of files in `pages/assets`; `page.css` and `page.js` come first; scripts run
+        after the body, in this order
     data : what scripts get by `courtside.data(name)`: plain values, lists, dictionaries, numpy
         arrays; numbers that are not finite become null
-    images : picture, or picture and MIME type ("image/png" if left out); scripts get pictures that
-        `body_html` does not show by `courtside.image(name)`, as a data address
+    images : picture and MIME type; scripts get pictures that `body_html` does not show by
+        `courtside.image(name)`, as a data address
 
     `ValueError` if a name has characters other than letters, digits, _ . and -, or a picture is
     missing.
@@ -58,8 +56,7 @@ def build(
     for name in [*data, *images]:
         if not NAME.fullmatch(name):
             raise ValueError(f"expected a name of letters, digits, _ . and -, found {name!r}")
-    typed = {name: (one, PNG) if isinstance(one, bytes) else one for name, one in images.items()}
-    addresses = {name: _data_uri(*picture) for name, picture in typed.items()}
+    addresses = {name: _data_uri(*picture) for name, picture in images.items()}
     shown = set(PICTURE.findall(body_html))
     if shown - set(addresses):
         raise ValueError(f"pictures shown but not given: {', '.join(sorted(shown - set(images)))}")
@@ -92,14 +89,13 @@ def write(path: StrPath, page: str) -> None:
         temporary.write_text(page, encoding="utf-8", newline="\n")
 
 
-def _data_uri(content: bytes, mime: str = PNG) -> str:
+def _data_uri(content: bytes, mime: str) -> str:
     """Return bytes as an address that holds them."""
     return f"data:{mime};base64,{base64.b64encode(content).decode('ascii')}"
 
 
-def _read(item: StrPath) -> str:
-    path = item if isinstance(item, Path) else ASSETS / item
-    return path.read_text(encoding="utf-8")
+def _read(name: str) -> str:
+    return (ASSETS / name).read_text(encoding="utf-8")
 
 
 def _safe_js(js: str) -> Markup:

@@ -75,14 +75,15 @@ def _measured(known: list[dict], reported: list[dict], grouped: figures.Groups) 
     return page.render("report_measured.html", sessions=sessions, **look)
 
 
-def _figures(grouped: figures.Groups) -> tuple[Markup, dict[str, page.Picture]]:
+def _figures(grouped: figures.Groups) -> tuple[Markup, dict[str, tuple[bytes, str]]]:
     groups: list[dict] = []
-    images: dict[str, page.Picture] = {}
+    images: dict[str, tuple[bytes, str]] = {}
     for key, group in grouped.items():
         drawn = []
         for entry in group:
             name = f"figure-{len(images)}"
-            html, images[name] = figures.figure(entry, name)
+            html, png = figures.figure(entry, name)
+            images[name] = (png, page.PNG)
             drawn.append(html)
         groups.append({"id": _group_id(key), "name": _group_name(key), "figures": drawn})
     return page.render("report_figures.html", groups=groups), images
