@@ -88,6 +88,5 @@ rule tabulate_calibration:
         "results/figures/logs/tabulate_calibration/all.log",
     params:
         code=code("tabulate_calibration.py"),
-        n_reference=40,
     script:
         "../scripts/tabulate_calibration.py"

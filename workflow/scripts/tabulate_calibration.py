@@ -5,9 +5,9 @@ from courtside.records import tables
 from courtside.study.execution.script import run
 
 
-def main(errors_csv, table_csv, *, n_reference):
+def main(errors_csv, table_csv):
     rows = calibration.read(errors_csv, click_strength=None)
-    found = calibration.table(rows, n_reference=n_reference)
+    found = calibration.table(rows)
     tables.write(table_csv, found, float_format="%.4f")
 
 

@@ -51,6 +51,3 @@ def test_the_scatter_of_clicks_has_its_errors_and_coverage(source, value):
     found = calibration.strengths(source)
     shown = [value(found, f"`plain-a`, scatter x{s}", "walk18_coverage").printed for s in (1, 3)]
     assert shown == ["85", "25"]
-    table = source.table(calibration.TABLE)
-    assert set(calibration.usual(table)["click_strength"]) == {1}
-    assert len(calibration.usual(table.drop(columns="click_strength"))) == len(table)

@@ -8,10 +8,10 @@ import pandas as pd
 
 from courtside.evaluation.numbers.register import Builder, Cut, Number, Source
 from courtside.evaluation.tables import calibration
+from courtside.evaluation.tables.calibration import N_REFERENCE
 from courtside.statistics import intervals
 
 TABLE = "figures/calibration.csv"
-N_REFERENCE = 40  # images of the walk
 MAPPER, PUBLISHED_MAPPER = "global", "incremental"  # of the default method, of the published one
 WAYS = {  # part: method, mapper, clicks
     "walk18": ("sfm", MAPPER, 18),
@@ -187,23 +187,17 @@ def growth(source: Source) -> list[Number]:
     return build.numbers
 
 
-def usual(table: pd.DataFrame) -> pd.DataFrame:
-    """Return the rows of the calibration table whose clicks scatter as usual."""
-    return table[table["click_strength"] == 1] if "click_strength" in table else table
-
-
 def strengths(source: Source) -> list[Number]:
     """Return errors and coverage by the scatter of the clicks, where it was varied."""
     build, table = Builder("calibration-strengths"), source.table(TABLE)
     table = table[table["condition"].isna() & table["in_sample"]]
     table = table[table["n_bridging"].isna() | (table["n_bridging"] == N_REFERENCE)]
-    table = table.assign(strength=table.get("click_strength", 1.0))
     key = table["method"] + table["mapper"].fillna("") + table["n_clicks"].astype(str)
     for part in ("walk18", "walk8", "walk3", "known18"):
         of = table[key == "".join(map(str, WAYS[part]))]
-        for _, row in of.sort_values(["session", "strength"], kind="stable").iterrows():
+        for _, row in of.sort_values(["session", "click_strength"], kind="stable").iterrows():
             cut = Cut(source, TABLE, f"{row['session']}, {part}, N = 40, in-sample", row["session"])
-            name = f"`{row['session']}`, scatter x{row['strength']:g}"
+            name = f"`{row['session']}`, scatter x{row['click_strength']:g}"
             count: dict[str, Any] = {"n": row["n"], "n_failed": row["n_failed"]}
             ends = ("median", "p95")
             shown = {f"{part}_{end}": (f"volume_rms_cm_{end}", 2, "cm") for end in ends}

@@ -9,9 +9,10 @@ from courtside.evaluation.numbers.register import Builder, Cut, Number, Source
 from courtside.evaluation.tables.calibration import pick
 from courtside.evaluation.tables.players import STAGES as STAGE_OF
 from courtside.evaluation.tables.players import furthest
+from courtside.study.methods import STAGE_WORDS
 
 TABLE, ANGLES, HELD = (f"figures/{name}.csv" for name in ("players", "angles", "reliability"))
-STAGES = ("raw", "filtered", "corrected")
+STAGES = tuple(STAGE_WORDS.values())
 OURS = "all-robust"  # the default rule, all cameras of a take
 NETWORK = "blazepose-heavy-flip"  # the default network
 FUSIONS = {  # of a set of cameras and a rule

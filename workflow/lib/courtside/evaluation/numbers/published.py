@@ -57,8 +57,9 @@ def _nearest(source: Source, session: str, n_images: float) -> float:
 
 
 def _again(build: Builder, name: str, source: Source, session: str, n_images: float | None) -> None:
-    table = calibration.usual(source.table(calibration.TABLE))
+    table = source.table(calibration.TABLE)
     table = table[(table["session"] == session) & table["in_sample"]]
+    table = table[table["click_strength"] == 1]
     ways = {"again": "paper3incremental", "here": "sfm18global"}
     if n_images is None:
         ways = {"again": "dlt18", "here": "known18"}

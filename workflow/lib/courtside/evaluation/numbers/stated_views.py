@@ -1,5 +1,7 @@
 """The tables of stated numbers: the columns that the documents show of each."""
 
+from courtside.study.methods import STAGE_WORDS
+
 
 def made(part: str) -> dict[str, str]:
     """Return the columns that say by whom, and with what, a part of a row was measured."""
@@ -49,7 +51,7 @@ SHOWN = {
     "stated-errors": {
         "90 % ellipsoids hold, %": "{row}",
         "target": "{target}",
-        **{stage: f"{{{stage}}}" for stage in ("raw", "filtered", "corrected")},
+        **{stage: f"{{{stage}}}" for stage in STAGE_WORDS.values()},
         **made("raw"),
     },
     "flags": {

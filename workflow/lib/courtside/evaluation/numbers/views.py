@@ -3,8 +3,9 @@
 from courtside.evaluation.numbers import stated_views
 from courtside.evaluation.numbers.document_tables import View
 from courtside.evaluation.numbers.stated_views import made
+from courtside.study.methods import STAGE_WORDS
 
-STAGES = ("raw", "filtered", "corrected")
+STAGES = tuple(STAGE_WORDS.values())
 HALL, HALLS = "^`", "^all "
 
 

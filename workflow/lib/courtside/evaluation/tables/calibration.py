@@ -10,6 +10,7 @@ from courtside.evaluation import calibration
 from courtside.statistics import intervals
 from courtside.study.errors import StrPath
 
+N_REFERENCE = 40  # images of the walk of the default method
 TEXT = ("session", "preset", "layout", "condition", "mapper", "method", "outcome")
 CHOICE = ["method", "n_clicks", "in_sample"]
 STRUCTURE = ["session", "condition", "mapper", "n_bridging", "offset"]
@@ -126,13 +127,13 @@ OTHERS = {
 }  # fmt: skip
 
 
-def table(rows: pd.DataFrame, *, n_reference: int = 40) -> pd.DataFrame:
+def table(rows: pd.DataFrame) -> pd.DataFrame:
     """Summarise trials.
 
     One row per session, method, mapper, clicks, in-sample or not, strength of click errors, and
     number of bridging images; and one for all sessions of a condition together if they differ in
     their seeds only (session: `all N`). Differences of the volume error are paired:
-    `vs_reference_...` to `n_reference` images (same draw, offset 0), `vs_known_...` to calibration
+    `vs_reference_...` to `N_REFERENCE` images (same draw, offset 0), `vs_known_...` to calibration
     from all known points (same session, draw and choice of scored points). `rows` are of `tidy`.
     """
     known = rows[rows["method"] == "known"]
@@ -140,7 +141,7 @@ def table(rows: pd.DataFrame, *, n_reference: int = 40) -> pd.DataFrame:
     to_known = against(
         rows, known[known["n_clicks"] == most], ["session", "in_sample", "click_strength", "draw"]
     )
-    rows = rows.assign(vs_reference=_to_reference(rows, n_reference), vs_known=to_known)
+    rows = rows.assign(vs_reference=_to_reference(rows), vs_known=to_known)
     settings = [name for name in rows if name not in OTHERS | {"vs_reference", "vs_known"}]
     keys = [*LABELS, *settings, *METHOD, "n_bridging"]
     groups = [
@@ -157,11 +158,11 @@ def table(rows: pd.DataFrame, *, n_reference: int = 40) -> pd.DataFrame:
     return pd.DataFrame(groups)[list(groups[0])]
 
 
-def _to_reference(rows: pd.DataFrame, n_reference: int) -> NDArray:
+def _to_reference(rows: pd.DataFrame) -> NDArray:
     """Return the differences to the reference number of images; offset 0 only."""
     on = ["session", *METHOD, "draw"]
     first = rows["offset"] == 0
-    difference = against(rows, rows[first & (rows["n_bridging"] == n_reference)], on)
+    difference = against(rows, rows[first & (rows["n_bridging"] == N_REFERENCE)], on)
     return np.where(first, difference, np.nan)
 
 

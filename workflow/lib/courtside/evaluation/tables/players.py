@@ -8,17 +8,12 @@ import pandas as pd
 from courtside.evaluation import joints
 from courtside.records.keypoints import skeleton
 from courtside.study.errors import StrPath
-from courtside.study.methods import Fusion
+from courtside.study.methods import STAGE_WORDS, Fusion
 
 TAKE = ["session", "take", "calibration", "model"]
 KEY = [*TAKE, "fusion"]
 TEXT = (*KEY, "stage", "person", "joint", "point", "camera", "status")
-STAGES = {
-    "pose3d": "raw",
-    "pose3d_filtered": "filtered",
-    "pose3d_corrected": "corrected",
-    "pose3d_ik": "model",
-}
+STAGES = STAGE_WORDS | {"pose3d_ik": "model"}
 LEVELS = (50, 90, 95)
 POINTS = ("neck", "centre", "mass")
 OTHERS = {"two": ("dlt",), "three": ("dlt", "halfbody"), "all": ("dlt",)}  # compared with ours
