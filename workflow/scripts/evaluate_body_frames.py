@@ -26,7 +26,8 @@ def main(body_npz, frame_json, truth_npz, derived_yaml, errors_csv, *, labels, p
         expected = common.counterpart(true, spells, carried_by, body.tpose_s).body_from_device
         device = truth.devices.get(owners[body.source])
         pose = np.eye(3, 4) if device is None else device.from_world  # fixed cameras: the world
-        rows.append({"source": body.source, **sources.against(sources.read(own), pose, expected)})
+        found = sources.body_frame_errors(frame.read_transform(own), pose, expected)
+        rows.append({"source": body.source, **found})
     tables.write(errors_csv, pd.DataFrame(rows), labels)
 
 

@@ -1,5 +1,6 @@
 """The body's frame against the same definition on the exact joints, and against geometry."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from courtside.body_frame import frame as bodyframe
 from courtside.events import tpose
+from courtside.geometry.similarity import Sim3
 from courtside.records.keypoints import derived_joints
 from courtside.study.errors import InputError
 from fixtures.recordings import device_takes
@@ -141,3 +143,19 @@ def test_the_following_frame_takes_off_any_motion_of_the_whole_body():
 def test_a_skeleton_without_a_definition_is_named():
     with pytest.raises(InputError, match="pelvis_thorax"):
         bodyframe.anchors(TABLE, "nobody12", device_takes.JOINTS)
+
+
+def test_a_written_frame_is_read_back(tmp_path):
+    path = tmp_path / "frame.json"
+    rotation = Rotation.from_euler("xyz", [0.3, -1.0, 2.0]).as_matrix()
+    spell = tpose.TPose(0.0, 1.0, 0, 30, 0, 0, 0, 0, 0)
+    frame = bodyframe.BodyFrame(Sim3(1.25, rotation, np.array([1.0, 2.0, 3.0])), spell, {})
+    stated = frame.as_dict()
+    path.write_text(json.dumps(stated))
+    found = bodyframe.read_transform(path)
+    np.testing.assert_array_equal(found.points([0.0, 0.0, 0.0]), [1, 2, 3])
+    np.testing.assert_array_equal(found.rotation, rotation)
+    for broken in ("{}", json.dumps(stated | {"rotation": [1, 2]}), "x"):
+        path.write_text(broken)
+        with pytest.raises(InputError, match=r"frame\.json: expected a body frame"):
+            bodyframe.read_transform(path)

@@ -1,14 +1,11 @@
 """Errors and their parts against errors that were put in."""
 
-import json
-
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from courtside.evaluation import sources
 from courtside.geometry.similarity import Sim3
-from courtside.study.errors import InputError
 from fixtures.people.bodies_made import body
 
 JOINTS = ["left_hip", "right_hip", "left_wrist", "right_wrist", "right_ankle", "left_ankle"]
@@ -147,24 +144,11 @@ def own(turn=STRAIGHT, longer=1.0, shift_m=(0, 0, 0)):
 
 
 def test_an_exact_frame_has_no_error():
-    found = sources.against(own(), POSE, TRUE)
+    found = sources.body_frame_errors(own(), POSE, TRUE)
     assert found == pytest.approx({"angle_deg": 0, "unit_percent": 0, "origin_mm": 0}, abs=1e-5)
 
 
 def test_rotation_unit_and_shift_are_separated():
     turn = Rotation.from_rotvec(np.radians([1.0, -2.0, 2.0])).as_matrix()
-    found = sources.against(own(turn, 1.02, (0.003, 0, 0.004)), POSE, TRUE)
+    found = sources.body_frame_errors(own(turn, 1.02, (0.003, 0, 0.004)), POSE, TRUE)
     assert found == pytest.approx({"angle_deg": 3.0, "unit_percent": 2.0, "origin_mm": 5.0})
-
-
-def test_a_written_frame_is_read_back(tmp_path):
-    path = tmp_path / "frame.json"
-    stated = {"scale_per_m": 1.25, "rotation": POSE[:, :3].tolist(), "translation": [1, 2, 3]}
-    path.write_text(json.dumps(stated))
-    found = sources.read(path)
-    np.testing.assert_array_equal(found.points([0.0, 0.0, 0.0]), [1, 2, 3])
-    np.testing.assert_array_equal(found.rotation, POSE[:, :3])
-    for broken in ("{}", json.dumps(stated | {"rotation": [1, 2]}), "x"):
-        path.write_text(broken)
-        with pytest.raises(InputError, match=r"frame\.json: expected a body frame"):
-            sources.read(path)

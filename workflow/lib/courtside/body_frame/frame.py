@@ -5,8 +5,10 @@ the trunk. x: from the right wrist to the left one, square to y. z = x cross y: 
 the distance of the wrists along x, which is their distance in the x-z plane.
 """
 
+import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,7 +22,14 @@ from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.devices.events import TPose
 from courtside.records.keypoints.derived_joints import DerivedJoints
 from courtside.records.keypoints.skeleton import TRUNK
-from courtside.study.errors import InputError
+from courtside.study.errors import (
+    RAISED_BY_READERS,
+    InputError,
+    StrPath,
+    reading,
+    require_scalar,
+    require_type,
+)
 
 ORIGIN = "pelvis_thorax"
 # ASSUME: the middle of the shoulders shows where the head is. It has one definition in every
@@ -40,6 +49,7 @@ FORWARDS = (  # pairs of joints, the second in front of the first
 LEAST_FORWARD = 0.02  # ASSUME: units; less does not tell front from back
 OUTLIER_RATIO = 4.0  # ASSUME: median distances from the median; further is an outlier
 SMALLEST_M = 1e-9  # for joints that do not move at all
+REMAKE = "make it again with the rule align_bodies"
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,6 +91,19 @@ class BodyFrame:
             "tpose": asdict(self.tpose),
             "residuals": self.residuals,
         }
+
+
+def read_transform(path: StrPath) -> Sim3:
+    """Read `body_from_device` from the JSON of a body frame; `InputError` for other content."""
+    # numpy raises TypeError for entries other than numbers.
+    with reading(path, "a body frame", REMAKE, kinds=(*RAISED_BY_READERS, TypeError)):
+        found = require_type(json.loads(Path(path).read_text(encoding="utf-8")), dict)
+        scale = float(require_scalar(found["scale_per_m"]))
+        rotation, translation = (
+            np.array(found[key], dtype=float).reshape(shape)
+            for key, shape in (("rotation", (3, 3)), ("translation", (3,)))
+        )
+        return Sim3(scale, rotation, translation)
 
 
 def anchors(table: DerivedJoints, skeleton: str, joints: Sequence[str] | NDArray) -> Anchors:

@@ -1,11 +1,9 @@
 """Errors of a take's sources (devices, cameras) against the truth, and the parts of the errors."""
 
-import json
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
 from math import factorial
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -17,7 +15,6 @@ from courtside.geometry.interpolation import between
 from courtside.geometry.similarity import Sim3
 from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.body_motion import BodyMotion
-from courtside.study.errors import RAISED_BY_READERS, StrPath, reading, require_scalar, require_type
 
 ALIGNMENTS = ("body_frame", "trunk_frame", "root_relative", "procrustes_take", "procrustes_frame")
 PARTS = ("origin", "scale", "rotation", "time")
@@ -230,23 +227,7 @@ def _fit(
     return rest, {"origin": shift, "scale": scale, "rotation": float(angle)}
 
 
-REMAKE = "make it again with the rule align_bodies"
-
-
-def read(path: StrPath) -> Sim3:
-    """Read `body_from_device` from the JSON of a body frame; `InputError` for other content."""
-    # numpy raises TypeError for entries other than numbers.
-    with reading(path, "a body frame", REMAKE, kinds=(*RAISED_BY_READERS, TypeError)):
-        found = require_type(json.loads(Path(path).read_text(encoding="utf-8")), dict)
-        scale = float(require_scalar(found["scale_per_m"]))
-        rotation, translation = (
-            np.array(found[key], dtype=float).reshape(shape)
-            for key, shape in (("rotation", (3, 3)), ("translation", (3,)))
-        )
-        return Sim3(scale, rotation, translation)
-
-
-def against(
+def body_frame_errors(
     body_from_device: Sim3, device_from_world: NDArray, body_from_world: Sim3
 ) -> dict[str, float]:
     """Return the errors of a body frame by the same definition as the true one.
