@@ -96,6 +96,12 @@ def test_files_of_points_and_devices_are_recognised(tmp_path, record):
         layers.read(tmp_path / "other.npz", "x", walker.SKELETON)
 
 
+def test_a_device_without_a_performed_frame_is_named():
+    still = replace(device(), performed=np.zeros(40, dtype=bool))
+    with pytest.raises(InputError, match=r"layer mocopi: expected frames .* found none"):
+        layers.of_device("mocopi", still, walker.SKELETON, "p1")
+
+
 def test_a_device_is_put_where_the_person_is(record):
     turn = Rotation.from_euler("z", 70, degrees=True).as_matrix()
     moved = replace(device(), xyz=device().xyz @ turn.T + [5, -3, 0.2])

@@ -13,7 +13,7 @@ from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.keypoints import keypoints, missing_reason
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.keypoints.skeleton import Skeleton
-from courtside.study.errors import DAMAGED, InputError, StrPath
+from courtside.study.errors import InputError, StrPath
 
 PX = 0.01  # unit of stored errors: the logarithmic scale then runs from 0.001 to 1000 px
 NEAR = 0.5  # of the frame interval: frames of two layers this close show the same moment
@@ -96,9 +96,15 @@ def of_device(
 ) -> Layer:
     """Return the layer of a device's skeleton, turned upright, in the frames that were performed.
 
-    The motion must be on the reference clock; `person` wears or faces the device.
+    The motion must be on the reference clock; `person` wears or faces the device. `InputError` if
+    nothing was performed.
     """
     kept = np.asarray(motion.performed, dtype=bool)
+    if not kept.any():
+        raise InputError(
+            f"layer {name}: expected frames of the device that were performed, found none; "
+            "record it again, or leave the device out"
+        )
     return Layer(
         name,
         tuple(np.asarray(motion.joints).tolist()),
@@ -122,22 +128,13 @@ def read(
 ) -> Layer:
     """Read a layer from a file of triangulated points or of a device's motion, else `InputError`.
 
-    A device's layer is in the device's own frame; see `placed`. `person` wears or faces it; its
-    `clock` is None if its times are on the reference clock.
+    `person` is given for a device, which they wear or face; its layer is in the device's own frame,
+    see `placed`. Its `clock` is None if its times are on the reference clock.
     """
-    if _form(path) != device_motion.FORM:
+    if not person:
         return of_points(name, keypoints.read_3d(path), skeleton, shown=shown)
     layer = of_device(name, device_motion.read(path), skeleton, person, shown=shown)
     return replace(layer, time_s=(clock or Clock()).to_reference(layer.time_s))
-
-
-def _form(path: StrPath) -> str:
-    """Return the format that an npz file names; empty if none, which its reader reports."""
-    try:
-        with np.load(path, allow_pickle=False) as stored:
-            return str(stored["format"])
-    except DAMAGED:
-        return ""
 
 
 def placed(layer: Layer, onto: Layer) -> Layer:
