@@ -7,8 +7,6 @@ from courtside.study.execution import log
 from courtside.study.execution.script import run
 from courtside.synchronisation import cameras as camera_sync
 
-WRIST_M_S = 12.0  # of a smash: what the uncertainty is worth in space
-
 
 def main(cameras_toml, pose2d_npz, sync_json, *, synchronised, stated, **options):
     views = [keypoints.read_2d(path) for path in pose2d_npz]
@@ -32,8 +30,8 @@ def report(clocks):
             1e3 * clock.offset_s,
             clock.drift_ppm,
             1e3 * clock.uncertainty_s,
-            1e3 * clock.uncertainty_s * WRIST_M_S,
-            WRIST_M_S,
+            1e3 * clock.uncertainty_s * sync.WRIST_M_S,
+            sync.WRIST_M_S,
             clock.note,
         )
 

@@ -7,8 +7,8 @@ from matplotlib.figure import Figure
 
 from courtside.calibration import point_covariance
 from courtside.figures.style import bars, style
+from courtside.records.devices.clocks import WRIST_M_S
 
-SPEED_M_S = 12.0  # ASSUME: of a wrist in a smash; millimetres per millisecond
 LIMIT_MS = 8.0  # a quarter of a frame at 30 frames per second: 10 cm at such a wrist
 FURTHEST_MS = 40.0  # larger errors are marked at the edge, with their number
 COLOURS = {"yes": style.CYCLE[0], "no": style.CYCLE[1], "unused": "#888888"}
@@ -31,7 +31,7 @@ def table(rows: pd.DataFrame) -> pd.DataFrame:
     return rows.assign(
         lower_ms=rows["worst_error_ms"] - reach,
         upper_ms=rows["worst_error_ms"] + reach,
-        worst_error_mm=rows["worst_error_ms"] * SPEED_M_S,
+        worst_error_mm=rows["worst_error_ms"] * WRIST_M_S,
         holds=np.where(rows["status"] == "found", inside, "unused"),
     )
 
@@ -58,9 +58,9 @@ def draw(rows: pd.DataFrame) -> Figure:
     axis.set_yticks(np.arange(len(rows)), _names(rows), fontsize=6.5)
     axis.set_xlabel("clock less truth, where in the take it is largest (ms)")
     above = axis.secondary_xaxis(
-        "top", functions=(lambda ms: SPEED_M_S * ms, lambda mm: mm / SPEED_M_S)
+        "top", functions=(lambda ms: WRIST_M_S * ms, lambda mm: mm / WRIST_M_S)
     )
-    above.set_xlabel(f"way of a wrist at {SPEED_M_S:g} m/s in that time (mm)")
+    above.set_xlabel(f"way of a wrist at {WRIST_M_S:g} m/s in that time (mm)")
     drawing.suptitle(_title(rows), fontsize=8)
     there = [holds for holds in COLOURS if (rows["holds"] == holds).any()]
     marks = [bars.mark(COLOURS[h], filled=h != "unused", line="-", label=WORDS[h]) for h in there]

@@ -6,14 +6,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from courtside.calibration.point_covariance import WITHIN_90
-from courtside.records.devices.clocks import Clock
+from courtside.records.devices.clocks import WRIST_M_S, Clock
 from courtside.study.execution import verdicts
 from courtside.study.methods import Calibration
 
 GOOD, LOOK, DOUBT = 0, 1, 2  # their marks: LIGHTS in assets/report_parts.html
 MS_90 = 1645  # half of the 90 % interval of a normal error with a sigma of 1 s, in ms
-# ASSUME: speed of the wrist in a fast stroke, to turn an error of a clock into one of position.
-WRIST_M_S = 12.0
 VAGUE_CLOCK = "the uncertainty of its clock is unknown"
 # {quantity: (LOOK from, DOUBT from, what it is)}
 # ASSUME: chosen so that a usual recording gives no warning; no study backs them.

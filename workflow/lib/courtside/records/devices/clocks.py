@@ -15,6 +15,8 @@ FORM = "courtside sync 1"
 USABLE = ("reference", "found", "assumed")
 STATUSES = (*USABLE, "ambiguous", "unknown")
 NUMBERS = ("offset_s", "drift_ppm", "uncertainty_s", "drift_uncertainty_ppm")
+# ASSUME: speed of the wrist in a fast stroke, to turn an error of a clock into one of position.
+WRIST_M_S = 12.0
 FEWEST_FRAMES = 30  # ASSUME: a second of motion; with fewer, a camera's clock is not found
 NOT_USED = "give its offset_s under clocks of the take, or film a clap that all cameras see"
 
