@@ -19,7 +19,7 @@ def main(pose3d_npz, truth_npz, errors_csv, *, labels):
         for path, about in zip(pose3d_npz, labels, strict=True)
     ]
     rows = pd.concat(parts, ignore_index=True)
-    tables.write(errors_csv, rows.set_index(list(labels[0])).reset_index())
+    tables.write(errors_csv, tables.labels_first(rows, labels[0]))
 
 
 if __name__ == "__main__":

@@ -25,7 +25,7 @@ def main(paths, counts_csv, *, labels, sex_of):
             measured["distance"] = kinematics.distances(kinematics.table(frames, summary, *given))
         parts.append(reliability.of_measures(measured).assign(**about))
     rows = pd.concat(parts, ignore_index=True)
-    tables.write(counts_csv, rows.set_index(list(labels[0])).reset_index())
+    tables.write(counts_csv, tables.labels_first(rows, labels[0]))
 
 
 if __name__ == "__main__":

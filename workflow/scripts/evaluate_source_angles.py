@@ -33,7 +33,7 @@ def main(
             errors = kinematics.angles_of(one, truth, person, clock)
             rows.append(errors.assign(source=name, stage=stage))
     table = pd.concat(rows, ignore_index=True).drop(columns="person")
-    tables.write(errors_csv, table.set_index(["source", "stage"]).reset_index(), labels)
+    tables.write(errors_csv, tables.labels_first(table, ["source", "stage"]), labels)
 
 
 if __name__ == "__main__":

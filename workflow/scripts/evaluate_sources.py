@@ -53,7 +53,7 @@ def main(
     files = errors_csv, parts_csv, paths_csv, distortion_csv
     for path, rows in zip(files, (errors, parts, paths, distortion), strict=True):
         rows = pd.concat(rows, ignore_index=True)
-        tables.write(path, rows.set_index("source").reset_index(), labels)
+        tables.write(path, tables.labels_first(rows, ["source"]), labels)
 
 
 if __name__ == "__main__":

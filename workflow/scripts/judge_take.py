@@ -16,7 +16,7 @@ from courtside.study.execution.script import run
 def main(quality_csv, *, ways):
     judged = [judge(way).assign(**way["labels"]) for way in ways]
     rows = pd.concat(judged, ignore_index=True)
-    tables.write(quality_csv, rows.set_index(list(ways[0]["labels"])).reset_index())
+    tables.write(quality_csv, tables.labels_first(rows, ways[0]["labels"]))
 
 
 def judge(way):

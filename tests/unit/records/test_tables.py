@@ -45,6 +45,12 @@ def test_a_label_replaces_a_column_of_its_name(tmp_path):
     assert (tmp_path / "rows.csv").read_text() == "take,n\nnew,1\n"
 
 
+def test_labels_that_differ_by_row_come_first_too():
+    rows = pd.DataFrame({"n": [1, 2], "take": ["a", "b"], "error_mm": [0.5, 1.0]})
+    found = tables.labels_first(rows, {"take": "a"})
+    assert list(found) == ["take", "n", "error_mm"] and found["take"].tolist() == ["a", "b"]
+
+
 def test_nothing_is_left_of_a_table_that_cannot_be_written(tmp_path):
     with pytest.raises(ValueError, match="float_format"):
         tables.write(tmp_path / "rows.csv", pd.DataFrame({"n": [0.5]}), float_format=3)

@@ -45,14 +45,20 @@ def write(
     rows = rows.assign(**labels)
     if float_format == f"%.{DIGITS}g":
         rows = rows.assign(**_times(rows))
-    columns = [*labels, *(name for name in rows.columns if name not in labels)]
+    rows = labels_first(rows, labels)
     with (
         atomic(path) as temporary,
         Path(temporary).open("w", encoding="utf-8", newline="\n") as file,
     ):
         if about:
             file.write(f"# {about}\n")
-        rows[columns].to_csv(file, index=False, float_format=float_format, lineterminator="\n")
+        rows.to_csv(file, index=False, float_format=float_format, lineterminator="\n")
+
+
+def labels_first(rows: pd.DataFrame, labels: Iterable[str]) -> pd.DataFrame:
+    """Return a table with the columns `labels` before the others."""
+    labels = list(labels)
+    return rows[[*labels, *(name for name in rows.columns if name not in labels)]]
 
 
 def _times(rows: pd.DataFrame) -> dict[str, pd.Series]:
