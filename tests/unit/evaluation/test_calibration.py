@@ -149,9 +149,7 @@ def test_a_skewed_projection_matrix_is_scored_unchanged():
     beside = np.eye(4)
     beside[0, 3] = -0.02
     found = {
-        camera.name: resection.Linear(
-            camera.K @ camera.cam_from_world @ beside, None, 0.0, 1.0, False, ""
-        )
+        camera.name: resection.Linear(camera.K @ camera.cam_from_world @ beside, None, 0.0, 1.0, "")
         for camera in real
     }
     errors = calibration.score_linear(found, real, COURT, clicks_of(real))

@@ -117,7 +117,7 @@ def test_points_that_are_not_in_the_set_do_not_count():
     ],
 )
 def test_a_matrix_that_is_no_camera_is_named_in_one_line(reason, start):
-    none = resection.Linear(np.eye(3, 4), None, 1.0, 10.0, bool(reason), reason)
+    none = resection.Linear(np.eye(3, 4), None, 1.0, 10.0, reason)
     with pytest.raises(InputError) as caught:
         known_points.cameras({"back": none})
     message = str(caught.value)
