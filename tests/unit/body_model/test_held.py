@@ -38,7 +38,7 @@ def test_a_foot_that_stands_keeps_its_place_and_one_that_swings_does_not():
     assert tie is not None and tie.points.tolist() == FEET
     spread = []
     for one in (None, tie):
-        found = fit.fit(MODEL, BODY, data, true, HZ, moving_model.RATE_HZ, held=one)
+        found = fit.fit(MODEL, BODY, data, true, HZ, moving_model.RATE_HZ, 6, one)
         xyz, _ = fit.derivatives(MODEL, BODY, found)
         spread.append(xyz[:, FEET].std(axis=0).max(axis=1))
         error = np.linalg.norm(
@@ -64,7 +64,7 @@ def test_a_foot_may_turn_about_the_toe_that_stands():
     stands[:, 0, 1] = 1.0
     tie = held.of_contacts(moving_model.JOINTS, stands, floor, moving_model.RATE_HZ)
     points = moving_model.points(raised)
-    found = fit.fit(MODEL, BODY, of_noise(points), true, HZ, moving_model.RATE_HZ, held=tie)
+    found = fit.fit(MODEL, BODY, of_noise(points), true, HZ, moving_model.RATE_HZ, 6, tie)
     xyz, _ = fit.derivatives(MODEL, BODY, found)
     assert np.ptp(xyz[:, FEET[1]], axis=0).max() < 0.002
     rise = np.ptp(points.xyz[0][:, FEET[0], 2])
@@ -123,7 +123,7 @@ def test_a_foot_that_runs_is_not_held_though_contacts_say_so_and_one_that_trembl
     data = of_noise(moving_model.points(path, noise_m=0.005))
     moves = []
     for one in (None, tie):
-        found = fit.fit(MODEL, BODY, data, path, HZ, moving_model.RATE_HZ, held=one)
+        found = fit.fit(MODEL, BODY, data, path, HZ, moving_model.RATE_HZ, 6, one)
         xyz, _ = fit.derivatives(MODEL, BODY, found)
         moves.append(xyz[2:16, FEET].std(axis=0).mean())
     error = (xyz - moving_model.points(path).xyz[0])[:, FEET]

@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 from itertools import combinations, product
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.sparse.csgraph import connected_components
 
 from courtside.calibration import robust_poses
 from courtside.calibration.wand.points import Seen, Wand
@@ -112,7 +112,7 @@ def _shared(seen: Seen) -> NDArray:
 def _check(seen: Seen, shared: NDArray) -> None:
     """Raise an `InputError` if a group of cameras has too few frames in common with the others."""
     names = seen.cameras
-    _, group = connected_components(shared >= FEWEST_FRAMES, directed=False)
+    _, group = scipy.sparse.csgraph.connected_components(shared >= FEWEST_FRAMES, directed=False)
     inside, outside = np.flatnonzero(group == group[0]), np.flatnonzero(group != group[0])
     if len(outside):
         most = shared[np.ix_(inside, outside)].max()
