@@ -18,15 +18,7 @@ from fixtures.cameras import scene
 from fixtures.people import found as people_found
 from fixtures.people import true_motion, walker
 
-SHARES = {"max_error_share": 0.05, "fade_share": 0.067}
-OPTIONS = {
-    "min_score": 0.05,
-    "min_views": 2,
-    "max_error_px": 10,
-    "fade_px": 13,
-    "fix_sides": False,
-    **SHARES,
-}
+OPTIONS = {**scene.NEAR, "fix_sides": False}
 MOVED_M, LAST = np.array([[0.02], [0], [0]]), np.array([[0, 0, 0, 1]])
 OFFSETS = Path(__file__).parents[3] / "config" / "joint_offsets" / "blazepose-full.csv"
 

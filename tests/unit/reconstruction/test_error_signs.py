@@ -11,15 +11,7 @@ from courtside.records.devices.clocks import Clock
 from fixtures.cameras import scene
 from fixtures.people import walker
 
-SHARES = {"max_error_share": 0.05, "fade_share": 0.067}
-OPTIONS = {
-    "min_score": 0.05,
-    "min_views": 2,
-    "max_error_px": 10,
-    "fade_px": 13,
-    "fix_sides": False,
-    **SHARES,
-}
+OPTIONS = {**scene.NEAR, "fix_sides": False}
 WRIST = walker.SKELETON.index("left_wrist")
 FRAMES = slice(20, 24)
 

@@ -17,14 +17,13 @@ from fixtures.cameras import scene
 from fixtures.people import keypoints_made, walker
 
 SKELETON = skeleton.read(Path(__file__).parents[3] / "config" / "skeletons" / "cpm14.yaml")
-SHARES = {"max_error_share": 0.05, "fade_share": 0.067}
 OPTIONS = {
     "min_score": 0.3,
     "min_views": 2,
     "max_error_px": 15,
     "fade_px": 20,
     "fix_sides": True,
-    **SHARES,
+    **scene.SHARES,
 }
 
 
@@ -293,7 +292,7 @@ def test_halves_of_different_takes_are_a_fault():
 def test_limits_in_shares_need_no_scaling(scale):
     """The same scene in pictures of another size accepts the same views of the same points."""
     record, rng = walker.points(n_frames=20), np.random.default_rng(2)
-    shares = {"min_score": 0.3, "min_views": 2, "fix_sides": True, **SHARES}
+    shares = {"min_score": 0.3, "min_views": 2, "fix_sides": True, **scene.SHARES}
     noise = rng.normal(0, 5, (4, 1, 20, walker.N_JOINTS, 2))
     noise[2, :, 5:9] += 60
     found = []
@@ -313,7 +312,7 @@ def test_limits_in_shares_need_no_scaling(scale):
 def test_pixels_replace_shares():
     cameras, views = scene.ring(4), walker.views(walker.points(20), scene.ring(4))
     views[2].xy[...] += 12
-    common = {"min_score": 0.3, "min_views": 2, "fix_sides": False, **SHARES}
+    common = {"min_score": 0.3, "min_views": 2, "fix_sides": False, **scene.SHARES}
 
     def accepted(**limits):
         found = fusion.triangulate_take(cameras, views, walker.SKELETON, ["p1"], **common, **limits)

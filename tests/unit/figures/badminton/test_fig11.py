@@ -9,7 +9,7 @@ from courtside.evaluation import detection
 from courtside.figures.badminton import fig11
 from courtside.figures.style import picture_crops
 from courtside.reconstruction import camera_shake, fusion
-from fixtures.cameras import shaken
+from fixtures.cameras import scene, shaken
 from fixtures.people import takes_made, walker
 
 LIMIT = 0.1
@@ -152,8 +152,7 @@ def test_a_planted_swap_reaches_the_table_through_the_fusion():
 
 
 def fused(seen, views):
-    options = {"min_score": 0.3, "min_views": 2, "max_error_px": 15, "fade_px": 20}
-    options |= {"max_error_share": 0.05, "fade_share": 0.067}
+    options = {"min_score": 0.3, "min_views": 2, "max_error_px": 15, "fade_px": 20, **scene.SHARES}
     clocks = [one.clock for one in seen]
     return fusion.triangulate_take(
         takes_made.CAMERAS,

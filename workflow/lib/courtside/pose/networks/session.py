@@ -96,7 +96,6 @@ class Network:
         self.session = open_session(path, providers)
         self.input_name = self._input(list(shape))
         self._of_count: dict[int, onnxruntime.InferenceSession] = {}
-        self.resizable = resizable
         self.at_once = providers[0] != "cpu" and (resizable or self._open())
         there = [one.name for one in self.session.get_outputs()]
         self.outputs = list(outputs or there)
