@@ -21,7 +21,8 @@ def built(tmp_path, body="<h1>A page</h1>", **parts):
 def test_data_and_pictures_come_out_as_they_went_in(open_page, tmp_path):
     body = '<img src="image:shown" alt="a pixel">'
     data = {"words": {"rogue": ROGUE, "list": [1, 2.5, float("nan"), "ü\u2028"]}}
-    page = open_page(built(tmp_path, body, data=data, images={"shown": PIXEL, "kept": PIXEL}))
+    images = dict.fromkeys(("shown", "kept"), (PIXEL, "image/png"))
+    page = open_page(built(tmp_path, body, data=data, images=images))
     assert page.title() == ROGUE
     found = page.evaluate("courtside.data('words')")
     assert found == {"rogue": ROGUE, "list": [1, 2.5, None, "ü\u2028"]}

@@ -12,6 +12,7 @@ from courtside.calibration.court import court
 from courtside.pages import page as pages
 from courtside.pages.viewer import layers as viewer_layers
 from courtside.pages.viewer import viewer
+from courtside.records.keypoints import keypoints
 from fixtures.cameras import scene
 from fixtures.people import walker
 
@@ -32,15 +33,19 @@ def long_take(n_persons=1):
     rng = np.random.default_rng(0)
     shape = xyz.shape[:3]
     sigma = 0.01 + 0.005 * rng.random((*shape, 1, 1)) + 0.01 * (np.sin(angle) > 0)[..., None, None]
+    errors = keypoints.unknown_errors(xyz) | {
+        "covariance_2d": sigma**2 * np.diag([1.0, 4.0, 1.0]),
+        "covariance_camera": np.broadcast_to(np.eye(3) * 1e-4, (*shape, 3, 3)),
+    }
     return replace(
         short,
         time_s=np.arange(n_frames) / RATE_HZ,
         xyz=xyz + rng.normal(0, 0.003, xyz.shape),
-        covariance_2d=sigma**2 * np.diag([1.0, 4.0, 1.0]),
-        covariance_camera=np.broadcast_to(np.eye(3) * 1e-4, (*shape, 3, 3)),
+        **errors,
         n_views=np.full(shape, 3),
         reproj_error_px=rng.uniform(1, 9, (*shape, 3)),
         accepted=np.ones((*shape, 3), bool),
+        swapped=np.zeros((*shape, 3), bool),
         reason=np.zeros(shape, np.uint8),
         person_id=np.array([ROGUE, "p2"][:n_persons]),
     )
