@@ -4,8 +4,7 @@
 (() => {
   const given = courtside.data("clicking");
   const { court, frames, ends } = given;
-  /** @type {(id: string) => any} every page holds its elements, of whatever kind */
-  const byId = (id) => document.getElementById(id);
+  const { byId, button, element, say } = courtside;
   const KEEP = `courtside clicks ${given.stamp}`;
   const NEAR = 12; // screen px per picture px when the view goes to a point
   const LOOKED = 5; // of them, from which a proposal can be confirmed
@@ -253,18 +252,6 @@
   });
 
   // ---- showing ----
-  function say(words, bad = false) {
-    byId("message").textContent = words;
-    byId("message").classList.toggle("bad", bad);
-  }
-
-  function button(parent, words, action, properties = {}) {
-    const made = Object.assign(document.createElement("button"), { textContent: words, type: "button", ...properties });
-    made.addEventListener("click", action);
-    parent.append(made);
-    return made;
-  }
-
   function render() {
     const one = frame(), fit = isTake(one) ? null : fitOf(one);
     renderTabs();
@@ -314,7 +301,7 @@
       row.dataset.point = item.name;
       const cells = [item.name, placed(mark) ? `${mark.x.toFixed(1)}, ${mark.y.toFixed(1)}` : mark ? "not visible" : proposalOf(one, item.name) ? "proposed" : "–",
         off !== undefined && off !== null && fit.spare > 0 ? `${off.toFixed(1)} px` : ""];
-      for (const words of cells) row.append(Object.assign(document.createElement("span"), { textContent: words }));
+      for (const words of cells) row.append(element("span", { textContent: words }));
       if (fit && fit.worst && fit.worst.suspicious && fit.worst.name === item.name) row.lastElementChild.className = "worst";
       // Only where the list scrolls by itself: on a narrow screen the page would leave the picture.
       const scrolls = getComputedStyle(list.closest(".side")).overflowY === "auto";
@@ -324,7 +311,7 @@
 
   function fitWords(one, fit) {
     const words = (text) => document.createTextNode(text);
-    const strong = (text) => Object.assign(document.createElement("strong"), { textContent: text });
+    const strong = (text) => element("strong", { textContent: text });
     const n = court.points.filter((point) => placed(markOf(one, point.name))).length;
     if (!fit) return [words(`${n} marked. From ${clickFit.FLOOR_FROM} points on the floor on, the others are expected where the white crosses are.`)];
     const how = fit.kind === "camera" ? "a camera with a lens" : "a flat floor seen without lens";
@@ -418,7 +405,7 @@
         byId("view").focus({ preventScroll: true }); // so that keys go to the picture
       });
       tab.setAttribute("role", "tab");
-      tab.append(Object.assign(document.createElement("span"), { className: "count" }));
+      tab.append(element("span", { className: "count" }));
       for (const [name, xy] of Object.entries(one.clicks)) marks[one.id][name] = { x: xy[0], y: xy[1] };
     });
     for (const table of used) {

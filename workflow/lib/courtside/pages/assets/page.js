@@ -1,6 +1,6 @@
 // @ts-check
 "use strict";
-// What every page may use: data and pictures inside the file, storage that may be forbidden, saving and copying.
+// What every page may use: data and pictures inside the file, elements, storage that may be forbidden, saving, copying.
 const courtside = (() => {
   const parsed = new Map();
 
@@ -19,6 +19,28 @@ const courtside = (() => {
     return address;
   }
 
+  /** @type {(id: string) => any} every page holds its elements, of whatever kind */
+  const byId = (id) => document.getElementById(id);
+
+  /** @returns {any} an element with these properties and children */
+  function element(kind, properties = {}, ...children) {
+    const made = Object.assign(document.createElement(kind), properties);
+    made.append(...children);
+    return made;
+  }
+
+  function button(parent, words, action, properties = {}) {
+    const made = element("button", { textContent: words, type: "button", ...properties });
+    made.addEventListener("click", action);
+    parent.append(made);
+    return made;
+  }
+
+  function say(words, bad = false) {
+    byId("message").textContent = words;
+    byId("message").classList.toggle("bad", bad);
+  }
+
   // Browsers may forbid storage to files, or it may be full: the page works without.
   const storage = {
     get(key) {
@@ -34,7 +56,7 @@ const courtside = (() => {
 
   function download(name, text, mime = "text/plain") {
     const address = URL.createObjectURL(new Blob([text], { type: `${mime};charset=utf-8` }));
-    const link = Object.assign(document.createElement("a"), { href: address, download: name });
+    const link = element("a", { href: address, download: name });
     document.body.append(link);
     link.click();
     link.remove();
@@ -46,7 +68,7 @@ const courtside = (() => {
       await navigator.clipboard.writeText(text);
       return true;
     } catch {
-      const area = Object.assign(document.createElement("textarea"), { value: text });
+      const area = element("textarea", { value: text });
       document.body.append(area);
       area.select();
       const done = document.execCommand("copy");
@@ -55,5 +77,5 @@ const courtside = (() => {
     }
   }
 
-  return { data: (name) => stored(`data-${name}`), image, storage, download, copy };
+  return { data: (name) => stored(`data-${name}`), image, byId, element, button, say, storage, download, copy };
 })();

@@ -3,8 +3,7 @@
 // The page on which persons are named: names by part of the take, split, joined and saved.
 (() => {
   const given = courtside.data("people");
-  /** @type {(id: string) => any} every page holds its elements, of whatever kind */
-  const byId = (id) => document.getElementById(id);
+  const { byId, button, say } = courtside;
   const KEEP = `courtside people ${given.stamp}`;
   const COLOURS = ["#0b62b0", "#d1495b", "#1d7a3e", "#9a5400", "#7b4fb5", "#00838f", "#b0306a", "#5f6b00"];
   const colour = (person) => COLOURS[given.persons.indexOf(person) % COLOURS.length];
@@ -59,19 +58,10 @@
   }
 
   // ---- showing ----
-  function say(words, bad = false) {
-    byId("message").textContent = words;
-    byId("message").classList.toggle("bad", bad);
-  }
-
   function element(parent, kind, properties = {}) {
-    const made = Object.assign(document.createElement(kind), properties);
+    const made = courtside.element(kind, properties);
     parent.append(made);
     return made;
-  }
-
-  function button(parent, words, action, properties = {}) {
-    element(parent, "button", { textContent: words, type: "button", ...properties }).addEventListener("click", action);
   }
 
   function render() {

@@ -2,15 +2,6 @@
 "use strict";
 /* The 3D viewer: what is shown, when, and how keys, hand and clock change it. */
 
-/**
- * The element of an id; of any kind, for the page holds it.
- * @param {string} id
- * @returns {any}
- */
-function elementOf(id) {
-  return document.getElementById(id);
-}
-
 /** The eight corners of a box. */
 function corners(low, high) {
   return [0, 1, 2, 3, 4, 5, 6, 7].map((at) => [0, 1, 2].map((axis) => ((at >> axis) & 1 ? high : low)[axis]));
@@ -41,7 +32,7 @@ class Viewer {
     this.speed = 1;
     this.stale = true;
     this.eye = new Eye();
-    this.painter = new Painter(document.getElementById("canvas"), this.eye, this.scene);
+    this.painter = new Painter(courtside.byId("canvas"), this.eye, this.scene);
     this.eye.fit(this.around());
   }
 
@@ -138,7 +129,7 @@ class Viewer {
     this.stale = false;
     if (this.view.follow) this.follow();
     this.painter.frame(this.view);
-    const by = elementOf;
+    const by = courtside.byId;
     by("slider").value = this.frame;
     by("slider").setAttribute("aria-valuetext", `${this.view.time_s.toFixed(2)} seconds`);
     by("clock").textContent = `${this.view.time_s.toFixed(3)} s, frame ${this.frame}`;
@@ -176,8 +167,8 @@ class Viewer {
 
   choose(person, joint) {
     this.view.picked = person && joint ? { person, joint } : null;
-    elementOf("person").value = person || "";
-    elementOf("joint").value = joint || "";
+    courtside.byId("person").value = person || "";
+    courtside.byId("joint").value = joint || "";
     this.changed();
   }
 
@@ -195,7 +186,7 @@ class Viewer {
 }
 
 function wireTime(viewer) {
-  const by = elementOf;
+  const by = courtside.byId;
   by("slider").max = viewer.n_frames - 1;
   by("slider").addEventListener("input", () => { viewer.playing = false; viewer.goTo(Number(by("slider").value)); });
   by("play").addEventListener("click", () => (viewer.playing ? viewer.pause() : viewer.play()));
@@ -206,7 +197,7 @@ function wireTime(viewer) {
 
 function wirePanel(viewer) {
   const { view, scene } = viewer;
-  const by = elementOf;
+  const by = courtside.byId;
   const set = (key) => (value) => { view[key] = value; viewer.changed(); };
   by("layers").replaceChildren(...view.layers.map((layer) =>
     box(layer.name, layer.shown, (on) => { layer.shown = on; viewer.changed(); }, view.layerColour(layer))));
@@ -241,7 +232,7 @@ function wirePanel(viewer) {
 
 function wireJoints(viewer) {
   const { view } = viewer;
-  const by = elementOf;
+  const by = courtside.byId;
   const joints = [...new Set(view.layers.flatMap((layer) => layer.joints))];
   const persons = [...new Set(view.layers.flatMap((layer) => layer.persons))];
   options(by("person"), persons.map((name) => [name, name]), persons[0]);
@@ -259,7 +250,7 @@ function wireJoints(viewer) {
 function wireKeys(viewer) {
   const { eye, view } = viewer;
   const second = () => Math.max(1, Math.round(1 / viewer.step_s));
-  const moved = (act) => () => { act(); elementOf("view").value = "free"; viewer.changed(); };
+  const moved = (act) => () => { act(); courtside.byId("view").value = "free"; viewer.changed(); };
   const step = (count) => { viewer.pause(); viewer.goTo(viewer.frame + count); };
   const keys = {
     " ": () => (viewer.playing ? viewer.pause() : viewer.play()),
@@ -292,7 +283,7 @@ function wireHand(viewer) {
   const canvas = painter.canvas;
   const fingers = new Map();
   let travelled = 0;
-  const moved = () => { elementOf("view").value = "free"; viewer.changed(); };
+  const moved = () => { courtside.byId("view").value = "free"; viewer.changed(); };
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
   canvas.addEventListener("pointerdown", (event) => {
     canvas.setPointerCapture(event.pointerId);
@@ -372,7 +363,7 @@ async function start() {
 
 courtside.viewer = {};
 courtside.viewer.ready = start().catch((fault) => {
-  const message = document.getElementById("message");
+  const message = courtside.byId("message");
   message.textContent = fault.message;
   message.hidden = false;
   console.error(fault);

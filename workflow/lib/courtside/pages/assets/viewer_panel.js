@@ -2,6 +2,7 @@
 "use strict";
 /* The words beside the picture: switches, legend, and the numbers of the picked joint. */
 
+const { element } = courtside;
 const WHY = {
   1: "not seen", 2: "score too low", 3: "too few views", 4: "views disagree", 5: "interpolated",
   6: "outside the picture", 7: "no depth there", 8: "too uncertain", 255: "missing",
@@ -11,12 +12,6 @@ const MEASURES = {
   reprojection: { words: "reprojection error", unit: "px", of: (layer, ...where) => layer.reprojectionPx(...where) },
   distance: { words: "distance", unit: "mm", of: (layer, ...where) => layer.distanceMm(layer.against, ...where) },
 };
-
-function element(name, properties = {}, ...children) {
-  const made = Object.assign(document.createElement(name), properties);
-  made.append(...children);
-  return made;
-}
 
 function options(select, entries, chosen) {
   select.replaceChildren(...entries.map(([value, words]) => element("option", { value, textContent: words })));

@@ -16,7 +16,7 @@ from courtside.pages import page
 from courtside.study.errors import StrPath
 from courtside.video import images
 
-SCRIPTS = [f"clicking{part}.js" for part in ("_table", "_fit", "_court", "_view", "")]
+SCRIPTS = ["csv.js", *(f"clicking{part}.js" for part in ("_table", "_fit", "_court", "_view", ""))]
 FRAME_KEYS = ("camera", "take", "frame_idx", "size", "clicks", "proposals")  # that scripts get
 ENDS = {
     "top": "tip of the racket's head: the outermost point of its frame",
