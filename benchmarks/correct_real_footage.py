@@ -30,16 +30,12 @@ LABEL = (
 COMMAND = "`python benchmarks/correct_real_footage.py`"
 
 
-def distances(points, theirs):
-    """Return the distances (T, 12) mm of limb joints to others (T, 12, 3) m, frame by frame."""
-    own = [points.joints.tolist().index(joint) for joint in skeleton.JOINTS]
-    return 1e3 * np.linalg.norm(points.xyz[0][:, own] - theirs, axis=-1)
-
-
 def rows(results, theirs):
     """Yield the rows of the table, stage by stage."""
     for stage, word in STAGES.items():
-        apart = distances(keypoints.read_3d(results / TAKE.format(stage=stage)), theirs)
+        points = keypoints.read_3d(results / TAKE.format(stage=stage))
+        own = [points.joints.tolist().index(joint) for joint in skeleton.JOINTS]
+        apart = real_footage.distances_mm(points.xyz[0][:, own], theirs)
         known = apart[np.isfinite(apart)]
         found = {"median": np.median(known), "p90": np.percentile(known, 90)}
         for part, value in {**found, "p95": np.percentile(known, 95)}.items():

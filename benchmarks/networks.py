@@ -28,6 +28,7 @@ import yaml
 
 import hall_markers
 from many_sessions import ROOT, copied
+from real_footage import LATER
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
@@ -66,13 +67,25 @@ def write_json(data, folder):
     return {camera: str(folder / camera) for camera in hall_markers.CAMERAS}
 
 
+def openpose_folders(demo, folder):
+    """Number OpenPose's files as the frames that they show; return the folders by camera."""
+    found = {}
+    for at in range(1, 5):
+        target = folder / f"cam0{at}"
+        target.mkdir(parents=True)
+        files = sorted((demo / "openpose_body25b" / f"cam{at}_json").glob("*.json"))
+        for number, path in enumerate(files[:-LATER], start=LATER):
+            shutil.copy(path, target / f"cam0{at}_{number:06d}.json")
+        found[target.name] = str(target)
+    return found
+
+
 def write_study(folder, demo, data, networks):
     """Write the sessions of recorded pictures and their study; return its configuration."""
     takes, places = {}, folder / "config" / "sessions"
     if demo:
         content = yaml_files.read(places / f"{WALK}.yaml")
-        json_of = {f"cam0{at}": demo / "openpose_body25b" / f"cam{at}_json" for at in range(1, 5)}
-        found = {camera: str(path.resolve()) for camera, path in json_of.items()}
+        found = openpose_folders(demo, folder / "data" / "openpose")
         content["takes"]["balancing"]["pose2d"] = {"body25b": found}
         (places / f"{WALK}.yaml").write_text(yaml.safe_dump(content, sort_keys=False))
         takes[f"{WALK}/balancing"] = "body25b"

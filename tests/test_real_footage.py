@@ -35,6 +35,7 @@ NAMES = ["cam01", "cam02", "cam03", "cam04"]
 CUT = (0, 0, 1080, 1920)
 PARTS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
 CLOSE_PX = 15
+LATER = 1  # frames: number 0 of OpenPose and row 0 of the TRC show the video's frame 1
 LIMBS = [f"{side}_{part}" for side in ("left", "right") for part in PARTS]
 BODY_25B = [
     "nose",
@@ -149,18 +150,38 @@ def errors_px(points):
     return points.reproj_error_px[0][:, limbs(points)]
 
 
+def of_same_frames(ours, theirs, later=LATER):
+    """Return what the study and what OpenPose has of the frames that both have."""
+    n_frames = len(ours) - abs(later)
+    return ours[max(0, later) :][:n_frames], theirs[max(0, -later) :][:n_frames]
+
+
 def apart_mm(points, others):
-    return 1e3 * np.linalg.norm(points.xyz[0][:, limbs(points)] - others, axis=-1)
+    ours, theirs = of_same_frames(points.xyz[0][:, limbs(points)], others)
+    return 1e3 * np.linalg.norm(ours - theirs, axis=-1)
+
+
+@pytest.mark.parametrize("at", range(4), ids=NAMES)
+def test_the_other_network_s_keypoints_show_the_frame_after_their_number(detected, at):
+    """Constant differences of a joint's definition are taken away; the nearest frame remains."""
+    view, apart_px = detected[at], {}
+    for later in range(-2, 4):
+        ours, theirs = of_same_frames(
+            view.xy[0][:, limbs(view)], openpose(view.camera)[..., :2], later
+        )
+        off = ours - theirs
+        off = off - np.nanmedian(off, axis=0)
+        apart_px[later] = np.nanmedian(np.linalg.norm(off, axis=-1))
+    assert min(apart_px, key=apart_px.get) == LATER, apart_px
 
 
 def test_four_views_agree_with_another_network_by_the_same_cameras(fused, views):
     error_mm = apart_mm(fused, triangulated(views))
     assert np.isnan(error_mm).mean() <= 0.02
-    # Eleven films, ten with one value in a thousand moved by one grey level: medians of 29.1 to
-    # 29.6, mean 29.3, standard deviation 0.1; 90 % within 51.0 to 52.5, mean 51.5, standard
-    # deviation 0.5. The bounds are mean and three standard deviations, rounded up.
-    assert np.nanmedian(error_mm) <= 30
-    assert np.nanpercentile(error_mm, 90) <= 53.1
+    # Found: 25.6 and 48.0. Ten films with one value in a thousand moved by one grey level differed
+    # from the film by a standard deviation of 0.1 and 0.5.
+    assert np.nanmedian(error_mm) <= 26
+    assert np.nanpercentile(error_mm, 90) <= 50
 
 
 def test_mended_cameras_agree_better_than_those_of_the_file(
@@ -170,7 +191,8 @@ def test_mended_cameras_agree_better_than_those_of_the_file(
     as_is = fusion.triangulate_take(views_of_file, detected, joints, ["p1"], **study["triangulate"])
     worse = apart_mm(as_is, triangulated(views_of_file))
     better = apart_mm(fused, triangulated(views))
-    assert np.nanmedian(better) < 0.85 * np.nanmedian(worse)
+    assert np.nanmedian(better) < 0.9 * np.nanmedian(worse)
+    assert np.nanpercentile(better, 90) < 0.75 * np.nanpercentile(worse, 90)
     # Of a camera's views, how many agree to 15 px (the study's limit is a share of the height).
     share = [(errors_px(found) <= CLOSE_PX).mean(axis=(0, 1)) for found in (as_is, fused)]
     assert share[0].min() < 0.4
@@ -184,8 +206,8 @@ def test_four_views_agree_with_another_program_by_the_file_as_it_is(
     found = fusion.triangulate_take(views_of_file, detected, joints, ["p1"], **study["triangulate"])
     error_mm = apart_mm(found, reference)
     assert np.isnan(error_mm).mean() <= 0.02
-    assert np.nanmedian(error_mm) <= 40
-    assert np.nanpercentile(error_mm, 90) <= 80
+    assert np.nanmedian(error_mm) <= 34
+    assert np.nanpercentile(error_mm, 90) <= 74
 
 
 def test_views_reproject_closely(fused):
@@ -213,17 +235,18 @@ def test_left_and_right_are_exchanged_where_the_reference_says_so(
         joints = [at for at, name in enumerate(LIMBS) if name.endswith(part)]
         wrong, found = [], []
         for at, (camera, view) in enumerate(zip(views_of_file, detected, strict=True)):
-            seen, truth = view.xy[0][:, limbs(view)], cameras.project(camera, reference)
+            projected = cameras.project(camera, reference)
+            seen, truth = of_same_frames(view.xy[0][:, limbs(view)], projected)
             as_named, exchanged = (
                 np.linalg.norm(xy - truth, axis=-1)[:, joints].sum(axis=1)
                 for xy in (seen, seen[:, other])
             )
             wrong.append(exchanged < 0.8 * as_named)
-            found.append(fused.swapped[0, ..., at][:, limbs(fused)][:, joints[0]])
+            found.append(fused.swapped[0, LATER:, limbs(fused)[joints[0]], at])
         wrong, found = np.array(wrong), np.array(found)
         assert wrong[1].sum() >= 20
-        assert found[wrong].mean() >= 0.85
-        assert found[~wrong].mean() <= 0.02
+        assert found[wrong].mean() >= 0.95
+        assert not found[~wrong].any()
 
 
 def openpose(name):
