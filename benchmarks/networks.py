@@ -68,7 +68,7 @@ def write_json(data, folder):
 
 
 def openpose_folders(demo, folder):
-    """Number OpenPose's files as the frames that they show; return the folders by camera."""
+    """Copy OpenPose's files, numbered as the frames that they show; return folders by camera."""
     found = {}
     for at in range(1, 5):
         target = folder / f"cam0{at}"

@@ -18,6 +18,7 @@ import numpy as np
 import pandas as pd
 
 from many_sessions import ROOT
+from real_footage import LATER
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
@@ -25,7 +26,8 @@ from courtside.evaluation.numbers import stated
 from courtside.evaluation.numbers.players import NETWORK
 
 OURS = f"walk-4cams/takes/balancing/pose3d_ik/file/all-robust/{NETWORK}.p1.mot"
-RATE_HZ = 60  # Pose2Sim's frame 1 is the first of the take
+RATE_HZ = 60
+FIRST = 1  # Pose2Sim's number of the first row, which shows the video's frame `LATER`
 ANGLES = {"hip flexion": "hip_flexion", "knee flexion": "knee_angle", "elbow": "elbow_flex"}
 COMMAND = "`python benchmarks/opensim_angles.py RESULTS MOT`"
 
@@ -40,7 +42,7 @@ def motion(path):
 
 def differences(ours, theirs):
     """Yield (angle, differences) in degrees, ours less theirs, at the frames of theirs."""
-    frames = (theirs["time"] * RATE_HZ).round().astype(int) - 1
+    frames = (theirs["time"] * RATE_HZ).round().astype(int) - FIRST + LATER
     known = frames.between(0, len(ours) - 1)
     at = frames[known].to_numpy()
     for words, name in ANGLES.items():

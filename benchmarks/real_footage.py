@@ -83,7 +83,7 @@ def filtered(points, step):
 
 
 def distances_mm(xyz, other):
-    """Return the distances (T - 1, 12) mm of the study's joints to OpenPose's, of the same frames."""
+    """Return the distances (T - 1, 12) mm of the study's joints to OpenPose's, frame by frame."""
     return 1e3 * np.linalg.norm(xyz[LATER:] - other[: len(xyz) - LATER], axis=-1)
 
 

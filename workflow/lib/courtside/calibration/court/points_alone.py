@@ -131,8 +131,8 @@ def _lenses(starts: Sequence[Camera]) -> Ties:
 def _solved(lenses: Ties, clicks: ClickedPoints, court: Court, weights: dict) -> Solution:
     """Adjust all cameras, their clicks weighted by the scatter that the residuals show.
 
-    The covariance is not enlarged by `Factors.widening`: of two cameras with 8, 10 or 14 points each
-    the 90 % ellipsoids held 89 to 91 % of the errors (40 draws each), with it 92 to 94 %.
+    The covariance is not enlarged by `Factors.widening`: with two cameras of 8, 10 or 14 points the
+    90 % ellipsoids held 89 to 91 % of the errors (40 draws each), and 92 to 94 % if enlarged.
     """
     options = {**weights, "max_iterations": MAX_ITERATIONS}
     solved = joint_adjustment.solve_by_edges(lenses, clicks, court, **options)
