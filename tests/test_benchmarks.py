@@ -312,8 +312,9 @@ def test_intervals_of_angles_hold_their_error():
 def test_angles_of_opensim_are_compared_at_their_own_frames(tmp_path):
     columns = [f"{name}_{side}" for name in opensim_angles.ANGLES.values() for side in "lr"]
     ours = pd.DataFrame(np.arange(60.0).reshape(10, 6), columns=columns)
-    # Frames 3 and 7, counted from 1, and one that this study does not have.
-    rows = [[3 / 60, *ours.loc[2] - 4], [7 / 60, *ours.loc[6] + 2], [50 / 60, *[0.0] * 6]]
+    # Their rows 3 and 7, counted from 1, show the video's frames 3 and 7, counted from 0. The third
+    # is one that this study does not have.
+    rows = [[3 / 60, *ours.loc[3] - 4], [7 / 60, *ours.loc[7] + 2], [50 / 60, *[0.0] * 6]]
     lines = ["inDegrees=yes", "endheader", "\t".join(["time", *columns])]
     file = tmp_path / "part.mot"
     file.write_text("\n".join([*lines, *("\t".join(f"{v:.8f}" for v in r) for r in rows)]))
