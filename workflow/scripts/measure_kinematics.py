@@ -11,7 +11,7 @@ from courtside.calibration.bundle import selection
 from courtside.calibration.records import covariance
 from courtside.exports import measures
 from courtside.geometry import camera
-from courtside.kinematics import cutoffs, skeleton_filter
+from courtside.kinematics import cutoffs, shared_errors, skeleton_filter
 from courtside.kinematics import measures as kinematics
 from courtside.records import tables
 from courtside.records.keypoints import derived_joints, keypoints, skeleton
@@ -33,8 +33,11 @@ def main(paths, frames_csv, summary_csv, *, max_gap_s, stage, sex_of):
 def field_of_cameras(paths, names):
     seen = {one.name: one for one in camera.read_toml(paths.cameras)}
     network = selection.of_cameras([seen[name] for name in names])
-    known = covariance.read(paths.covariance).of(names).of_columns()
-    return point_covariance.field(network, known) if np.isfinite(known).all() else None
+    known = covariance.read(paths.covariance).of(names)
+    columns = known.of_columns()
+    if not np.isfinite(columns).all():
+        return None
+    return shared_errors.with_frame(point_covariance.field(network, columns), known.frame)
 
 
 if __name__ == "__main__":

@@ -68,3 +68,16 @@ def test_a_record_gives_its_parts():
     limbs = np.isin(record.joints, skeleton.JOINTS)
     np.testing.assert_allclose(found.shared[..., 2][:, limbs], 2 * record.xyz[0][:, limbs])
     assert np.isnan(found.shared[..., 2][:, ~limbs]).all()
+
+
+def test_a_wrong_vertical_turns_all_joints_alike():
+    def still(xyz):
+        return np.zeros((*xyz.shape, 1))
+
+    frame = np.diag([0.01, 0.04, 0.09])
+    moved = shared_errors.with_frame(still, frame)(np.array([[0.0, 0, 2], [3, 0, 0]]))
+    covariance = moved @ moved.transpose(0, 2, 1)
+    # Two metres up, a turn about y moves along x; three metres along x, it moves along z.
+    np.testing.assert_allclose(covariance[0], np.diag([4 * 0.04, 4 * 0.01, 0.09]), atol=1e-12)
+    np.testing.assert_allclose(covariance[1], np.diag([0, 0, 9 * 0.04 + 0.09]), atol=1e-12)
+    assert shared_errors.with_frame(still, np.zeros((3, 3))) is still

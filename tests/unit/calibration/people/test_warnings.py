@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from courtside.calibration.people import warnings
+from courtside.calibration.people import warnings, world_frame
 from courtside.calibration.people.held_out import Score
 from courtside.calibration.people.views import Limits, Seen
 from courtside.geometry import camera as camera_models
@@ -28,7 +28,9 @@ def found(cameras=TRUE, joints=WALK, shown=None, score=GOOD, per_s=10):
     track = np.repeat([0, 1], 100)
     time_s = np.tile(np.arange(100) / per_s, 2)
     seen = Seen(xy, seen_score, np.full(xy.shape[:2], 400.0), track, time_s)
-    return warnings.find(cameras, seen, joints, score, LIMITS)
+    half, nothing = seen.blocks(2) % 2 == 1, np.empty((0, 3))
+    apart = world_frame.halves_apart(joints, cameras, half, nothing)
+    return warnings.find(cameras, seen, joints, score, LIMITS, apart)
 
 
 def test_good_cameras_have_no_warning():

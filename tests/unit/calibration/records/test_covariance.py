@@ -68,12 +68,14 @@ def test_flex_is_left_out_and_comes_back_as_certain():
 
 
 def test_what_is_written_is_read(tmp_path):
-    made = covariance.CameraCovariance(["side", "back"], symmetric(2 * N))
+    frame = np.diag([1.0, 2, 3])
+    made = covariance.CameraCovariance(["side", "back"], symmetric(2 * N), frame)
     made.covariance[N:] = np.nan
     covariance.write(tmp_path / "c.npz", made)
     found = covariance.read(tmp_path / "c.npz")
     assert found.cameras == ["side", "back"]
     np.testing.assert_array_equal(found.covariance, made.covariance)
+    np.testing.assert_array_equal(found.of(["back"]).frame, frame)
     with np.load(tmp_path / "c.npz") as stored:
         assert stored["parameter"].tolist() == list(covariance.PARAMETERS)
 

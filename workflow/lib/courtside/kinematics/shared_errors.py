@@ -59,6 +59,19 @@ def independent(covariance: NDArray) -> Errors:
     return Errors(covariance, nothing, np.eye(n_joints), np.zeros((n_frames, n_joints, 3, 0)))
 
 
+def with_frame(field: Field, frame: NDArray) -> Field:
+    """Return a field of errors with those of the world frame, `CameraCovariance.frame`, as well."""
+    extent, axes = np.linalg.eigh(frame)
+    causes = axes * np.sqrt(np.maximum(extent, 0.0))
+
+    def at(xyz: NDArray) -> NDArray:
+        lifted = np.broadcast_to([0.0, 0.0, 1.0], xyz.shape)
+        motions = np.stack([np.cross([1, 0, 0], xyz), np.cross([0, 1, 0], xyz), lifted], axis=-1)
+        return np.concatenate([field(xyz), motions @ causes], axis=-1)
+
+    return at if frame.any() else field
+
+
 def of_person(points: Keypoints3D, person: int, field: Field | None = None) -> Errors:
     """Return the stated errors of one person of a record, by the person's index.
 

@@ -207,17 +207,21 @@ def adjust(
         cameras = [_scaled(camera, scale.metres) for camera in fitted.cameras]
     joints = _joints(cameras, seen, limits)
     on_floor = [triangulate_all(cameras, one.xy) for one in known if one.on_floor]
-    world = world_frame.floor(joints, cameras, np.array(on_floor).reshape(-1, 3))
+    on_floor = np.array(on_floor).reshape(-1, 3)
+    world = world_frame.floor(joints, cameras, on_floor)
     score = held_out.score(
         lambda part, _: _refined(cameras, lenses, part, limits).cameras, seen, Points(), limits
     )
     check(cameras, score)
     cameras = [world.camera(camera) for camera in cameras]
-    joints = world.points(joints)
-    found = [*scale.warnings, *warnings.find(cameras, seen, joints, score, limits)]
+    joints, on_floor = world.points(joints), world.points(on_floor)
+    half = seen.blocks(2) % 2 == 1
+    apart = world_frame.halves_apart(joints, cameras, half, on_floor)
+    found = [*scale.warnings, *warnings.find(cameras, seen, joints, score, limits, apart)]
     places = _places(joints)
     covariance = world_frame.of_shape(cameras, fitted.covariance, places, scale.sigma)
     named = camera_covariance.of_network([camera.name for camera in cameras], covariance)
+    named = replace(named, frame=world_frame.frame_error(joints, apart, on_floor))
     return Found(cameras, named, score, scale, found, places)
 
 
@@ -231,6 +235,7 @@ def rescaled(found: Found, scale: unit.Unit) -> Found:
     shape = CameraCovariance(names, own).of_columns()
     covariance = world_frame.of_shape(cameras, shape, places, scale.sigma)
     named = camera_covariance.of_network(names, covariance)
+    named = replace(named, frame=found.covariance.frame)
     return replace(found, cameras=cameras, covariance=named, scale=scale, places=places)
 
 
@@ -241,11 +246,13 @@ def summary(found: Found, takes: Sequence[str]) -> dict[str, Any]:
         zip((c.name for c in found.cameras), found.score.accepted_percent(), strict=True)
     )
     lowest = min(accepted, key=accepted.__getitem__)
+    vertical = np.sqrt(np.trace(found.covariance.frame[:2, :2]) / 2)
     return {
         "takes": list(takes),
         "held_out_joints_permille": round(share, 3),
         "accepted_percent": {name: round(float(value), 1) for name, value in accepted.items()},
         "scale_sigma_percent": round(100 * found.scale.sigma, 2),
+        "vertical_sigma_deg": round(float(np.degrees(vertical)), 2),
         "warnings": found.warnings,
         "line": f"people alone: views of held-out joints disagree by {share:.1f} thousandths of "
         f"the height; {accepted[lowest]:.0f} % of the views or more are accepted ({lowest}); the "

@@ -6,7 +6,7 @@ from itertools import permutations
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration.people import unit, views, world_frame
+from courtside.calibration.people import views
 from courtside.calibration.people.held_out import Score
 from courtside.calibration.people.views import Limits, Seen
 from courtside.geometry import rotations
@@ -20,18 +20,24 @@ TILT_DEG, HEIGHT_M = 1.0, 0.03  # ASSUME: difference of the floors of two halves
 
 
 def find(
-    cameras: Sequence[Camera], seen: Seen, joints: NDArray, score: Score, limits: Limits
+    cameras: Sequence[Camera],
+    seen: Seen,
+    joints: NDArray,
+    score: Score,
+    limits: Limits,
+    apart: NDArray | None,
 ) -> list[str]:
     """Return the warnings; none for good cameras.
 
-    `joints` (T, J, 3) m are those of `seen`, NaN where unknown.
+    `joints` (T, J, 3) m are those of `seen`, NaN where unknown; `apart` is that of
+    `world_frame.halves_apart`.
     """
     return [
         *_short(seen, limits),
         *_narrow(cameras, joints),
         *_loose(cameras, seen, limits),
         *_contradicting(cameras, score),
-        *_floor(cameras, seen, joints),
+        *_floor(apart),
     ]
 
 
@@ -91,20 +97,15 @@ def _contradicting(cameras: Sequence[Camera], score: Score) -> Iterator[str]:
             )
 
 
-def _floor(cameras: Sequence[Camera], seen: Seen, joints: NDArray) -> Iterator[str]:
+def _floor(apart: NDArray | None) -> Iterator[str]:
     """Yield a warning if the floors from two halves of the time differ."""
-    half = seen.blocks(2) % 2 == 1
-    whole = np.isfinite(joints).all(axis=(1, 2))
-    if min((whole & half).sum(), (whole & ~half).sum()) < unit.LEAST_FRAMES:
+    if apart is None:
         yield "floor: it is defined by few frames with whole bodies; add longer takes"
         return
-    one, other = (world_frame.floor(joints[rows], cameras) for rows in (half, ~half))
-    tilt_deg = float(np.degrees(np.arccos(np.clip(one.rotation[2] @ other.rotation[2], -1, 1))))
-    middle = np.nanmedian(joints.reshape(-1, 3), axis=0)
-    apart_m = abs(float((one.points(middle) - other.points(middle))[2]))
-    if tilt_deg > TILT_DEG or apart_m > HEIGHT_M:
+    tilt_deg = float(np.degrees(np.hypot(*apart[:2])))
+    if tilt_deg > TILT_DEG or abs(apart[2]) > HEIGHT_M:
         yield (
             "floor: the first half of each track and the second half give floors that differ by "
-            f"{tilt_deg:.1f} degrees and {100 * apart_m:.0f} cm; add takes in which people walk "
-            "about more"
+            f"{tilt_deg:.1f} degrees and {100 * abs(apart[2]):.0f} cm; add takes in which people "
+            "walk about more"
         )

@@ -23,6 +23,13 @@ STANDING = 0.1  # the quantile of the ankles' heights that belongs to standing f
 TILT_M = 0.5  # ASSUME: extent of feet, or points, that define the tilt as well as bodies do
 ROUNDS = 30  # of reweighting
 EPSILON_M = 1e-3  # the weight is constant below this distance from the floor
+UPRIGHT = np.radians(5.0)  # ASSUME: error of the vertical by bodies alone, standard deviation
+POINT_M = 0.01  # ASSUME: that of a clicked point on the floor
+ANKLE_M = 0.03  # ASSUME: that of the height of a standing ankle, as a network sees it
+# Two halves of the time tell the variance of a mean with few degrees of freedom, two of the tilt
+# and one of the height: Student's t over a normal distribution, squared, at 90 %.
+OF_TILT = 9 / np.log(10)
+OF_HEIGHT = np.tan(0.45 * np.pi) ** 2 / 2.706
 TINY_STEP = 1e-6  # of a similarity, for numerical derivatives
 
 
@@ -83,6 +90,52 @@ def _lowest_plane(xyz: NDArray) -> tuple[NDArray, float]:
         held = np.diag([1.0, 1.0, 0.0]) * weight.sum() * TILT_M**2
         found = np.linalg.solve(design.T * weight @ design + held, design.T @ (weight * xyz[:, 2]))
     return found[:2], float(found[2])
+
+
+def halves_apart(
+    joints: NDArray, cameras: Sequence[Camera], half: NDArray, on_floor: NDArray
+) -> NDArray | None:
+    """Return how far apart the floors of two halves of the frames are, in the world frame.
+
+    (3,): the x and y of their normals, and their height (m) in the middle of the joints. None if a
+    half, a mask (T,), has too few frames with whole bodies. Other arguments as for `floor`.
+    """
+    whole = np.isfinite(joints).all(axis=(1, 2))
+    if min((whole & half).sum(), (whole & ~half).sum()) < unit.LEAST_FRAMES:
+        return None
+    one, other = (floor(joints[rows], cameras, on_floor) for rows in (half, ~half))
+    middle = np.nanmedian(joints.reshape(-1, 3), axis=0)
+    height_m = (one.points(middle) - other.points(middle))[2]
+    return np.append((one.rotation[2] - other.rotation[2])[:2], height_m)
+
+
+def frame_error(joints: NDArray, apart: NDArray | None, on_floor: NDArray) -> NDArray:
+    """Return the covariance of the world frame, as `CameraCovariance.frame` has it.
+
+    `joints` (T, J, 3) and `on_floor` (P, 3) are m, in the world frame; `apart` is that of
+    `halves_apart`. What bodies tell of the vertical counts as in `floor`: by the extent of the
+    feet.
+    """
+    at = [skeleton.JOINTS.index(f"{side}_ankle") for side in ("left", "right")]
+    feet = joints[:, at].reshape(-1, 3)
+    feet = feet[np.isfinite(feet).all(axis=1), :2]
+    by_bodies = TILT_M**2 * np.linalg.inv(np.cov(feet.T) + TILT_M**2 * np.eye(2))
+    slopes = UPRIGHT**2 * (by_bodies @ by_bodies.T)
+    height = ANKLE_M**2
+    if apart is None:
+        slopes = slopes + UPRIGHT**2 * np.eye(2)
+    else:
+        slopes = slopes + OF_TILT * np.sum(apart[:2] ** 2) / 8 * np.eye(2)
+        height = height + OF_HEIGHT * apart[2] ** 2 / 4
+    if len(on_floor):
+        height = POINT_M**2 / len(on_floor)
+        about = on_floor[:, :2] - on_floor[:, :2].mean(axis=0)
+        if len(on_floor) >= 3 and np.linalg.svd(about, compute_uv=False)[1] > TILT_M:
+            slopes = POINT_M**2 * np.linalg.inv(about.T @ about)
+    turned = np.array([[0.0, -1.0], [1.0, 0.0]])  # of a normal's x and y to rotations about x and y
+    found = np.diag([0.0, 0.0, height])
+    found[:2, :2] = turned @ slopes @ turned.T
+    return found
 
 
 def of_shape(

@@ -1,7 +1,7 @@
 """The joint covariance of a session's fixed cameras: npz with its parameters named."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +10,13 @@ from courtside.calibration.bundle.problem import FLEX, IMAGE, LENS, POSE
 from courtside.records import npz
 from courtside.study.errors import StrPath
 
-FORM = "courtside camera covariance 1"
+FORM = "courtside camera covariance 2"
 PARAMETERS = POSE + LENS
 SPEC = {
     "camera": ("str", ("C",)),
     "parameter": ("str", (str(len(PARAMETERS)),)),
     "covariance": ("float", ("K", "K")),
+    "frame": ("float", ("3", "3")),
 }
 
 
@@ -27,10 +28,15 @@ class CameraCovariance:
     own frame (rad, applied on the left of cam_from_world), translation of cam_from_world (m), focal
     length along y (px), focal length along x over that along y, principal point (px), k1, k2, p1,
     p2.
+
+    `frame` (3, 3) is the covariance of the world frame itself where people define it: a small
+    rotation of the world about its x and y axes (rad), and a shift along z (m). The other errors do
+    not contain it. It is 0 where court points, a board or a file define the frame.
     """
 
     cameras: list[str]
     covariance: NDArray
+    frame: NDArray = field(default_factory=lambda: np.zeros((3, 3)))
 
     def of_columns(self) -> NDArray:
         """Return the covariance in the order of a network's columns, (K, K); 0 for the flex."""
@@ -48,7 +54,7 @@ class CameraCovariance:
         at = [self.cameras.index(name) for name in cameras]
         size = len(PARAMETERS)
         rows = np.concatenate([size * k + np.arange(size) for k in at])
-        return CameraCovariance(list(cameras), self.covariance[np.ix_(rows, rows)])
+        return CameraCovariance(list(cameras), self.covariance[np.ix_(rows, rows)], self.frame)
 
 
 def columns(n_cameras: int) -> NDArray:
@@ -71,6 +77,7 @@ def write(path: StrPath, found: CameraCovariance) -> None:
         "camera": np.array(found.cameras, dtype=str),
         "parameter": np.array(PARAMETERS, dtype=str),
         "covariance": np.asarray(found.covariance, dtype=float),
+        "frame": np.asarray(found.frame, dtype=float),
     }
     npz.write(path, FORM, SPEC, arrays)
 
@@ -78,4 +85,5 @@ def write(path: StrPath, found: CameraCovariance) -> None:
 def read(path: StrPath) -> CameraCovariance:
     """Read a `CameraCovariance`; an `InputError` says what is wrong with the file."""
     found = npz.read(path, FORM, SPEC)
-    return CameraCovariance([str(name) for name in found["camera"]], found["covariance"])
+    names = [str(name) for name in found["camera"]]
+    return CameraCovariance(names, found["covariance"], found["frame"])
