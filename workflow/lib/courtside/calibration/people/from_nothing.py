@@ -206,8 +206,8 @@ def adjust(
         scale = unit.find(fitted.cameras, bodies, heights_m, known, shape)
         cameras = [_scaled(camera, scale.metres) for camera in fitted.cameras]
     joints = _joints(cameras, seen, limits)
-    on_floor = [triangulate_all(cameras, one.xy) for one in known if one.on_floor]
-    on_floor = np.array(on_floor).reshape(-1, 3)
+    clicked = [triangulate_all(cameras, one.xy) for one in known if one.on_floor]
+    on_floor = np.array(clicked).reshape(-1, 3)
     world = world_frame.floor(joints, cameras, on_floor)
     score = held_out.score(
         lambda part, _: _refined(cameras, lenses, part, limits).cameras, seen, Points(), limits
