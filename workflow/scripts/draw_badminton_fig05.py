@@ -18,7 +18,7 @@ def main(paths, pdf, png, csv, *, layouts, sources, blur_faces):
     }
     chosen, images = fig05.examples(rows, layouts), []
     for example in chosen:
-        pose2d, film = files[example["session"], example["camera"]]
+        pose2d, film = files[example["session"], example["take"], example["camera"]]
         view, at = keypoints.read_2d(pose2d), example["frame_idx"]
         persons = [view.xy[:, at]]
         image = picture_crops.read(

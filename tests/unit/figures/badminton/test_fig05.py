@@ -7,7 +7,7 @@ import pytest
 from courtside.figures.badminton import fig05
 
 JOINTS = ["left_shoulder", "right_shoulder", "left_hip", "right_hip", "left_wrist", "right_wrist"]
-LAYOUTS = {"a": ("gym-a", ["side", "back"]), "b": ("gym-b", ["oblique", "back"])}
+LAYOUTS = {"a": ("gym-a", "shot", ["side", "back"]), "b": ("gym-b", "shot", ["oblique", "back"])}
 PLACE = dict(
     zip(JOINTS, [(90, 80), (110, 80), (93, 120), (107, 120), (70, 130), (130, 130)], strict=True)
 )
@@ -74,6 +74,22 @@ def test_shares_are_counts_of_frames():
     assert of(shares, "a", fig05.TOGETHER, fig05.ALL).share == pytest.approx(0.5)
     assert of(shares, "b", fig05.TOGETHER, fig05.ALL).share == 1
     assert of(shares, "b", "mirror", fig05.ALL).n_frames == 30
+
+
+def test_two_takes_of_one_session_count_in_a_layout_each():
+    good = made(set()).assign(take="rally")
+    rows = pd.concat([made(MISSED), good])
+    layouts = {
+        name: ("gym-a", take, ["side", "back"]) for name, take in (("a", "shot"), ("b", "rally"))
+    }
+    shares = fig05.table(rows, layouts)
+    for layout, take, share in (("a", "shot", 24 / 30), ("b", "rally", 1.0)):
+        found = of(shares, layout, "side", fig05.ALL)
+        assert (found["take"], found.n_frames) == (take, 30)
+        assert found.share == pytest.approx(share)
+    chosen = fig05.examples(rows, layouts)
+    assert [one["take"] for one in chosen] == ["shot", "shot", "rally", "rally"]
+    assert [one["rows"].placed.all() for one in chosen] == [True, False, True, True]
 
 
 def test_the_stroke_is_counted_apart():

@@ -83,11 +83,25 @@ def test_fig_5_shows_each_camera_once(study, studies):
     assert figures.fig05_errors(twice) == errors
     found = figures.fig05_sources(twice)
     assert found[0] == {
-        "name": ["players-tiny", "back"],
+        "name": ["players-tiny", "shot", "back"],
         "pose2d": "results/players-tiny/takes/shot/pose2d/blazepose-full/back.npz",
         "video": "results/virtual/players-tiny/takes/shot/back.mp4",
     }
-    assert [source["name"][1] for source in found] == ["back", "oblique"]
+    assert [source["name"][2] for source in found] == ["back", "oblique"]
+
+
+def test_fig_5_shows_two_takes_of_one_session_each_with_its_video(studies):
+    layouts = {
+        take: {"take": f"players-tiny/{take}", "cameras": ["back"]} for take in ("shot", "rally")
+    }
+    both = studies(draw_badminton_fig05={"layouts": layouts})
+    found = figures.fig05_sources(both)
+    assert [source["name"] for source in found] == [
+        ["players-tiny", take, "back"] for take in layouts
+    ]
+    assert [source["video"] for source in found] == [
+        f"results/virtual/players-tiny/takes/{take}/back.mp4" for take in layouts
+    ]
 
 
 def test_cameras_of_every_fusion(job):

@@ -31,7 +31,7 @@ def test_a_study_without_the_named_takes_has_no_figure_of_players(studies):
 
 
 def test_layouts_of_fig_5_are_those_whose_take_the_study_has(study, studies):
-    assert together.fig05_layouts(study) == {"b": ["players-tiny", ["oblique", "back"]]}
+    assert together.fig05_layouts(study) == {"b": ["players-tiny", "shot", ["oblique", "back"]]}
     assert together.fig05_layouts(studies(sessions=["plain-tiny"])) == {}
 
 

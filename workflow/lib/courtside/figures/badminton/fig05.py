@@ -3,7 +3,7 @@
 The counterpart of [Shishido2020, fig 5], one picture of layout a in which the network worked.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
@@ -16,6 +16,8 @@ from courtside.evaluation.tables import calibration
 from courtside.figures.style import bars, picture_crops, style
 from courtside.statistics import autocorrelation
 
+# By name session, take and the cameras that reconstruct together.
+Layouts = Mapping[str, tuple[str, str, Sequence[str]]]
 ALL, STROKE, TOGETHER = "all joints", "all joints, stroke", "together"
 POSE_S = 0.2  # ASSUME: duration of a pose, whose frames count as one trial
 KEY = ["person", "camera", "frame_idx"]
@@ -29,18 +31,17 @@ SHARES_MM, EXAMPLE_MM = 96, 56
 HEAD = 0.7  # the top of the head lies above the shoulders, in lengths of the torso
 
 
-def table(rows: pd.DataFrame, layouts: dict[str, tuple[str, Sequence[str]]]) -> pd.DataFrame:
+def table(rows: pd.DataFrame, layouts: Layouts) -> pd.DataFrame:
     """Return the share of frames in which the joints are placed, for each camera and joint.
 
     Over the frames in whose picture all the person's joints lie; the 95 % interval is Wilson's, on
     the effective number of frames. Joint ALL: all joints in one frame; STROKE: the same in the
     frames of a stroke. Camera TOGETHER: all joints in all cameras of the layout at the same time.
-    `rows` are of `courtside.evaluation.detection.evaluate`, with session, take and model; `layouts`
-    are by name the session and the cameras that reconstruct together.
+    `rows` are of `courtside.evaluation.detection.evaluate`, with session, take and model.
     """
     found = []
-    for layout, (session, cameras) in layouts.items():
-        part = rows[rows.session == session]
+    for layout, (session, take, cameras) in layouts.items():
+        part = rows[(rows.session == session) & (rows["take"] == take)]
         if part.empty:
             continue
         labels = {"layout": layout, **part.iloc[0][["session", "take", "model"]]}
@@ -89,17 +90,18 @@ def together(rows: pd.DataFrame, cameras: Sequence[str], step_s: float) -> NDArr
     return np.concatenate(parts) if parts else np.zeros(0, dtype=bool)
 
 
-def examples(rows: pd.DataFrame, layouts: dict[str, tuple[str, Sequence[str]]]) -> list[dict]:
+def examples(rows: pd.DataFrame, layouts: Layouts) -> list[dict]:
     """Choose for each layout a frame in which the network works and one in which it does not.
 
     Both are of the layout's camera that places all joints least often. Works: of the frames with
     the most joints placed, the one whose worst joint is the median one. Does not: the fewest joints
-    placed, of several the largest mean error. Keys: layout, session, camera, person, frame_idx,
-    works (bool), rows (of that frame).
+    placed, of several the largest mean error. Keys: layout, session, take, camera, person,
+    frame_idx, works (bool), rows (of that frame).
     """
     found = []
-    for layout, (session, cameras) in layouts.items():
-        part = rows[(rows.session == session) & rows.camera.isin(cameras) & rows.found]
+    for layout, (session, take, cameras) in layouts.items():
+        of_take = (rows.session == session) & (rows["take"] == take)
+        part = rows[of_take & rows.camera.isin(cameras) & rows.found]
         frames = part.groupby(KEY, sort=False).agg(
             count=("placed", "sum"), worst=("error_torso", "max"), mean=("error_torso", "mean")
         )
@@ -112,16 +114,14 @@ def examples(rows: pd.DataFrame, layouts: dict[str, tuple[str, Sequence[str]]]) 
         bad = frames[frames["count"] == frames["count"].min()].sort_values("mean")
         for works, (person, frame) in ((True, best.index[len(best) // 2]), (False, bad.index[-1])):
             where = {"camera": camera, "person": person, "frame_idx": int(frame)}
-            one = calibration.pick(part, **where)
-            found.append(
-                {"layout": layout, "session": session, **where, "works": works, "rows": one}
-            )
+            one = {"works": works, "rows": calibration.pick(part, **where)}
+            found.append({"layout": layout, "session": session, "take": take, **where, **one})
     return found
 
 
 def draw(
     shares_of: pd.DataFrame,
-    layouts: dict[str, tuple[str, Sequence[str]]],
+    layouts: Layouts,
     chosen: list[dict],
     images: list[NDArray],
     bones: Sequence[tuple[str, str]],
@@ -135,7 +135,7 @@ def draw(
     drawing = style.figure(sum(heights))
     upper, lower = drawing.subfigures(2, 1, height_ratios=heights)
     axes = upper.subplots(1, len(layouts), sharex=True, sharey=True, squeeze=False)[0]
-    for axis, (layout, (_, cameras)) in zip(axes, layouts.items(), strict=True):
+    for axis, (layout, (*_, cameras)) in zip(axes, layouts.items(), strict=True):
         _draw_shares(axis, shares_of[shares_of.layout == layout], cameras)
         axis.set_title(f"Layout {layout}")
     if chosen:

@@ -103,15 +103,16 @@ def fig05_errors(study: Study) -> list[str]:
 
 
 def fig05_sources(study: Study) -> list[dict[str, Any]]:
-    """Return name, 2D keypoints and video of each camera of fig 5, each once."""
+    """Return name, 2D keypoints and video of each take's cameras of fig 5, each once."""
     wanted, found = study.parameters["draw_badminton_fig05"]["layouts"], {}
     model = study.parameters["models"][0]
     for layout in fig05_layouts(study):
         ((session, take),) = study.named_takes([wanted[layout]["take"]])
         for camera in wanted[layout]["cameras"]:
             known = {"session": session.name, "take": take.name, "model": model}
-            found[session.name, camera] = {
-                "name": [session.name, camera],
+            name = [session.name, take.name, camera]
+            found[tuple(name)] = {
+                "name": name,
                 "pose2d": paths.POSE2D.format(**known, camera=camera),
                 "video": take.videos[camera],
             }

@@ -64,10 +64,10 @@ def every_players_figure(study: Study) -> list[str]:
 
 
 def fig05_layouts(study: Study) -> dict[str, list]:
-    """Return session and cameras of each layout of fig 5 that the study has and may show."""
+    """Return session, take and cameras of each layout of fig 5 that the study has and may show."""
     wanted = study.parameters["draw_badminton_fig05"]["layouts"]
     return {
-        layout: [session.name, place["cameras"]]
+        layout: [session.name, take.name, place["cameras"]]
         for layout, place in wanted.items()
         for session, take in study.named_takes([place["take"]])
         if not consent.refusing(session, take, "pictures")
