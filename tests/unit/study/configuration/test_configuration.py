@@ -171,6 +171,19 @@ def test_a_single_video_needs_a_network_with_a_metric_body(folder):
     load(folder, session | {"override": {"models": ["blazepose-full"]}}, models=["cpm-mobile-14"])
 
 
+def test_a_depth_camera_needs_a_network_even_beside_imported_keypoints(folder):
+    for name in ("left_json", "right_json"):
+        (folder.parent / name).mkdir()
+    (folder.parent / "d.bag").touch()
+    take = SESSION["takes"]["t1"] | {"devices": {"d415": {"file": "d.bag"}}}
+    take["pose2d"] = {"body25b": {"left": "left_json", "right": "right_json"}}
+    session = changed("takes", "t1", value=take) | {"override": {"models": ["body25b"]}}
+    (line,) = faults(folder, session)
+    assert "hall.yaml: takes.t1.devices.d415: expected a network" in line
+    assert "found body25b; name one first" in line
+    load(folder, session | {"override": {"models": ["cpm-mobile-14", "body25b"]}})
+
+
 def test_a_fault_in_one_file_hides_no_fault_in_another(folder):
     (folder / "external.yaml").write_text("a: {sha256: x, licence: MIT, members: {../b: y}}\n")
     (folder / "models.yaml").write_text("m: {decoder: heatmap}\n")

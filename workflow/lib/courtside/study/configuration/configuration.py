@@ -70,7 +70,7 @@ def load(config: Content, config_file: str, folder: StrPath, root: StrPath = "."
         parameters=config,
         folder=folder,
     )
-    if faults := [*_body_faults(study), *_layout_faults(study, config_file)]:
+    if faults := [*_device_faults(study), *_layout_faults(study, config_file)]:
         raise InputError(*faults)
     return study
 
@@ -93,17 +93,22 @@ def _override_faults(file: Path, content: Content, models: Content | None) -> li
     return take_faults.unknown(f"{file}: override.models", wanted, there)
 
 
-def _body_faults(study: Study) -> Iterator[str]:
-    """Yield a fault for each single video that a network without a metric body would measure."""
+def _device_faults(study: Study) -> Iterator[str]:
+    """Yield a fault for each device whose pictures the first of the networks cannot measure."""
     for session, take in study.takes():
-        videos = [name for name, device in take.devices.items() if device.kind == "rgb"]
-        model = session.parameters["models"][0]
-        for name in () if study.models[model].metric_body else videos:
-            yield (
-                f"{session.file}: takes.{take.name}.devices.{name}: expected a network with a "
-                f"metric body (decoder blazepose) as the first of `models`, found {model}; name "
-                "one, or remove the device"
-            )
+        model = study.models[session.parameters["models"][0]]
+        wanted = {}
+        if not model.metric_body:
+            wanted["rgb"] = "a network with a metric body (decoder blazepose)"
+        if model.landmarks is None:
+            wanted["rgbd"] = "a network, which alone looks at its pictures,"
+        for name, device in take.devices.items():
+            if device.kind in wanted:
+                yield (
+                    f"{session.file}: takes.{take.name}.devices.{name}: expected "
+                    f"{wanted[device.kind]} as the first of `models`, found {model.name}; name one "
+                    "first, or state the device in a session of its own"
+                )
 
 
 def _layout_faults(study: Study, config_file: str) -> Iterator[str]:
