@@ -68,6 +68,7 @@ PEOPLE |= {"cameras": {"a": None, "b": None, "c": None}}
 PEOPLE |= {"takes": {"t": {"videos": AB | {"c": "w.mp4"}}}}
 LENGTHS = {"known_lengths": [{"points": ["left", "right"], "length_m": 6.1}]}
 LENGTHS |= {"static_points": "p.csv"}
+UNWALKED = without(VIRTUAL, "walks") | {"virtual": VIRTUAL["virtual"] | {"walk_frames": 0}}
 PLAYERS = VIRTUAL | {"subjects": {"p1": None}, "takes": {"shot": FILMED}}
 
 
@@ -281,6 +282,10 @@ def test_good_sessions_have_no_fault(root, content):
         (VIRTUAL | {"court": "none"}, ["court: expected a court to build the virtual hall around"]),
         (VIRTUAL | {"cameras": {}}, ["virtual: expected cameras"]),
         (without(VIRTUAL, "walks"), ["virtual.walk_frames: expected two or more with a walk"]),
+        (
+            UNWALKED | {"virtual": VIRTUAL["virtual"] | {"walk_frames": 1}},
+            ["virtual.walk_frames: expected two or more with a walk", "found 1 and walks []"],
+        ),
         (
             VIRTUAL | {"takes": {"t": FILMED}},
             ["takes.t: expected `subjects`", "name the persons of the take"],
@@ -569,6 +574,7 @@ def test_files_of_artefacts_must_be_members(root):
 
 
 FOUND = {"gym": ("gym.yaml", VIRTUAL), "hall": ("hall.yaml", RECORDED)}
+FOUND |= {"still": ("still.yaml", UNWALKED)}
 
 
 def conditions(**content):
@@ -581,7 +587,7 @@ def test_a_good_condition_has_no_fault():
     assert conditions() == []
     assert conditions(vary={"layout": ["a"], "baseline_deg": [30, 60]}) == []
     assert conditions(set={"layout": "a"}, vary={"baseline_deg": [30, 60]}) == []
-    assert conditions(set={"static_frames": 0}, vary={"walk_frames": [0]}) == []
+    assert conditions(session="still", set={"static_frames": 0}) == []
     axes = {"speed_kmh": [1, 4], "stabiliser": [True, False], "walk_frames": [40]}
     assert conditions(vary={**axes, "seed": [1, 2], "click_seed": [1, 2]}) == []
     assert conditions(vary={**axes, "walk_frames": [40, 80], "world": [{}, {}]}) == []
@@ -592,7 +598,7 @@ def test_a_good_condition_has_no_fault():
     [
         (
             {"session": "nowhere"},
-            ["speed.session: expected one of ['gym', 'hall'], found 'nowhere'"],
+            ["speed.session: expected one of ['gym', 'hall', 'still'], found 'nowhere'"],
         ),
         ({"session": "hall"}, ["speed.session: expected a virtual session, found 'hall'"]),
         (
@@ -608,13 +614,25 @@ def test_a_good_condition_has_no_fault():
             ["speed.baseline_deg: expected it with layout a only, found b-mirror"],
         ),
         (
-            {"vary": {"static_frames": [0, 2], "walk_frames": [0, 9, 12]}},
+            {"vary": {"static_frames": [0, 2], "walk_frames": [9, 12]}},
             ["speed.static_frames: expected 1 or more with a walk", "found 0"],
+        ),
+        (
+            {"vary": {"walk_frames": [1]}},
+            ["speed.walk_frames: expected two or more", "found 1 and walks ['walk']"],
+        ),
+        (
+            {"vary": {"walk_frames": [0, 9], "seed": [1, 2]}},
+            ["speed.walk_frames: expected two or more with a walk", "found 0 and walks ['walk']"],
+        ),
+        (
+            {"session": "still", "set": {"walk_frames": 1}},
+            ["speed.walk_frames: expected two or more with a walk", "found 1 and walks []"],
         ),
         (
             {
                 "vary": {
-                    key: [1, 2] for key in ("speed_kmh", "walk_frames", "seed", "static_frames")
+                    key: [2, 3] for key in ("speed_kmh", "walk_frames", "seed", "static_frames")
                 }
             },
             [

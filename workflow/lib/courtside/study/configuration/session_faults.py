@@ -1,7 +1,7 @@
 """Faults of a session's file beyond its schema: names, files, ways to find the cameras."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from itertools import product
 from pathlib import Path
 
@@ -193,15 +193,9 @@ def _paths(content: Content) -> Iterator[tuple[str, str]]:
 
 
 def _virtual_faults(file: Path, content: Content) -> Iterator[str]:
-    virtual, walks = content["virtual"], content.get("walks", {})
     takes = [take for take in content.get("takes", {}).values() if take]
     if not content["cameras"] and not any("devices" in take.get("virtual", {}) for take in takes):
         yield f"{file}: virtual: expected cameras that it films with, found none; name them"
-    if bool(walks) != (virtual["walk_frames"] >= 2):
-        yield (
-            f"{file}: virtual.walk_frames: expected two or more with a walk and 0 without, found "
-            f"{virtual['walk_frames']} and walks {sorted(walks)}; correct one of them"
-        )
     made = ("chessboard.images", "calibration.file")
     named = [key for key, _ in _paths(content) if not key.endswith(made)]
     if named:
@@ -214,7 +208,7 @@ def _virtual_faults(file: Path, content: Content) -> Iterator[str]:
             f"{file}: court: expected a court to build the virtual hall around, found 'none'; "
             "name one"
         )
-    yield from _setting_faults(f"{file}: virtual", content["virtual"])
+    yield from _setting_faults(f"{file}: virtual", content["virtual"], content.get("walks", {}))
 
 
 def _recorded_faults(file: Path, content: Content, root: Path) -> Iterator[str]:
@@ -355,25 +349,32 @@ def _unsized(file: Path, content: Content) -> Iterator[str]:
             )
 
 
-def _setting_faults(where: str, virtual: Content) -> list[str]:
-    """Return what contradicts itself in the settings of a virtual session, one line each."""
-    if virtual["walk_frames"] and virtual.get("static_frames") == 0:
-        return [
+def _setting_faults(where: str, virtual: Content, walks: Collection[str]) -> Iterator[str]:
+    """Yield what contradicts itself in the settings of a virtual session, or its walks."""
+    n_frames = virtual["walk_frames"]
+    if n_frames == 1 or bool(walks) != bool(n_frames):
+        yield (
+            f"{where}.walk_frames: expected two or more with a walk and 0 without, found "
+            f"{n_frames} and walks {sorted(walks)}; correct one of them"
+        )
+    elif n_frames and virtual.get("static_frames") == 0:
+        yield (
             f"{where}.static_frames: expected 1 or more with a walk, whose pictures are tied to "
             "those of the empty hall, found 0; remove it or the walk"
-        ]
+        )
     if "baseline_deg" in virtual and virtual["layout"] != "a":
-        return [
+        yield (
             f"{where}.baseline_deg: expected it with layout a only, found {virtual['layout']}; "
             "remove it"
-        ]
-    return []
+        )
 
 
-def _varied_faults(where: str, virtual: Content, vary: Content) -> list[str]:
-    """Return the faults of the settings in every combination of varied values, each once."""
+def _varied_faults(where: str, base: Content, condition: Content) -> list[str]:
+    """Return the faults of the settings of all variations of a session, each once."""
+    virtual, walks = {**base["virtual"], **condition.get("set", {})}, base.get("walks", {})
+    vary = condition["vary"]
     varied = (dict(zip(vary, values, strict=True)) for values in product(*vary.values()))
-    faults = [fault for values in varied for fault in _setting_faults(where, virtual | values)]
+    faults = [line for own in varied for line in _setting_faults(where, virtual | own, walks)]
     return list(dict.fromkeys(faults))
 
 
@@ -399,8 +400,7 @@ def conditions(config_file: str, config: Content, found: dict[str, tuple]) -> li
         if base in found and "virtual" not in found[base][1]:
             faults.append(f"{where}.session: expected a virtual session, found {base!r}; name one")
         elif base in found:
-            keys = {**found[base][1]["virtual"], **condition.get("set", {})}
-            faults += _varied_faults(where, keys, condition["vary"])
+            faults += _varied_faults(where, found[base][1], condition)
         faults += [
             f"{where}: expected {key} in either `set` or `vary`, found it in both; remove one"
             for key in sorted(set(condition.get("set", {})) & set(condition["vary"]))
