@@ -50,7 +50,8 @@ configfile: str(REPOSITORY / "config" / "config.yaml")
 
 NAME = "[a-z0-9][a-z0-9_-]*"
 
-# Where faults are told to be: the files of --configfile, which come before the default one.
+# Where faults are told to be, but those of the default file's values: the files of --configfile,
+# which come before it.
 OWN_FILES = [files.seen_from(path) for path in workflow.configfiles]
 OWN_FILES = " or ".join(OWN_FILES[:-1] or OWN_FILES)
 

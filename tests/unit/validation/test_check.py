@@ -13,6 +13,7 @@ import yaml
 from courtside.geometry import camera as geometry
 from courtside.records.cameras import clicks
 from courtside.study.configuration import schemas, session_faults
+from courtside.study.configuration.sessions import Study
 from fixtures.recordings import rooms_filmed
 from fixtures.recordings.real_data import REAL, needs_real
 
@@ -216,7 +217,9 @@ def test_too_few_photos_are_told_with_keys_that_help(hall, n_photos, n_cameras):
     hall.content |= yaml.safe_load(advice)
     assert schemas.faults(hall.content, "session", "hall.yaml") == []
     found = session_faults.find(Path("config"), Path("hall.yaml"), hall.content, None, hall.root)
-    assert [*found, *session_faults.unmeasured(hall.session())] == []
+    session = hall.session()
+    study = Study({"hall": session}, {}, {}, session.parameters)
+    assert [*found, *session_faults.unmeasured(study, session)] == []
     assert hall.session().take_calibrations() == [f"sfm-n{max(2, n_photos)}"] * bool(cameras)
     if n_photos > 1:
         assert hall.said() == ([], [])

@@ -478,6 +478,47 @@ def test_takes_that_nothing_measures_are_a_fault(folder, override, parts):
     assert all(part in found for part in ["hall.yaml: ", *parts])
 
 
+def load_own(folder, session, own):
+    """Load a study of which a user's file `mine.yaml` states some keys, the others config.yaml."""
+    (folder / "sessions" / "hall.yaml").write_text(yaml.safe_dump(session))
+    config = yaml_files.read(folder / "config.yaml") | {"variations": [], "sessions": ["hall"]}
+    return configuration.load(config | own, "mine.yaml", folder, root=folder.parent)
+
+
+@pytest.mark.parametrize(
+    ("session", "own", "stands"),
+    [
+        ({}, {"fusions": ["two-robust"]}, "mine.yaml: fusions: "),
+        ({"fusions": ["two-robust"]}, {}, "{sessions}/hall.yaml: override.fusions: "),
+        ({}, {"take_calibrations": ["wand"]}, "mine.yaml: take_calibrations: "),
+        ({"take_calibrations": ["wand"]}, {}, "{sessions}/hall.yaml: override.take_calibrations: "),
+        ({"calibrations": ["file-people"]}, {}, "{folder}/config.yaml: take_calibrations: "),
+        ({}, {"calibrations": ["file-people"]}, "{folder}/config.yaml: take_calibrations: "),
+    ],
+)
+def test_takes_that_nothing_measures_are_told_where_the_value_stands(folder, session, own, stands):
+    with pytest.raises(InputError) as caught:
+        load_own(folder, SESSION | {"override": session}, own)
+    (line,) = caught.value.lines
+    assert line.startswith(stands.format(folder=folder, sessions=folder / "sessions"))
+    assert " of session hall, " in line
+
+
+def test_a_fault_is_told_of_the_file_in_which_its_value_stands(folder):
+    usual = yaml_files.read(folder / "config.yaml")
+    usual["models"], usual["sweep"]["mappers"] = ["resnet"], ["glomap"]
+    (folder / "config.yaml").write_text(yaml.safe_dump(usual))
+    own = {"plans": "none", "sweep": usual["sweep"] | {"n_offsets": 9}}
+    with pytest.raises(InputError) as caught:
+        load_own(folder, SESSION, own)
+    assert [line.split(": expected")[0] for line in caught.value.lines] == [
+        "mine.yaml: plans",
+        f"{folder}/config.yaml: sweep.mappers.0",
+        "mine.yaml: sweep.n_offsets",
+        f"{folder}/config.yaml: models",
+    ]
+
+
 def test_a_session_may_say_that_its_takes_are_not_measured(folder):
     study = load(folder, SESSION | {"override": {"take_calibrations": []}})
     assert study.sessions["hall"].take_calibrations() == []

@@ -100,3 +100,24 @@ def test_what_would_fill_time_or_memory_is_one_line_at_once(tmp_path, text, foun
 def test_the_mark_that_windows_puts_first_is_left_out(tmp_path):
     (tmp_path / "f.yaml").write_bytes(b"\xef\xbb\xbfa: 1\n")
     assert yaml_files.read(tmp_path / "f.yaml") == {"a": 1}
+
+
+@pytest.mark.parametrize(
+    ("key", "file"),
+    [
+        ("a", "mine.yaml"),
+        ("b.c", "config.yaml"),
+        ("b.d", "mine.yaml"),
+        ("b", "mine.yaml"),
+        ("e.0", "config.yaml"),
+        ("f", "mine.yaml"),
+        ("top level", "mine.yaml"),
+    ],
+)
+def test_a_value_stands_in_the_default_file_if_that_has_the_same_one(tmp_path, key, file):
+    default = tmp_path / "config.yaml"
+    default.write_text("a: 1\nb: {c: 2, d: 3}\ne: [4]\n")
+    merged = {"a": 0, "b": {"c": 2, "d": 5}, "e": [4], "f": 6}
+    found = yaml_files.file_of(key, merged, "mine.yaml", default)
+    assert found == (str(default) if file == "config.yaml" else file)
+    assert yaml_files.file_of(key, merged, "mine.yaml", tmp_path / "absent.yaml") == "mine.yaml"

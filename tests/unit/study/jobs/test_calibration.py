@@ -251,8 +251,11 @@ def test_people_alone_place_cameras_with_their_heights_and_known_lenses(job, stu
 def test_takes_that_refine_cameras_must_be_filmed(job, study):
     session = study.sessions["players-tiny"]
     step = {**session.parameters["refine_cameras"], "takes": ["shot", "nothing"]}
-    asking = replace(session, parameters={**session.parameters, "refine_cameras": step})
-    one = job(replace(study, sessions={"players-tiny": asking}), session="players-tiny")
+    parameters = {**study.parameters, "refine_cameras": step}
+    asking = replace(session, parameters=parameters)
+    wanting = replace(study, sessions={"players-tiny": asking}, parameters=parameters)
+    one = job(wanting, session="players-tiny")
     one = replace(one, wildcards={**one.wildcards, "calibration": "known-people"})
-    with pytest.raises(InputError, match=r"expected filmed takes of .* found \['nothing'\]"):
+    said = r"expected filmed takes of session players-tiny, \['shot', .* found \['nothing'\]"
+    with pytest.raises(InputError, match=rf"^config/tiny.yaml: refine_cameras.takes: {said}"):
         calibration.refining(one)

@@ -7,5 +7,5 @@ session_faults, take_faults, sighting_faults, model_faults: what schemas cannot 
 consent: `refusing`, `withheld` and `left_out` say what persons have not agreed to
 plans: `read` a session that is only planned
 schemas: `read` a file that a JSON schema describes, `faults` in words
-yaml_files: `read` YAML without duplicate keys
+yaml_files: `read` YAML without duplicate keys; `file_of`, in which a value stands
 """

@@ -3,7 +3,7 @@
 import difflib
 import itertools
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from courtside.study.configuration import (
@@ -13,6 +13,7 @@ from courtside.study.configuration import (
     session_files,
     sessions,
     take_faults,
+    yaml_files,
 )
 from courtside.study.configuration.sessions import Model, Session, Study
 from courtside.study.configuration.yaml_files import Content
@@ -32,11 +33,31 @@ NAME = re.compile(
 def load(config: Content, config_file: str, folder: StrPath, root: StrPath = ".") -> Study:
     """Check the whole configuration and return what it says.
 
-    `config` is merged, as Snakemake gives it, and `config_file` its name, for messages. `folder` is
-    config/ with sessions/, skeletons/ and the registers of models, detectors and artefacts;
-    relative paths in them start from `root`. An `InputError` has every fault of every file.
+    `config` is merged, as Snakemake gives it, from config.yaml and a user's `config_file`, whose
+    name is for messages. `folder` is config/ with sessions/, skeletons/ and the registers of
+    models, detectors and artefacts; relative paths in them start from `root`. An `InputError` has
+    every fault of every file.
     """
-    folder = Path(folder)
+    try:
+        return _study(config, config_file, Path(folder), root)
+    except InputError as error:
+        default = Path(folder) / sessions.DEFAULT
+        raise InputError(*_placed(error.lines, config, config_file, default)) from None
+
+
+def _placed(faults: Iterable[str], config: Content, own: str, default: Path) -> Iterator[str]:
+    """Yield faults, those of the study with the file in which the value of their key stands."""
+    for line in faults:
+        if line.startswith(f"{own}: "):
+            told = line.removeprefix(f"{own}: ")
+            key = told.partition(": ")[0]
+            yield f"{yaml_files.file_of(key, config, own, default)}: {told}"
+        else:
+            yield line
+
+
+def _study(config: Content, config_file: str, folder: Path, root: StrPath) -> Study:
+    """Return the study that `load` returns, or raise its faults."""
     faults: list[str] = []
     external = _checked(folder / "external.yaml", "external", faults)
     models = _checked(folder / "models.yaml", "models", faults)
@@ -69,8 +90,9 @@ def load(config: Content, config_file: str, folder: StrPath, root: StrPath = "."
         models=_models(models, detectors, found),
         parameters=config,
         folder=folder,
+        file=config_file,
     )
-    if faults := [*_device_faults(study), *_layout_faults(study, config_file)]:
+    if faults := [*_take_faults(study), *_layout_faults(study, config_file)]:
         raise InputError(*faults)
     return study
 
@@ -91,6 +113,13 @@ def _override_faults(file: Path, content: Content, models: Content | None) -> li
     wanted = content.get("override", {}).get("models", [])
     there = [*(models or wanted), *take_faults.imported(content)]
     return take_faults.unknown(f"{file}: override.models", wanted, there)
+
+
+def _take_faults(study: Study) -> Iterator[str]:
+    """Yield why takes cannot be measured as their sessions and the study together ask."""
+    for session in study.sessions.values():
+        yield from session_faults.unmeasured(study, session)
+    yield from _device_faults(study)
 
 
 def _device_faults(study: Study) -> Iterator[str]:
@@ -144,10 +173,7 @@ def _models(models: Content, detectors: Content, found: dict[str, tuple]) -> dic
 
 
 def _sessions(config: Content, found: dict[str, tuple], root: StrPath) -> dict[str, Session]:
-    """Return the sessions of the files, and the variations that conditions make of them.
-
-    An `InputError` names those of whose takes nothing is measured.
-    """
+    """Return the sessions of the files, and the variations that conditions make of them."""
     made = {
         name: session_files.session(name, file, content, config, root)
         for name, (file, content) in found.items()
@@ -155,8 +181,6 @@ def _sessions(config: Content, found: dict[str, tuple], root: StrPath) -> dict[s
     for name in config["variations"]:
         condition = config["conditions"][name]
         made |= session_files.variations(made[condition["session"]], name, condition)
-    if faults := [line for one in made.values() for line in session_faults.unmeasured(one)]:
-        raise InputError(*dict.fromkeys(faults))
     return made
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from courtside.study.configuration import consent, sighting_faults, take_faults
 from courtside.study.configuration.session_files import has_places, is_there, of_configuration
-from courtside.study.configuration.sessions import Session
+from courtside.study.configuration.sessions import Session, Study
 from courtside.study.configuration.yaml_files import Content
 from courtside.study.execution.artefacts import Artefact
 from courtside.study.paths import CAMERAS, EXTERNAL, VIRTUAL
@@ -68,19 +68,21 @@ def _name_faults(file: Path, content: Content) -> Iterator[str]:
         yield f"{file}: walks.{name}: expected a name that no camera has, found {name!r}; rename it"
 
 
-def unmeasured(session: Session) -> Iterator[str]:
+def unmeasured(study: Study, session: Session) -> Iterator[str]:
     """Yield why nothing of a session's takes is measured, unless its lists are empty for that."""
-    takes, where = [take for take in session.takes.values() if len(take.cameras) > 1], session.file
+    takes = [take for take in session.takes.values() if len(take.cameras) > 1]
     ways, wanted = session.calibrations(), session.parameters["take_calibrations"]
     if takes and ways and wanted and not session.take_calibrations():
         yield (
-            f"{where}: take_calibrations: expected one of the session's calibrations {ways}, by "
-            f"which its takes are measured, found {wanted}; name one in both lists, or none here"
+            f"{study.where(session, 'take_calibrations')}: expected one of the calibrations {ways} "
+            f"of session {session.name}, by which its takes are measured, found {wanted}; name one "
+            "in both lists, or none in the session's `override`"
         )
     if takes and ways and wanted and not any(map(session.fusions_of, takes)):
         yield (
-            f"{where}: fusions: expected one whose cameras film a take, found "
-            f"{session.parameters['fusions']}; add all-robust, or its set of cameras to `views`"
+            f"{study.where(session, 'fusions')}: expected one whose cameras film a take of session "
+            f"{session.name}, found {session.parameters['fusions']}; add all-robust, or its set of "
+            "cameras to the session's `views`"
         )
 
 

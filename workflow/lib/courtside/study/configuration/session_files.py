@@ -88,8 +88,7 @@ def session(
         cameras=cameras,
         takes={key: take for key, take in takes.items() if key not in withheld},
         withheld=withheld,
-        **_calibration(content),
-        static_points=of_configuration(content.get("static_points"), config),
+        **_calibration(content, config),
         people=of_configuration(content.get("people"), config),
         walks=recordings.get("walks") or {k: w.get("video") or w["images"] for k, w in walks},
         court_points=recordings.get("court_points") or clicked,
@@ -102,6 +101,7 @@ def session(
         views={key: tuple(cameras) for key, cameras in content.get("views", {}).items()},
         halfbody=content.get("halfbody"),
         parameters=_merged(parameters, content.get("override", {})),
+        override=content.get("override", {}),
     )
 
 
@@ -114,13 +114,14 @@ def _point_sets(court_yaml: Path) -> frozenset[int] | None:
     return frozenset(map(len, [court["points"], *court["sets"].values()]))
 
 
-def _calibration(content: Content) -> dict[str, Any]:
+def _calibration(content: Content, config: Path) -> dict[str, Any]:
     """Return a session's fields of how its cameras are calibrated, but for court points."""
     given = content.get("calibration", {})
     return {
         "also_known": "known" in content.get("override", {}).get("calibrations", []),
         "board": content.get("board"),
         "wand": content.get("wand"),
+        "static_points": of_configuration(content.get("static_points"), config),
         "known_lengths": tuple(content.get("known_lengths", ())),
         "calibration_file": given.get("file"),
         "calibration_override": {key: given[key] for key in OVERRIDDEN if key in given},

@@ -6,11 +6,12 @@ from pathlib import Path
 from typing import Any
 
 from courtside.study import paths
-from courtside.study.configuration import consent
+from courtside.study.configuration import consent, yaml_files
 from courtside.study.execution import files
 from courtside.study.execution.artefacts import Artefact
 from courtside.study.methods import ALONE, HALFBODY, Calibration, Fusion, Variant, distinct_offsets
 
+DEFAULT = "config.yaml"  # in config/, over which a user's files are merged
 DEFAULT_DETECTOR = "blazepose-detector"  # of config/detectors.yaml
 ONE_STAGE = ("rtmo", "yolo-pose")  # decoders of networks that find persons themselves
 
@@ -130,6 +131,7 @@ class Session:
     # Takes that are not among `takes`, because persons in them have not agreed to be measured: who,
     # by take
     withheld: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    override: dict[str, Any] = field(default_factory=dict)  # what of `parameters` its file states
 
     def calibration_camera_names(self) -> dict[str, str]:
         """Return for each camera its name in the calibration file."""
@@ -353,6 +355,7 @@ class Study:
     models: dict[str, Model]
     parameters: dict[str, Any]  # the study's configuration as checked
     folder: Path = Path("config")
+    file: str = ""  # the file or files that a user gave it in, for messages
 
     def takes(self) -> Iterator[tuple[Session, Take]]:
         """Yield every take with its session."""
@@ -365,6 +368,13 @@ class Study:
         pairs = [name.split("/") for name in names]
         found = [(self.sessions[s], t) for s, t in pairs if s in self.sessions]
         return [(session, session.takes[take]) for session, take in found if take in session.takes]
+
+    def where(self, session: Session, key: str) -> str:
+        """Return file and key in which a parameter of a session stands, for messages."""
+        if yaml_files.same(key, session.override, session.parameters):
+            return f"{session.file}: override.{key}"
+        file = yaml_files.file_of(key, self.parameters, self.file, self.folder / DEFAULT)
+        return f"{file}: {key}"
 
     def stages(self, model: str) -> tuple[str, ...]:
         """Return the stages of a network's skeletons; the last is the best.

@@ -62,6 +62,27 @@ def read(path: StrPath) -> Content:
     return content
 
 
+def file_of(key: str, content: Content, own: str, default: Path) -> str:
+    """Return the file in which the value of a key such as `sweep.n_images` stands, for messages.
+
+    Of a content that was merged from a `default` file and a user's `own`: the default one if it
+    has the same value.
+    """
+    return str(default) if default.is_file() and same(key, content, read(default)) else own
+
+
+def same(key: str, one: Any, other: Any) -> bool:
+    """Return whether two contents have the same value of a key.
+
+    Where `one` does not have the key, the last level of it that `one` has is compared.
+    """
+    for part in key.split("."):
+        if not (isinstance(one, dict) and part in one):
+            break
+        one, other = one[part], other.get(part) if isinstance(other, dict) else None
+    return one == other
+
+
 def _advice(problem: str) -> str:
     """Return what to do about PyYAML's words for the commonest mistakes."""
     if "'\\t'" in problem:

@@ -124,8 +124,8 @@ def wanted_takes(job: Job) -> list[str]:
     wanted = job.step("refine_cameras")["takes"] or known
     if missing := [name for name in wanted if name not in known]:
         raise InputError(
-            f"{job.session.file}: refine_cameras: takes: expected filmed takes of {known}, found "
-            f"{missing}; name others, or null for all"
+            f"{job.study.where(job.session, 'refine_cameras.takes')}: expected filmed takes of "
+            f"session {job.session.name}, {known}, found {missing}; name others, or null for all"
         )
     return list(wanted)
 
