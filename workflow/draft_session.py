@@ -17,15 +17,20 @@ sys.path.insert(0, str(REPOSITORY / "workflow" / "lib"))
 
 from courtside.drafting import draft, guess, survey
 from courtside.drafting import names as file_names
+from courtside.study.configuration.configuration import RESERVED
 from courtside.study.errors import InputError
+
+# Files of config/ that no session's study may replace.
+CONFIG_FILES = ("config", "derived_joints", "detectors", "external", "full", "models", "tiny")
 
 
 def main(folder, name, court, sessions):
     """Draft one session and return the lines to print."""
     check_court(court)
+    name = name or file_names.name(folder.resolve().name, "session1")
+    check_name(name)
     recordings = survey.survey(folder, root=Path.cwd())
     found = guess.guess(recordings)
-    name = name or file_names.name(folder.resolve().name, "session1")
     written = survey.written(folder, Path.cwd())
     path = sessions / f"{name}.yaml"
     title = folder.resolve().name
@@ -44,6 +49,16 @@ def check_court(court):
         raise InputError(
             f"--court: expected one of {', '.join(known)}, found {court}; correct it, or add "
             f"{shown(COURTS / f'{court}.yaml')}"
+        )
+
+
+def check_name(name):
+    """Refuse the name of a session that no session, or no study of a session, may have."""
+    taken = sorted({*RESERVED, *CONFIG_FILES})
+    if name in taken:
+        raise InputError(
+            f"--name: expected another name than {', '.join(taken)}, which config/ or results/ "
+            f"have for files of their own, found {name}; give the session another name"
         )
 
 

@@ -141,19 +141,43 @@ def run(root, *arguments):
     return subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
 
 
-@pytest.mark.parametrize("court", ["Badminton", "curling", "../courts/badminton"])
-def test_an_unknown_court_is_refused_with_those_that_there_are(gym, court, monkeypatch):
+def refused(gym, monkeypatch, *words):
+    """Return the one line with which the program refuses some words."""
     (gym / "sessions").mkdir(exist_ok=True)
-    words = ["data/My Gym", "--court", court, "--name", "with-court"]
     monkeypatch.chdir(gym)
     monkeypatch.setattr(sys, "argv", [str(PROGRAM), *words, "--sessions", str(gym / "sessions")])
     with pytest.raises(SystemExit) as ended:
         runpy.run_path(str(PROGRAM), run_name="__main__")
-    known = "none, badminton, basketball, futsal, rectangle-10x5, sports-hall, tennis, volleyball"
     said = ended.value.code  # a text: the exit status is 1
-    assert said.startswith(f"Error: --court: expected one of {known}, found {court}; ")
     assert len(said.splitlines()) == 1
+    return said
+
+
+@pytest.mark.parametrize("court", ["Badminton", "curling", "../courts/badminton"])
+def test_an_unknown_court_is_refused_with_those_that_there_are(gym, court, monkeypatch):
+    words = ["data/My Gym", "--court", court, "--name", "with-court"]
+    known = "none, badminton, basketball, futsal, rectangle-10x5, sports-hall, tennis, volleyball"
+    said = refused(gym, monkeypatch, *words)
+    assert said.startswith(f"Error: --court: expected one of {known}, found {court}; ")
     assert not list((gym / "sessions").glob("with-court*"))
+
+
+CONFIG = PROGRAM.parents[1] / "config"
+STUDIES = {path.stem for path in (CONFIG / "sessions").glob("*.yaml")}  # of one session each
+OF_CONFIG = {path.stem for path in CONFIG.glob("*.yaml")} - STUDIES
+
+
+@pytest.mark.parametrize("name", [*sorted(OF_CONFIG), "figures"])
+def test_a_session_is_not_called_like_a_file_of_the_configuration(gym, name, monkeypatch):
+    said = refused(gym, monkeypatch, "data/My Gym", "--name", name)
+    assert said.startswith("Error: --name: expected another name than config, ")
+    assert said.endswith(f"found {name}; give the session another name")
+    assert not (gym / "sessions" / f"{name}.yaml").exists()
+
+
+def test_a_folder_called_like_a_file_of_the_configuration_is_refused(gym, monkeypatch):
+    (gym / "data" / "Models").mkdir()
+    assert "found models; give" in refused(gym, monkeypatch, "data/Models")
 
 
 def test_a_folder_of_sessions_that_is_not_there_is_told_in_one_line(gym):
