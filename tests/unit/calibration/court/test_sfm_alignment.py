@@ -157,9 +157,10 @@ def test_a_good_court_passes_without_a_word():
     ("known", "words"),
     [
         ([at for at in range(18) if COURT.xyz[at, 2] == 0], ["all lie on the floor", "net posts"]),
-        (COURT.indices(["p01", "p02", "p17"]), ["3 are seen", "four or more"]),
+        (COURT.indices(["p01", "p02", "p17"]), ["3 are seen", "click six or more"]),
+        (COURT.indices(["p01", "p02", "p03", "p04", "p17"]), ["5 are seen", "click six or more"]),
     ],
-    ids=["floor", "three"],
+    ids=["floor", "three", "five"],
 )
 def test_weak_points_are_said(known, words):
     xyz = np.full_like(IN_SFM, np.nan)

@@ -25,6 +25,7 @@ FITTING = 0.01  # ASSUME: of the court's length: points nearer than this fit
 MAX_BEND = 0.1
 # ASSUME: points must fit this many times better with the clicks of two cameras exchanged.
 EXCHANGE_GAIN = 5.0
+CHECKED = 6  # points among which `click_checks.find_wrong_clicks` finds nearly every wrong click
 MOST_SUBSETS = 10000  # of three points each: all of 40 points
 
 
@@ -141,10 +142,10 @@ def misfit_m(court: Court, world_from_sfm: Sim3, xyz_in_sfm: NDArray) -> float:
 
 def _weak(court: Court, known: NDArray) -> list[str]:
     warnings = []
-    if known.sum() < 4:
+    if known.sum() < CHECKED:
         warnings.append(
-            f"court points: {known.sum()} are seen by two cameras: a wrong click cannot be "
-            "noticed; click four or more"
+            f"court points: {known.sum()} are seen by two cameras: too few to find a wrong click "
+            "among them; click six or more"
         )
     if np.ptp(court.xyz[known, 2]) < FLAT * np.ptp(court.xyz[known], axis=0).max():
         warnings.append(
