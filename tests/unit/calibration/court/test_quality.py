@@ -88,7 +88,7 @@ def test_points_of_which_one_alone_is_beside_a_line_are_said_to_be_unchecked(lin
     used = np.isin(COURT.points, [*line, "p02"])[:, None]
     found = of_court({name: np.where(used, xy, np.nan) for name, xy in clicks_of().items()})
     (said,) = [line for line in found["warnings"] if "a wrong click cannot be noticed" in line]
-    assert "without any one of them" in said and "\n" not in said
+    assert "without one of them, the others do not tell where" in said and "\n" not in said
 
 
 @pytest.mark.parametrize(

@@ -220,8 +220,8 @@ def _unchecked(xyz_in_sfm: NDArray) -> list[str]:
     if np.isfinite(xyz_in_sfm).all(axis=1).sum() < 4:
         return []
     return [
-        "court points: expected that the others can be aligned without any one of them, found that "
-        "they cannot: a wrong click cannot be noticed; click more points that are not on one line"
+        "court points: without one of them, the others do not tell where the court is: a wrong "
+        "click cannot be noticed; click more points that are not on one line"
     ]
 
 
