@@ -76,11 +76,14 @@ def test_a_doubtful_clock_is_named_with_its_offsets():
     line = clocks.fault_line("take rally", CLOCKS)
     assert line.startswith("take rally: camera c: expected")
     assert "ambiguous (periodic), possible offsets 0.500, 1.500 s" in line
+    assert line.endswith("under clocks of the take, or film a clap that all cameras see")
     sure = {name: CLOCKS[name] for name in "ab"}
     assert all(clock.usable for clock in sure.values())
     assert clocks.fault_line("take rally", sure) == ""
     device = clocks.fault_line("take rally", CLOCKS, "device")
     assert device.startswith("take rally: device c: expected")
+    advice = "record a T-pose and a clap of the suit's wearer in view of the cameras"
+    assert device.endswith(f"give its offset_s under clocks of the take, or {advice}")
 
 
 def test_clocks_that_somebody_states_are_used():

@@ -18,7 +18,10 @@ NUMBERS = ("offset_s", "drift_ppm", "uncertainty_s", "drift_uncertainty_ppm")
 # ASSUME: speed of the wrist in a fast stroke, to turn an error of a clock into one of position.
 WRIST_M_S = 12.0
 FEWEST_FRAMES = 30  # ASSUME: a second of motion; with fewer, a camera's clock is not found
-NOT_USED = "give its offset_s under clocks of the take, or film a clap that all cameras see"
+NEEDED = {  # to find a clock, by what it is of
+    "camera": "film a clap that all cameras see",
+    "device": "record a T-pose and a clap of the suit's wearer in view of the cameras",
+}
 
 
 @dataclass(frozen=True)
@@ -81,7 +84,7 @@ def stated(numbers: Mapping[str, Mapping[str, Any]]) -> dict[str, Clock]:
 def fault_line(where: StrPath, clocks: Mapping[str, Clock], what: str = "camera") -> str:
     """Return a line on the first clock that may not be used; empty if none.
 
-    It begins with `where`; `what` the clocks are of.
+    It begins with `where`; `what` the clocks are of is a key of `NEEDED`.
     """
     for name, clock in clocks.items():
         if not clock.usable:
@@ -90,7 +93,7 @@ def fault_line(where: StrPath, clocks: Mapping[str, Clock], what: str = "camera"
             found += f", possible offsets {others} s" if others else ""
             return (
                 f"{where}: {what} {name}: expected a clock that the recording determines, "
-                f"found {found}; {NOT_USED}"
+                f"found {found}; give its offset_s under clocks of the take, or {NEEDED[what]}"
             )
     return ""
 
