@@ -69,8 +69,9 @@ def find(folder: StrPath, inner_corners: Sequence[int]) -> Boards:
         else:
             paths.append(path)
             found.append(xy)
+    assert size is not None  # there is a picture
     xy = np.array(found, dtype=float).reshape(-1, columns * rows, 2)
-    return Boards(tuple(paths), xy, size or (0, 0), (columns, rows), dropped)
+    return Boards(tuple(paths), xy, size, (columns, rows), dropped)
 
 
 def pictures_of(folder: StrPath) -> list[Path]:
