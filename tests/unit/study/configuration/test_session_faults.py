@@ -574,7 +574,8 @@ def test_files_of_artefacts_must_be_members(root):
 
 
 FOUND = {"gym": ("gym.yaml", VIRTUAL), "hall": ("hall.yaml", RECORDED)}
-FOUND |= {"still": ("still.yaml", UNWALKED)}
+NARROW = VIRTUAL | {"virtual": VIRTUAL["virtual"] | {"layout": "a", "baseline_deg": 30}}
+FOUND |= {"still": ("still.yaml", UNWALKED), "narrow": ("narrow.yaml", NARROW)}
 
 
 def conditions(**content):
@@ -598,7 +599,7 @@ def test_a_good_condition_has_no_fault():
     [
         (
             {"session": "nowhere"},
-            ["speed.session: expected one of ['gym', 'hall', 'still'], found 'nowhere'"],
+            ["speed.session: expected one of ['gym', 'hall', 'narrow', 'still'], found 'nowhere'"],
         ),
         ({"session": "hall"}, ["speed.session: expected a virtual session, found 'hall'"]),
         (
@@ -607,27 +608,34 @@ def test_a_good_condition_has_no_fault():
         ),
         (
             {"vary": {"baseline_deg": [30]}},
-            ["speed.baseline_deg: expected it with layout a only, found b"],
+            ["speed.vary.baseline_deg: expected it with layout a only, found b"],
         ),
         (
             {"vary": {"layout": ["a", "b-mirror"]}, "set": {"baseline_deg": 30}},
-            ["speed.baseline_deg: expected it with layout a only, found b-mirror"],
+            ["speed.set.baseline_deg: expected it with layout a only, found b-mirror"],
         ),
         (
             {"vary": {"static_frames": [0, 2], "walk_frames": [9, 12]}},
-            ["speed.static_frames: expected 1 or more with a walk", "found 0"],
+            ["speed.vary.static_frames: expected 1 or more with a walk", "found 0"],
         ),
         (
             {"vary": {"walk_frames": [1]}},
-            ["speed.walk_frames: expected two or more", "found 1 and walks ['walk']"],
+            ["speed.vary.walk_frames: expected two or more", "found 1 and walks ['walk']"],
         ),
         (
             {"vary": {"walk_frames": [0, 9], "seed": [1, 2]}},
-            ["speed.walk_frames: expected two or more with a walk", "found 0 and walks ['walk']"],
+            [
+                "speed.vary.walk_frames: expected two or more with a walk",
+                "found 0 and walks ['walk']",
+            ],
         ),
         (
             {"session": "still", "set": {"walk_frames": 1}},
-            ["speed.walk_frames: expected two or more with a walk", "found 1 and walks []"],
+            ["speed.set.walk_frames: expected two or more with a walk", "found 1 and walks []"],
+        ),
+        (
+            {"session": "narrow", "vary": {"layout": ["a", "b"]}},
+            ["speed: virtual.baseline_deg of session narrow: expected it with layout a only"],
         ),
         (
             {

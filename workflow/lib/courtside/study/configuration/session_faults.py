@@ -210,7 +210,8 @@ def _virtual_faults(file: Path, content: Content) -> Iterator[str]:
             f"{file}: court: expected a court to build the virtual hall around, found 'none'; "
             "name one"
         )
-    yield from _setting_faults(f"{file}: virtual", content["virtual"], content.get("walks", {}))
+    for key, line in _setting_faults(content["virtual"], content.get("walks", {})):
+        yield f"{file}: virtual.{key}: {line}"
 
 
 def _recorded_faults(file: Path, content: Content, root: Path) -> Iterator[str]:
@@ -351,33 +352,39 @@ def _unsized(file: Path, content: Content) -> Iterator[str]:
             )
 
 
-def _setting_faults(where: str, virtual: Content, walks: Collection[str]) -> Iterator[str]:
-    """Yield what contradicts itself in the settings of a virtual session, or its walks."""
+def _setting_faults(virtual: Content, walks: Collection[str]) -> Iterator[tuple[str, str]]:
+    """Yield the settings of a virtual session that contradict others or its walks, and why."""
     n_frames = virtual["walk_frames"]
     if n_frames == 1 or bool(walks) != bool(n_frames):
         yield (
-            f"{where}.walk_frames: expected two or more with a walk and 0 without, found "
-            f"{n_frames} and walks {sorted(walks)}; correct one of them"
+            "walk_frames",
+            f"expected two or more with a walk and 0 without, found {n_frames} and walks "
+            f"{sorted(walks)}; correct one of them",
         )
     elif n_frames and virtual.get("static_frames") == 0:
         yield (
-            f"{where}.static_frames: expected 1 or more with a walk, whose pictures are tied to "
-            "those of the empty hall, found 0; remove it or the walk"
+            "static_frames",
+            "expected 1 or more with a walk, whose pictures are tied to those of the empty hall, "
+            "found 0; remove it or the walk",
         )
     if "baseline_deg" in virtual and virtual["layout"] != "a":
         yield (
-            f"{where}.baseline_deg: expected it with layout a only, found {virtual['layout']}; "
-            "remove it"
+            "baseline_deg",
+            f"expected it with layout a only, found {virtual['layout']}; remove it",
         )
 
 
 def _varied_faults(where: str, base: Content, condition: Content) -> list[str]:
     """Return the faults of the settings of all variations of a session, each once."""
-    virtual, walks = {**base["virtual"], **condition.get("set", {})}, base.get("walks", {})
-    vary = condition["vary"]
-    varied = (dict(zip(vary, values, strict=True)) for values in product(*vary.values()))
-    faults = [line for own in varied for line in _setting_faults(where, virtual | own, walks)]
-    return list(dict.fromkeys(faults))
+    fixed, vary, walks = condition.get("set", {}), condition["vary"], base.get("walks", {})
+    places = {key: f".{part}.{key}" for part in ("set", "vary") for key in condition.get(part, {})}
+    faults: dict[str, None] = {}
+    for values in product(*vary.values()):
+        virtual = {**base["virtual"], **fixed, **dict(zip(vary, values, strict=True))}
+        for key, line in _setting_faults(virtual, walks):
+            place = places.get(key, f": virtual.{key} of session {condition['session']}")
+            faults[f"{where}{place}: {line}"] = None
+    return list(faults)
 
 
 def _too_many_axes(where: str, vary: Content) -> list[str]:
