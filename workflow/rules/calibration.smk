@@ -39,7 +39,7 @@ rule check_cameras:
         calibration_path=lambda w: session_of(w).calibration_file,
         cameras_toml=paths.part(paths.CAMERAS, calibration="file"),
         static_csv=lambda w: session_of(w).static_points or [],
-        seen=of_job(calibration.checked_files),
+        seen=files_of(calibration.checked, "pose2d", "sync", "people"),
     output:
         check_json=paths.part(paths.CALIBRATION_CHECK, suffix="json"),
         check_csv=paths.part(paths.CALIBRATION_CHECK, suffix="csv"),
@@ -58,7 +58,7 @@ rule check_cameras:
 rule check_videos:
     input:
         cameras_toml=paths.part(paths.CAMERAS, calibration="file"),
-        pictures=of_job(calibration.pictures_of_halls),
+        pictures=files_of(calibration.halls, "pictures"),
     output:
         check_json=paths.part(paths.VIDEO_CHECK, suffix="json"),
         check_csv=paths.part(paths.VIDEO_CHECK, suffix="csv"),
@@ -241,7 +241,7 @@ rule calibrate_wand:
 
 rule calibrate_from_people:
     input:
-        files=of_job(calibration.filmed_files),
+        files=files_of(calibration.filmed, "pose2d"),
         lens_tomls=of_job(calibration.known_lenses),
         static=lambda w: session_of(w).known_lengths and session_of(w).static_points or [],
     output:
@@ -286,7 +286,7 @@ rule refine_cameras:
         court=of_job(Job.court_file),
         static=lambda w: session_of(w).static_points or [],
         skeleton=of_job(calibration.first_skeleton),
-        seen=of_job(calibration.refining_files),
+        seen=files_of(calibration.refining, "pose2d", "sync", "people"),
     output:
         cameras_toml=paths.CAMERAS,
         covariance_npz=paths.CAMERA_COVARIANCE,

@@ -120,6 +120,11 @@ def of_job(function, *args, **options):
     return lambda w: asked(function, Job(STUDY, dict(w.items())), *args, **options)
 
 
+def files_of(function, *keys):
+    """Return the input function of the files that the settings of a job name under some keys."""
+    return of_job(lambda job: paths.files_in(function(job), *keys))
+
+
 def session_of(wildcards):
     """Return the `Session` that a job belongs to."""
     return Job(STUDY, dict(wildcards.items())).session

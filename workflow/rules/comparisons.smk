@@ -152,7 +152,9 @@ rule draw_networks:
 
 rule tabulate_study:
     input:
-        files=lambda w: targets.together.tabulated_files(STUDY),
+        files=lambda w: paths.files_in(
+            targets.together.tabulated_takes(STUDY), "measures_csv", "quality_csv"
+        ),
     output:
         table_csv=paths.STUDY_TABLE,
     log:

@@ -67,7 +67,9 @@ rule evaluate_racket:
 
 rule evaluate_ways:
     input:
-        files=lambda w: evaluation.ways_files(STUDY),
+        files=lambda w: paths.files_in(
+            evaluation.ways(STUDY), "cameras", "quality", "truth", "court", "skeletons"
+        ),
     output:
         table_csv=paths.WAYS_TABLE,
     log:

@@ -191,7 +191,10 @@ rule evaluate_body_frames:
 # Of every virtual take of the study. People were found with clicked cameras; what is fitted is
 # fitted with the true ones.
 FITTED = {
-    "files": lambda w: evaluation.fitted_files(STUDY, w.model),
+    "files": lambda w: paths.files_in(
+        evaluation.fitted_takes(STUDY, w.model),
+        *("cameras", "session_truth", "pose2d", "people", "sync", "truth"),
+    ),
     "skeleton": of_job(Job.skeleton_file),
 }
 

@@ -37,7 +37,7 @@ rule build_people_page:
 
 rule build_quality_page:
     input:
-        files=of_job(pages.judged_files),
+        files=files_of(pages.judged_takes, "quality", "people", "skeleton", "pose2d", "videos"),
         assets=sorted(ASSETS.glob("[pqr]*")),
     output:
         page_html=paths.QUALITY_PAGE,
@@ -53,7 +53,7 @@ rule build_quality_page:
 
 rule build_viewer:
     input:
-        layers=of_job(pages.layer_files),
+        files=files_of(pages.layers, "file"),
         skeletons=of_job(pages.skeleton_files),
         cameras=of_job(pages.viewed_cameras),
         court=of_job(pages.viewed_court),
@@ -66,7 +66,7 @@ rule build_viewer:
     params:
         code=code("build_viewer.py"),
         title=lambda w: f"{w.session}, {w.take}",
-        layers=of_job(pages.layer_settings),
+        layers=of_job(pages.layers),
     script:
         "../scripts/build_viewer.py"
 

@@ -287,7 +287,10 @@ rule find_strokes:
 # A take that failed is judged in each run: none ends as if nothing was wrong.
 rule judge_take:
     input:
-        of_job(takes.judged_files),
+        files_of(
+            takes.judged,
+            *("cameras", "people", "sync", "pose3d", "pose2d", "skeleton", "court_check"),
+        ),
     output:
         quality_csv=paths.QUALITY,
     log:

@@ -1,9 +1,9 @@
 """Put a take into one HTML page to look around in: skeletons of several methods, cameras, court.
 
-`layers` says, for each file of `paths.layers`, its `name`, the index of its skeleton in
-`paths.skeletons`, and whether it is `shown` at first; of a device also the `person`, its `source`
-in `paths.clocks`, and whether it is to be `placed` onto the first layer. A device whose clock is
-not known is left out, and the page says so.
+`layers` says of each its `file` and `name`, the index of its skeleton in `paths.skeletons`, and
+whether it is `shown` at first; of a device also the `person`, its `source` in `paths.clocks`, and
+whether it is to be `placed` onto the first layer. A device whose clock is not known is left out,
+and the page says so.
 """
 
 from courtside.calibration.court import court as court_files
@@ -21,13 +21,13 @@ def main(paths, html, *, title, layers):
     skeletons = [skeleton.read(path) for path in paths.skeletons]
     _, clocks = sync.read(paths.clocks) if paths.clocks else ("", {})
     made, notes = [], []
-    for path, layout in zip(paths.layers, layers, strict=True):
+    for layout in layers:
         name, clock = layout["name"], clocks.get(layout.get("source"))
         if clock and not clock.usable:
             notes.append(f"{name} is not shown: its clock is {clock.status} ({clock.note}).")
             continue
         layer = viewer_layers.read(
-            path,
+            layout["file"],
             name,
             skeletons[layout["skeleton"]],
             person=layout.get("person", ""),

@@ -24,7 +24,7 @@ def judge(way):
     names = points.cameras.tolist()
     cameras = footage.read(way["cameras"], way["pose2d"], way["people"], way["sync"], wanted=names)
     gathered = seen.gather(cameras, points, skeleton.read(way["skeleton"]))
-    rows = verdict.judge(gathered, by_lines(way.get("court_check")))
+    rows = verdict.judge(gathered, by_lines(way["court_check"]))
     for row in rows[rows["measure"] == verdict.WHOLE].itertuples():
         log.logger.info("%s: %s", row.verdict, row.sentence)
     return rows

@@ -90,6 +90,17 @@ def test_a_figure_has_three_formats():
     assert paths.formats(["x", "y"]) == ["x.pdf", "x.png", "x.csv", "y.pdf", "y.png", "y.csv"]
 
 
+def test_the_files_in_settings_are_those_of_some_keys_each_once():
+    one = {"sync": "s", "pose2d": ["a", "b"], "pictures": {"left": "c", "right": "a"}}
+    settings = [one, {"sync": "s", "pose2d": [], "pictures": {}, "take": "rally"}, one]
+    assert paths.files_in(settings, "pose2d", "sync", "pictures") == ["a", "b", "s", "c"]
+    assert (
+        paths.files_in([{"court": "", "truth": [], "table": None}], "court", "truth", "table") == []
+    )
+    with pytest.raises(KeyError):
+        paths.files_in(settings, "unknown")
+
+
 def test_files_of_the_configuration_exist():
     config = Path(__file__).parents[3] / "config"
     found = [

@@ -162,15 +162,15 @@ def test_a_device_of_unknown_clock_is_left_out_and_the_page_says_so(tmp_path):
     }
     clocks.write(tmp_path / "clocks.json", "cameras", found)
     paths = SimpleNamespace(
-        layers=files,
         skeletons=[CONFIG / "skeletons" / "blazepose33.yaml"],
         clocks=tmp_path / "clocks.json",
         court=None,
         cameras=None,
     )
-    layers = [{"name": "raw", "skeleton": 0, "shown": True}]
+    layers = [{"file": files[0], "name": "raw", "skeleton": 0, "shown": True}]
     device = {"skeleton": 0, "shown": False, "person": "p1", "placed": True}
-    layers += [{**device, "name": name, "source": name} for name in ("suit", "depth")]
+    names = zip(files[1:], ("suit", "depth"), strict=True)
+    layers += [{**device, "file": file, "name": name, "source": name} for file, name in names]
     script = runpy.run_path(str(CONFIG.parent / "workflow" / "scripts" / "build_viewer.py"))
     script["main"](paths, tmp_path / "page.html", title="t", layers=layers)
     held = Stores((tmp_path / "page.html").read_text()).held

@@ -189,9 +189,7 @@ def test_a_take_is_judged_in_each_way_in_which_it_is_measured(job, study):
     }
     assert first["pose3d"] == f"{folder}/pose3d/file/all-robust/blazepose-full.npz"
     assert first["pose2d"][0] == f"{folder}/pose2d/blazepose-full/cam01.npz"
-    named = takes.judged_files(one)
-    assert len(named) == len(set(named)) and set(first["pose2d"]) < set(named)
-    assert {first[key] for key in ("cameras", "people", "sync", "pose3d", "skeleton")} < set(named)
+    assert first["court_check"] == ""
 
 
 def test_only_a_take_that_failed_is_judged_in_each_run(job, tmp_path, monkeypatch):

@@ -59,7 +59,6 @@ def test_the_table_of_the_study_has_measures_of_motion_and_of_feet(study):
     assert [one["camera_errors"] for one in rows] == [True, False]
     assert {one["quality_csv"] for one in rows} == {f"{SHOT}/quality.csv"}
     assert rows[1]["provenance"] == f"run/provenance/{measured[1].removeprefix('results/')}.json"
-    assert set(measured) < set(together.tabulated_files(study))
     feet = {one["measures_csv"] for one in together.tabulated_takes(study)} & set(
         takes.every_footwork(study)
     )

@@ -6,8 +6,9 @@ Fill a pattern with `str.format`. Names in braces are wildcards: `session`, `tak
 the one rule that writes it.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from itertools import product
+from typing import Any
 
 RESULTS = "results"
 SESSION = "results/{session}"
@@ -214,6 +215,16 @@ def each(pattern: str, **values: str | int | Iterable[str]) -> list[str]:
     """Fill a pattern with every combination of values; the last name varies fastest."""
     lists = [[one] if isinstance(one, str | int) else one for one in values.values()]
     return [pattern.format(**dict(zip(values, chosen, strict=True))) for chosen in product(*lists)]
+
+
+def files_in(settings: Iterable[Mapping[str, Any]], *keys: str) -> list[str]:
+    """Return the files that settings name under some keys (one, a list, by name), each once."""
+    found: list[str] = []
+    for one, key in product(settings, keys):
+        named = one[key] or []
+        named = named.values() if isinstance(named, Mapping) else named
+        found += [named] if isinstance(named, str) else named
+    return list(dict.fromkeys(found))
 
 
 def formats(stems: list[str]) -> list[str]:

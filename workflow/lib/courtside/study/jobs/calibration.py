@@ -45,12 +45,6 @@ def halls(job: Job) -> list[dict[str, Any]]:
     ]
 
 
-def pictures_of_halls(job: Job) -> list[str]:
-    """Return all these pictures, each once."""
-    files = (path for hall in halls(job) for path in hall["pictures"].values())
-    return list(dict.fromkeys(files))
-
-
 def of_full_size(job: Job) -> list[str]:
     """Return of each fixed camera a picture or video of the size that its clicks are in."""
     session = job.session
@@ -105,11 +99,6 @@ def filmed(job: Job) -> list[dict[str, Any]]:
         pose2d = takes.each_camera(one, paths.POSE2D)
         found.append({"take": name, "pose2d": pose2d, "heights_m": heights_m, "timing": timing})
     return found
-
-
-def filmed_files(job: Job) -> list[str]:
-    """Return the keypoints of `filmed` in one list."""
-    return [path for take in filmed(job) for path in take["pose2d"]]
 
 
 def known_lenses(job: Job) -> list[str]:
@@ -180,22 +169,6 @@ def _seen(job: Job, way: str, names: list[str]) -> list[dict[str, Any]]:
         files = {"sync": one.fill(paths.CAMERA_CLOCKS), "people": one.fill(paths.FOUND_PEOPLE)}
         found.append({"take": name, "pose2d": takes.keypoints_2d(one), **files})
     return found
-
-
-def files_of(takes_seen: list[dict[str, Any]]) -> list[str]:
-    """Return these files in one list."""
-    every = [[*one["pose2d"], one["sync"], one["people"]] for one in takes_seen]
-    return [path for files in every for path in files]
-
-
-def checked_files(job: Job) -> list[str]:
-    """Return the files of `checked` in one list."""
-    return files_of(checked(job))
-
-
-def refining_files(job: Job) -> list[str]:
-    """Return the files of `refining` in one list."""
-    return files_of(refining(job))
 
 
 def first_skeleton(job: Job) -> Path:

@@ -97,14 +97,6 @@ def fitted_takes(study: Study, model: str, calibration: str = "known18") -> list
     return found
 
 
-def fitted_files(study: Study, model: str) -> list[str]:
-    """Return these files in one list."""
-    keys = ("cameras", "session_truth", "people", "sync", "truth")
-    takes = fitted_takes(study, model)
-    every = [path for take in takes for path in (*(take[key] for key in keys), *take["pose2d"])]
-    return list(dict.fromkeys(every))
-
-
 def pairs(job: Job) -> list[tuple[str, str]]:
     """Return the pairs of fusions of a session that are compared."""
     return [pair for pair in PAIRS if set(pair) <= set(job.every_fusion())]
@@ -215,13 +207,6 @@ def _way(study: Study, session: Session, way: str) -> dict[str, Any]:
             for fusion in fusions
         ],
     }
-
-
-def ways_files(study: Study) -> list[str]:
-    """Return these files in one list."""
-    keys = ("cameras", "quality", "truth", "court")
-    every = [[*(one[key] for key in keys if one[key]), *one["skeletons"]] for one in ways(study)]
-    return list(dict.fromkeys(path for files in every for path in files))
 
 
 def round_trip_skeletons(job: Job) -> list[str]:

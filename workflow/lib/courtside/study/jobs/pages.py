@@ -48,16 +48,6 @@ def _fused_layers(job: Job) -> list[dict[str, Any]]:
     ]
 
 
-def layer_files(job: Job) -> list[str]:
-    """Return the skeletons over time that a viewer shows."""
-    return [layer["file"] for layer in layers(job)]
-
-
-def layer_settings(job: Job) -> list[dict[str, Any]]:
-    """Return how the layers of a viewer are shown."""
-    return [{key: value for key, value in one.items() if key != "file"} for one in layers(job)]
-
-
 def skeleton_files(job: Job) -> list[Path]:
     """Return the skeletons of a viewer's layers, each once, in their order."""
     names = dict.fromkeys(layer["of"] for layer in layers(job))
@@ -93,13 +83,6 @@ def judged_takes(job: Job) -> list[dict[str, Any]]:
         pose2d = of_take.of_each(paths.POSE2D, camera=videos) if videos else []
         found.append({**entry, "pose2d": pose2d, "videos": list(videos.values())})
     return found
-
-
-def judged_files(job: Job) -> list[str]:
-    """Return the files that a session's page for quality is made of."""
-    of_takes = judged_takes(job)
-    named = {one[key] for one in of_takes for key in ("quality", "people", "skeleton")}
-    return sorted(named) + [path for one in of_takes for path in one["pose2d"] + one["videos"]]
 
 
 def known_takes(job: Job) -> list[str]:

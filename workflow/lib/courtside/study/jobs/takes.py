@@ -159,19 +159,13 @@ def judged(job: Job) -> list[dict[str, Any]]:
             "sync": paths.CAMERA_CLOCKS,
             "pose3d": paths.POSE3D,
         }
-        files = {name: one.fill(pattern) for name, pattern in patterns.items()}
-        more = {"pose2d": keypoints_2d(one), "skeleton": one.skeleton_file().as_posix()}
-        if labels["calibration"] == "file" and session.shows_court():
-            more["court_check"] = one.fill(paths.COURT_CHECK, suffix="json")
-        found.append({"labels": labels, **files, **more})
+        files: dict[str, Any] = {name: one.fill(pattern) for name, pattern in patterns.items()}
+        files["pose2d"] = keypoints_2d(one)
+        files["skeleton"] = one.skeleton_file().as_posix()
+        by_lines = labels["calibration"] == "file" and session.shows_court()
+        files["court_check"] = one.fill(paths.COURT_CHECK, suffix="json") if by_lines else ""
+        found.append({"labels": labels, **files})
     return found
-
-
-def judged_files(job: Job) -> list[str]:
-    """Return all files that a take is judged by."""
-    named = [{key: of for key, of in way.items() if key != "labels"} for way in judged(job)]
-    lists = [of if isinstance(of, list) else [of] for way in named for of in way.values()]
-    return list(dict.fromkeys(path for paths_of in lists for path in paths_of))
 
 
 def failed_before(job: Job) -> float:

@@ -131,13 +131,6 @@ def tabulated_takes(study: Study) -> list[dict[str, Any]]:
     return found
 
 
-def tabulated_files(study: Study) -> list[str]:
-    """Return the files that the table of the study is made of."""
-    names = ("measures_csv", "quality_csv")
-    found = [take[name] for take in tabulated_takes(study) for name in names]
-    return list(dict.fromkeys(filter(None, found)))
-
-
 def compared_takes(study: Study) -> list[MeasuredTake]:
     """Return the takes in which two networks are compared."""
     step = study.parameters["compare_networks"]
