@@ -11,16 +11,15 @@ TAKES = {
 CONTENT = {
     "description": "d",
     "court": "none",
-    "cameras": {"a": None, "b": None},
+    "cameras": {"a": {}, "b": {}},
     "calibration": {"file": "c.toml"},
     "takes": TAKES,
 }
 
 
 def session(p1=None, p2=None, **more):
-    return session_files.session(
-        "s", "s.yaml", CONTENT | {"subjects": {"p1": p1, "p2": p2}} | more, {}
-    )
+    content = CONTENT | {"subjects": {"p1": p1, "p2": p2}} | more
+    return session_files.session("s", "s.yaml", session_files.filled(content), {})
 
 
 def agreed(*words):
@@ -110,7 +109,7 @@ def test_an_unknown_word_is_a_programming_fault():
     [
         (agreed("pictures"), {}, ["subjects.p1.consent: expected analysis with pictures", "[]"]),
         (agreed("analysis", "faces"), {}, ["expected pictures with faces", "add it"]),
-        (None, {"blur_faces": False}, ["blur_faces: expected `faces` in the consent of p1"]),
+        ({}, {"blur_faces": False}, ["blur_faces: expected `faces` in the consent of p1"]),
     ],
 )
 def test_contradictions_are_named(person, more, parts):
@@ -124,10 +123,10 @@ def test_contradictions_are_named(person, more, parts):
     ("person", "more"),
     [
         (agreed(), {}),
-        (None, {}),
+        ({}, {}),
         (agreed("analysis", "pictures", "faces"), {"blur_faces": False}),
         (agreed("analysis"), {"blur_faces": False}),  # no picture is made, so none shows a face
-        (None, {"blur_faces": False, "virtual": {}}),
+        ({}, {"blur_faces": False, "virtual": {}}),
     ],
 )
 def test_what_holds_together_passes(person, more):
@@ -140,11 +139,11 @@ def test_recordings_of_somebody_who_withdrew_may_be_deleted(tmp_path):
         (tmp_path / name).touch()
 
     def faults(p2):
-        content = CONTENT | {"subjects": {"p1": None, "p2": p2}}
+        content = CONTENT | {"subjects": {"p1": {}, "p2": p2}}
         return list(session_faults.find(tmp_path, "gym.yaml", content, {}, tmp_path))
 
     assert faults(agreed()) == []
-    assert [line.split(":")[1] for line in faults(None)] == [
+    assert [line.split(":")[1] for line in faults({})] == [
         " takes.both.videos.a",
         " takes.both.videos.b",
     ]

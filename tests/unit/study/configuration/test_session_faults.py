@@ -22,7 +22,7 @@ OVERRIDDEN = {
 }
 VIRTUAL = {
     "court": "badminton",
-    "cameras": {"side": None, "back": None},
+    "cameras": {"side": {}, "back": {}},
     "walks": {"walk": {}},
     "virtual": {
         "preset": "plain",
@@ -64,12 +64,12 @@ SWUNG = without(BOARDED, "board") | {"wand": WAND}
 AB = {"a": "a.mp4", "b": "b.mp4"}
 PEOPLE = without(BOARDED, "board") | {"subjects": {"p1": {"height_m": 1.7}}}
 PEOPLE |= {"override": {"calibrations": ["people"]}}
-PEOPLE |= {"cameras": {"a": None, "b": None, "c": None}}
+PEOPLE |= {"cameras": {"a": {}, "b": {}, "c": {}}}
 PEOPLE |= {"takes": {"t": {"videos": AB | {"c": "w.mp4"}}}}
 LENGTHS = {"known_lengths": [{"points": ["left", "right"], "length_m": 6.1}]}
 LENGTHS |= {"static_points": "p.csv"}
 UNWALKED = without(VIRTUAL, "walks") | {"virtual": VIRTUAL["virtual"] | {"walk_frames": 0}}
-PLAYERS = VIRTUAL | {"subjects": {"p1": None}, "takes": {"shot": FILMED}}
+PLAYERS = VIRTUAL | {"subjects": {"p1": {}}, "takes": {"shot": FILMED}}
 
 
 def simulated(**settings):
@@ -99,7 +99,7 @@ def simulated(**settings):
         SWUNG | {"wand": without(WAND, "lenses") | {"program": "argus", "cameras": ["b", "a"]}},
         PEOPLE,
         PEOPLE | LENGTHS,
-        PEOPLE | LENGTHS | {"subjects": {"p1": None}},
+        PEOPLE | LENGTHS | {"subjects": {"p1": {}}},
         BOARDED | {"board": without(BOARD, "lenses")},
         {"court": "none", "cameras": {}, "walks": {"w": {"images": "w.mp4"}}},
         VIRTUAL
@@ -118,14 +118,14 @@ def test_good_sessions_have_no_fault(root, content):
             ["court: expected 'none' or one of ['badminton']", "'squash'"],
         ),
         (
-            RECORDED | {"cameras": {"a": None, "b": {"static": "b.mp4"}}},
+            RECORDED | {"cameras": {"a": {}, "b": {"static": "b.mp4"}}},
             ["cameras.a: expected `static`"],
         ),
         (
             RECORDED | {"walks": {"w": {}}},
             ["walks.w: expected `video` or `images`", "found neither"],
         ),
-        (RECORDED | {"walks": {"w": None}}, ["walks.w: expected `video` or `images`"]),
+        (RECORDED | {"walks": {"w": {}}}, ["walks.w: expected `video` or `images`"]),
         (
             RECORDED | {"walks": {"w": {"video": "x.mp4"}}},
             ["walks.w.video: expected a file", "x.mp4"],
@@ -138,7 +138,7 @@ def test_good_sessions_have_no_fault(root, content):
             RECORDED
             | {
                 "court_points": "q.csv",
-                "cameras": {"a": None, "b": {"static": "b.mp4"}},
+                "cameras": {"a": {}, "b": {"static": "b.mp4"}},
                 "walks": {},
             },
             ["court_points: expected a file", "q.csv"],
@@ -152,7 +152,7 @@ def test_good_sessions_have_no_fault(root, content):
             ["court_points: expected points of the court by their names beside `walks`"],
         ),
         (
-            ALONE | {"cameras": {"a": {"static": "a.mp4"}, "b": None}},
+            ALONE | {"cameras": {"a": {"static": "a.mp4"}, "b": {}}},
             ["cameras.b: expected `static` or a video in a take", "the size of its picture"],
         ),
         (
@@ -185,7 +185,7 @@ def test_good_sessions_have_no_fault(root, content):
             ["static_points: expected a file, found none at q.csv"],
         ),
         (
-            RECORDED | {"cameras": {"a": None, "b": None}, "walks": {}, "court_points": "q.csv"},
+            RECORDED | {"cameras": {"a": {}, "b": {}}, "walks": {}, "court_points": "q.csv"},
             ["court_points: expected a file, found none at q.csv", "give every camera `static`"],
         ),
         (
@@ -205,11 +205,11 @@ def test_good_sessions_have_no_fault(root, content):
             ["takes: expected one that fixed cameras film, for the calibration `people`"],
         ),
         (
-            PEOPLE | {"cameras": {"a": None, "b": None}, "takes": {"t": {"videos": AB}}},
+            PEOPLE | {"cameras": {"a": {}, "b": {}}, "takes": {"t": {"videos": AB}}},
             ["cameras: expected three or more for the calibration `people`, found 2"],
         ),
         (
-            PEOPLE | {"subjects": {"p1": None}},
+            PEOPLE | {"subjects": {"p1": {}}},
             ["subjects: expected `height_m` of whom takes show"],
         ),
         (
@@ -242,7 +242,7 @@ def test_good_sessions_have_no_fault(root, content):
         ),
         (
             SWUNG
-            | {"wand": without(WAND, "lenses"), "cameras": {"a": {"static": "a.mp4"}, "b": None}},
+            | {"wand": without(WAND, "lenses"), "cameras": {"a": {"static": "a.mp4"}, "b": {}}},
             ["cameras.b: expected `static` or a video in a take"],
         ),
         (
@@ -255,7 +255,7 @@ def test_good_sessions_have_no_fault(root, content):
         ),
         (
             BOARDED
-            | {"board": without(BOARD, "lenses"), "cameras": {"a": {"static": "a.mp4"}, "b": None}},
+            | {"board": without(BOARD, "lenses"), "cameras": {"a": {"static": "a.mp4"}, "b": {}}},
             ["cameras.b: expected `static` or a video in a take"],
         ),
         (
@@ -272,7 +272,7 @@ def test_good_sessions_have_no_fault(root, content):
         (
             RECORDED
             | {"cameras": {"a": {"static": "a.mp4"}}, "takes": {"t": {"videos": {"a": "a.mp4"}}}}
-            | {"subjects": {"p1": None}},
+            | {"subjects": {"p1": {}}},
             ["cameras: expected two or more, found 1"],
         ),
         (
@@ -291,7 +291,7 @@ def test_good_sessions_have_no_fault(root, content):
             ["takes.t: expected `subjects`", "name the persons of the take"],
         ),
         (
-            PLAYERS | {"takes": {"t": None}},
+            PLAYERS | {"takes": {"t": {}}},
             ["takes.t: expected the key 'virtual' and not 'videos' in a virtual session, found []"],
         ),
         (
@@ -323,46 +323,46 @@ def test_good_sessions_have_no_fault(root, content):
         ),
         (
             RECORDED
-            | {"subjects": {"p1": None}, "takes": {"t": {"devices": {"d": {"file": "d.bvh"}}}}},
+            | {"subjects": {"p1": {}}, "takes": {"t": {"devices": {"d": {"file": "d.bvh"}}}}},
             ["takes.t.devices.d.file: expected a file", "d.bvh"],
         ),
         (
             RECORDED
-            | {"subjects": {"p1": None}}
+            | {"subjects": {"p1": {}}}
             | {"takes": {"t": {"devices": {"d": {"file": "a.mp4", "subject": "p2"}}}}},
             ["takes.t.devices.d.subject: expected one of ['p1'], found 'p2'"],
         ),
         (
             RECORDED
-            | {"subjects": {"p1": None}}
+            | {"subjects": {"p1": {}}}
             | {"takes": {"t": {"devices": {"d": {"file": "a.mp4", "unit": "m"}}}}},
             ["takes.t.devices.d.unit: expected it of a file .bvh, .json, .csv only, found a.mp4"],
         ),
         (
             RECORDED
-            | {"subjects": {"p1": None}, "takes": {"t": {"devices": {"a": {"file": "a.mp4"}}}}},
+            | {"subjects": {"p1": {}}, "takes": {"t": {"devices": {"a": {"file": "a.mp4"}}}}},
             ["takes.t.devices: expected names that no camera has, found 'a'"],
         ),
         (
             RECORDED
-            | {"subjects": {"p1": None}, "takes": {"t": {"devices": {"raw": {"file": "a.mp4"}}}}},
+            | {"subjects": {"p1": {}}, "takes": {"t": {"devices": {"raw": {"file": "a.mp4"}}}}},
             ["takes.t.devices: expected names that no stage of skeletons has, found 'raw'"],
         ),
         (
             RECORDED
-            | {"subjects": {"p1": None}}
+            | {"subjects": {"p1": {}}}
             | {"takes": {"t": {"videos": {"a": "a.mp4"}, "clocks": {"up": {"offset_s": 1.0}}}}},
             ["takes.t.clocks: expected one of ['a'], found 'up'"],
         ),
         (
             RECORDED
-            | {"subjects": {"p1": None}}
+            | {"subjects": {"p1": {}}}
             | {"takes": {"t": {"videos": {"a": "a.mp4"}, "clocks": {"a": {"offset_s": 1.0}}}}},
             ["takes.t.clocks.a: expected no offset or drift of the first camera"],
         ),
         (PLAYERS | {"views": {"two": ["side", "up"]}}, ["views.two: expected one of", "'up'"]),
         (
-            RECORDED | {"subjects": {"p1": None}, "takes": {"t": FILMED}},
+            RECORDED | {"subjects": {"p1": {}}, "takes": {"t": FILMED}},
             [
                 "takes.t: expected the key 'videos', 'pose2d' or 'devices' and not 'virtual' in a "
                 "recorded session"
@@ -423,7 +423,7 @@ def test_keypoints_of_other_programs_are_checked(root, take, override, parts):
     (root / "skeletons").mkdir()
     (root / "skeletons" / "body25b.yaml").touch()
     videos = {"videos": {"a": "a.mp4", "b": "b.mp4"}}
-    content = RECORDED | {"subjects": {"p1": None}, "takes": {"t": videos | take}}
+    content = RECORDED | {"subjects": {"p1": {}}, "takes": {"t": videos | take}}
     (line,) = find(root, content | {"override": override})
     assert [part for part in parts if part not in line] == []
 
@@ -432,7 +432,7 @@ def test_a_take_without_the_keypoints_that_its_session_wants_is_named(root):
     (root / "skeletons").mkdir()
     (root / "skeletons" / "body25b.yaml").touch()
     videos = {"videos": {"a": "a.mp4", "b": "b.mp4"}}
-    content = RECORDED | {"subjects": {"p1": None}, "override": {"models": ["body25b"]}}
+    content = RECORDED | {"subjects": {"p1": {}}, "override": {"models": ["body25b"]}}
     assert find(root, content | {"takes": {"t": videos | OTHERS}}) == []
     (line,) = find(root, content | {"takes": {"t": videos | OTHERS, "u": videos}})
     assert "takes.u.pose2d: expected body25b, as override.models says, found none" in line
@@ -445,7 +445,7 @@ def unfilmed(root, **changes):
     """Return the faults of a session of keypoints without videos, some of its keys changed."""
     (root / "skeletons").mkdir(exist_ok=True)
     (root / "skeletons" / "body25b.yaml").touch()
-    session = {"court": "none", "cameras": {"a": None, "b": None}, "subjects": {"p1": None}}
+    session = {"court": "none", "cameras": {"a": {}, "b": {}}, "subjects": {"p1": {}}}
     return find(root, session | {"calibration": {"file": "c.toml"}} | ALONE_2D | changes)
 
 
@@ -459,7 +459,7 @@ def test_keypoints_need_no_videos(root):
     ("changes", "key"),
     [
         ({"cameras": RECORDED["cameras"] | {"all": {"static": "a.mp4"}}}, "cameras.all"),
-        ({"subjects": {"all": None}}, "subjects.all"),
+        ({"subjects": {"all": {}}}, "subjects.all"),
         ({"views": {"all": ["a", "b"]}}, "views.all"),
     ],
 )
@@ -477,9 +477,9 @@ def test_nothing_is_called_all(root, changes, key):
     ],
 )
 def test_the_take_of_somebody_who_withdrew_tells_no_size_of_pictures(root, key, given):
-    content = {"court": "badminton", "cameras": {"a": {"static": "a.mp4"}, "b": None}, key: given}
+    content = {"court": "badminton", "cameras": {"a": {"static": "a.mp4"}, "b": {}}, key: given}
     content |= {"takes": {"t": {"videos": AB}, "u": {"videos": AB, "subjects": ["p2"]}}}
-    assert find(root, content | {"subjects": {"p1": {"consent": []}, "p2": None}}) == []
+    assert find(root, content | {"subjects": {"p1": {"consent": []}, "p2": {}}}) == []
     (line,) = find(root, content | {"subjects": {"p1": {"consent": []}, "p2": {"consent": []}}})
     assert "cameras.b: expected `static` or a video in a take" in line
     assert "found neither in takes of persons who have agreed to analysis; add one" in line
@@ -512,7 +512,7 @@ def test_clicks_of_pictures_whose_size_nothing_tells_are_named_beside_a_file_too
             "takes.t.clocks.a: expected no offset or drift of the first camera",
         ),
         (
-            {"calibration": {"file": "c.toml"}, "cameras": {"a": None, "b": None, "c": None}}
+            {"calibration": {"file": "c.toml"}, "cameras": {"a": {}, "b": {}, "c": {}}}
             | {"takes": {"t": {"pose2d": OTHERS["pose2d"] | {"coco17": {"c": "c.toml"}}}}}
             | {"takes": {"t": {"videos": dict.fromkeys("abc", "a.mp4"), **OTHERS}}},
             "pose2d.body25b: expected a folder of each camera of the take, found none of c",
@@ -528,7 +528,7 @@ def test_keypoints_without_videos_need_a_calibration_file_and_cannot_be_steadied
     (root / "placed.csv").write_text("camera,x_px,y_px,x_m,y_m,z_m\n")
     content = ALONE_2D | {"court": "none"}
     content |= {"cameras": {"a": {"static": "a.mp4"}, "b": {"static": "b.mp4"}}}
-    content |= {"subjects": {"p1": None}, "court_points": "placed.csv"}
+    content |= {"subjects": {"p1": {}}, "court_points": "placed.csv"}
     (root / "skeletons").mkdir()
     (root / "skeletons" / "body25b.yaml").touch()
     (line,) = find(root, content)
@@ -544,7 +544,7 @@ def test_court_points_may_be_clicked_later_where_there_are_pictures_to_click_on(
 
 def test_a_session_of_devices_alone_needs_no_cameras(root):
     taken = {"t": {"devices": {"webcam": {"file": "a.mp4"}}}}
-    content = {"description": "d", "court": "none", "cameras": {}, "subjects": {"p1": None}}
+    content = {"description": "d", "court": "none", "cameras": {}, "subjects": {"p1": {}}}
     assert find(root, content | {"takes": taken}) == []
 
 
@@ -561,7 +561,7 @@ def test_a_session_of_devices_alone_needs_no_cameras(root):
 def test_of_devices_alone_the_clock_of_the_first_is_the_reference(root, files, named, n_faults):
     (root / "s.bvh").touch()
     take = {"devices": {name: {"file": file} for name, file in files.items()}}
-    content = {"description": "d", "court": "none", "cameras": {}, "subjects": {"p1": None}}
+    content = {"description": "d", "court": "none", "cameras": {}, "subjects": {"p1": {}}}
     found = find(root, content | {"takes": {"t": take | {"clocks": {named: {"offset_s": 1.0}}}}})
     message = f"takes.t.clocks.{named}: expected no offset or drift of the first device"
     assert [message in line for line in found] == [True] * n_faults
@@ -698,7 +698,7 @@ def test_a_name_that_no_disk_takes_is_a_file_that_is_not_there(root):
 def test_networks_are_compared_with_a_truth_or_with_keypoints_that_are_there(step, part):
     keypoints = {"pose2d": {"coco17": {"a": "json"}}}
     walk = {**keypoints, "videos": {"a": "a.mp4"}}
-    hall = {"takes": {"walk": walk, "unseen": keypoints, "empty": None}}
+    hall = {"takes": {"walk": walk, "unseen": keypoints, "empty": {}}}
     found = {"gym": ("gym.yaml", PLAYERS), "hall": ("hall.yaml", hall)}
     step = {"takes": {}, "networks": ["full"], "skeletons": []} | step
     lines = list(take_faults.evaluated("config.yaml", step, ["full"], found))

@@ -7,8 +7,8 @@ from courtside.study.configuration import schemas, session_files, sessions
 CONTENT = {
     "description": "d",
     "court": "hall",
-    "subjects": {"p1": None, "p2": {"height_m": 1.8}},
-    "cameras": {"a": None, "b": {"crop_px": [1, 2, 3, 4], "name_in_calibration": "B"}},
+    "subjects": {"p1": {}, "p2": {"height_m": 1.8}},
+    "cameras": {"a": {}, "b": {"crop_px": [1, 2, 3, 4], "name_in_calibration": "B"}},
     "calibration": {"file": "c.toml"},
     "takes": {
         "t1": {"videos": {"a": "1", "b": "2"}, "subjects": ["p2"], "trim_s": [0.5, 2]},
@@ -38,7 +38,7 @@ VIRTUAL = {
     "court": "badminton",
     "cameras": {
         "side": {"chessboard": {"images": "b", "inner_corners": [7, 4], "square_m": 0.06}},
-        "back": None,
+        "back": {},
     },
     "walks": {"walk": {}},
     "virtual": {
@@ -170,7 +170,7 @@ def test_a_virtual_take_gets_the_videos_of_all_cameras():
     takes = {"t1": {"virtual": filmed, "synchronised": True}}
     content = {
         **VIRTUAL,
-        "subjects": {"p1": None},
+        "subjects": {"p1": {}},
         "takes": takes,
         "views": {"two": ["side", "back"]},
     }
@@ -189,7 +189,7 @@ def test_a_virtual_device_measures_whom_the_simulation_gives_it_to():
     filmed = {"motion": "shot", "seconds": 2, "seed": 1, "players": players, "devices": devices}
     content = {
         **VIRTUAL,
-        "subjects": {"p1": None, "p2": None},
+        "subjects": {"p1": {}, "p2": {}},
         "takes": {"t1": {"virtual": filmed}},
     }
     found = session_files.session("gym", "gym.yaml", content, PARAMETERS).takes["t1"].devices
@@ -273,8 +273,8 @@ def test_points_at_rest_may_lie_beside_the_configuration(tmp_path):
 def test_a_session_says_for_all_takes_whether_cameras_share_a_clock(whole, own, expected):
     take = {"videos": {"a": "a.mp4", "b": "b.mp4"}}
     take |= {} if own == {} else {"synchronised": own}
-    content = {"description": "d", "court": "none", "subjects": {"p1": None}}
-    content |= {"cameras": {"a": {"scale": 0.5}, "b": None}, "takes": {"one": take}}
+    content = {"description": "d", "court": "none", "subjects": {"p1": {}}}
+    content |= {"cameras": {"a": {"scale": 0.5}, "b": {}}, "takes": {"one": take}}
     content |= {} if whole == {} else {"synchronised": whole}
     assert schemas.faults(content, "session", "s.yaml") == []
     found = session_files.session("s", "s.yaml", content, {})
@@ -299,3 +299,15 @@ def test_the_ending_of_a_recording_says_what_made_it_and_a_folder_is_of_a_depth_
     endings = {"a.BVH": "inertial", "a.bag": "rgbd", "a.json": "nuitrack", "a.mp4": "rgb"}
     assert {name: session_files.kind_of(name) for name in endings} == endings
     assert session_files.kind_of(f"{'long' * 100}.mp4") == "rgb"
+
+
+def test_a_name_of_which_a_file_says_nothing_is_an_empty_part():
+    content = {
+        "description": "d",
+        "cameras": {"a": None, "b": {"scale": 2.0}},
+        "takes": {"t": None},
+    }
+    filled = session_files.filled(content | {"views": {"two": ["a", "b"]}})
+    assert filled["cameras"] == {"a": {}, "b": {"scale": 2.0}}
+    assert (filled["takes"], filled["views"]) == ({"t": {}}, {"two": ["a", "b"]})
+    assert set(filled) == {*content, "views"}

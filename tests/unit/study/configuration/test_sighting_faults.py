@@ -10,8 +10,8 @@ VIDEOS = {"a": "a.mp4", "b": "b.mp4"}
 
 
 def find(seen, takes, cameras=("a", "b"), others=()):
-    subjects = {"p1": {"seen": seen}} | dict.fromkeys(others)
-    content = {"cameras": dict.fromkeys(cameras), "subjects": subjects, "takes": takes}
+    subjects = {"p1": {"seen": seen}} | {name: {} for name in others}
+    content = {"cameras": {name: {} for name in cameras}, "subjects": subjects, "takes": takes}
     return list(sighting_faults.find(FILE, content))
 
 

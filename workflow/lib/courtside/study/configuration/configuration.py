@@ -76,6 +76,7 @@ def _study(config: Content, config_file: str, folder: Path, root: StrPath) -> St
         faults += missing
         content = None if missing else _checked(file, "session", faults)
         if content is not None:
+            content = session_files.filled(content)
             faults += session_faults.find(folder, file, content, known, Path(root))
             faults += _override_faults(file, content, models)
             found[name] = (file, content)

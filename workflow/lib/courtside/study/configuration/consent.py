@@ -30,9 +30,7 @@ def stated(subject: Mapping[str, Any], virtual: bool) -> tuple[str, ...]:
 def withdrawn(subjects: Mapping[str, Any], virtual: bool) -> set[str]:
     """Return the persons of a session's file who have not agreed to be measured."""
     return {
-        name
-        for name, subject in subjects.items()
-        if "analysis" not in stated(subject or {}, virtual)
+        name for name, subject in subjects.items() if "analysis" not in stated(subject, virtual)
     }
 
 
@@ -85,7 +83,7 @@ def faults(file: Path, content: dict[str, Any]) -> Iterator[str]:
     virtual = "virtual" in content
     shown = not content.get("blur_faces", not virtual) and bool(content.get("takes"))
     for name, subject in content.get("subjects", {}).items():
-        agreed = stated(subject or {}, virtual)
+        agreed = stated(subject, virtual)
         for word in (w for w in agreed if NEEDS.get(w, w) not in agreed):
             yield (
                 f"{file}: subjects.{name}.consent: expected {NEEDS[word]} with {word}, found "

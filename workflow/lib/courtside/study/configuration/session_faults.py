@@ -25,8 +25,9 @@ def find(
 ) -> Iterator[str]:
     """Yield what in a session contradicts the rest of the configuration or the disk.
 
-    `folder` is config/, `file` the session's and `content` what it says, as its schema allows it;
-    `known` are the artefacts by name, and relative paths start from `root`.
+    `folder` is config/, `file` the session's and `content` what it says, as its schema allows it
+    and `session_files.filled` returns it; `known` are the artefacts by name, and relative paths
+    start from `root`.
     """
     cameras, subjects = content["cameras"], content.get("subjects", {})
     court, virtual = content["court"], "virtual" in content
@@ -46,8 +47,7 @@ def find(
     paths = dict(_paths(content))
     if static := of_configuration(content.get("static_points"), folder):
         paths["static_points"] = static
-    for name, given in content.get("takes", {}).items():
-        take: Content = given or {}
+    for name, take in content.get("takes", {}).items():
         yield from take_faults.find(f"{file}: takes.{name}", take, cameras, subjects, virtual)
         if not _refused(content, take):  # else its recordings may be gone
             paths |= dict(_take_paths(f"takes.{name}", take))
@@ -100,7 +100,7 @@ def _people_faults(file: Path, content: Content) -> Iterator[str]:
             f"{file}: override.calibrations: expected `people` in a session with court: none, "
             f"found court: {content['court']}; people do not tell where its lines are"
         )
-    takes = [take for take in content.get("takes", {}).values() if take]
+    takes = content.get("takes", {}).values()
     if "virtual" not in content and not any(map(take_faults.cameras_of, takes)):
         yield (
             f"{file}: takes: expected one that fixed cameras film, for the calibration `people`, "
@@ -113,7 +113,7 @@ def _people_faults(file: Path, content: Content) -> Iterator[str]:
         )
     subjects = content.get("subjects", {})
     known = "known_lengths" in content
-    if not known and not any((one or {}).get("height_m") for one in subjects.values()):
+    if not known and not any(one.get("height_m") for one in subjects.values()):
         yield (
             f"{file}: subjects: expected `height_m` of whom takes show, for the calibration "
             "`people`, found none; state it, or `known_lengths`: nothing else defines the scale"
@@ -180,14 +180,14 @@ def _paths(content: Content) -> Iterator[tuple[str, str]]:
         yield "calibration.file", content["calibration"]["file"]
     yield from _target_paths(content)
     for name, camera in content["cameras"].items():
-        if camera and "static" in camera:
+        if "static" in camera:
             yield f"cameras.{name}.static", camera["static"]
-        if camera and "chessboard" in camera:
+        if "chessboard" in camera:
             yield f"cameras.{name}.chessboard.images", camera["chessboard"]["images"]
     for name, walk in content.get("walks", {}).items():
-        for key, path in (walk or {}).items():
+        for key, path in walk.items():
             yield f"walks.{name}.{key}", path
-    still = [camera for camera in content["cameras"].values() if camera and "static" in camera]
+    still = [camera for camera in content["cameras"].values() if "static" in camera]
     clicks = content.get("court_points", "")
     clickable = len(still) == len(content["cameras"]) and not clicks.startswith(EXTERNAL)
     if clicks and not clickable:  # else the study makes a page to click them on
@@ -195,7 +195,7 @@ def _paths(content: Content) -> Iterator[tuple[str, str]]:
 
 
 def _virtual_faults(file: Path, content: Content) -> Iterator[str]:
-    takes = [take for take in content.get("takes", {}).values() if take]
+    takes = content.get("takes", {}).values()
     if not content["cameras"] and not any("devices" in take.get("virtual", {}) for take in takes):
         yield f"{file}: virtual: expected cameras that it films with, found none; name them"
     made = ("chessboard.images", "calibration.file")
@@ -216,7 +216,7 @@ def _virtual_faults(file: Path, content: Content) -> Iterator[str]:
 
 def _recorded_faults(file: Path, content: Content, root: Path) -> Iterator[str]:
     cameras, walks = content["cameras"], content.get("walks", {})
-    takes = [take for take in content.get("takes", {}).values() if take]
+    takes = content.get("takes", {}).values()
     found = {"walks", "calibration", "court_points", "board", "wand"} & set(content)
     if not found and not _asks_people(content) and (cameras or not takes):
         yield (
@@ -235,7 +235,7 @@ def _recorded_faults(file: Path, content: Content, root: Path) -> Iterator[str]:
             "folder"
         )
     for name, camera in cameras.items() if walks else ():
-        if not (camera or {}).get("static"):
+        if "static" not in camera:
             yield (
                 f"{file}: cameras.{name}: expected `static`, a recording or photo of the empty "
                 "court, found none; bridging images are tied to it"
@@ -272,7 +272,7 @@ def _board_faults(file: Path, content: Content) -> Iterator[str]:
 
 def _lens_faults(where: str, cameras: Content) -> Iterator[str]:
     """Yield the fault of a board where some cameras have a lens from a chessboard, others none."""
-    missing = sorted(name for name, one in cameras.items() if not (one or {}).get("chessboard"))
+    missing = sorted(name for name, one in cameras.items() if "chessboard" not in one)
     if 0 < len(missing) < len(cameras):
         yield (
             f"{where}: expected `chessboard` of every camera or of none, found none for "
@@ -339,11 +339,11 @@ def _point_faults(file: Path, content: Content, root: Path) -> Iterator[str]:
 
 def _unsized(file: Path, content: Content) -> Iterator[str]:
     """Yield the cameras of which nothing tells the size of the picture that points are in."""
-    takes = [take for take in content.get("takes", {}).values() if take]
+    takes = [*content.get("takes", {}).values()]
     measured = [take for take in takes if not _refused(content, take)]
     filmed = {name for take in measured for name in take.get("videos", {})}
     for name, camera in content["cameras"].items():
-        if not (camera or {}).get("static") and name not in filmed:
+        if "static" not in camera and name not in filmed:
             yield (
                 f"{file}: cameras.{name}: expected `static` or a video in a take, which tell the "
                 "size of its picture, found neither"

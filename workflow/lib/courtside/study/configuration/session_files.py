@@ -24,6 +24,7 @@ KINDS = {  # of devices, by the ending of their recording; a folder is one of a 
 # Of a take, as its record has them.
 AS_STATED = ("synchronised", "steady", "virtual", "clocks", "pose2d", "pose3d", "rate_hz")
 
+MAY_BE_EMPTY = ("subjects", "cameras", "walks", "takes")  # of which a session names some
 FOR_ALL_TAKES = ("synchronised",)  # of a session, where its takes do not say it themselves
 OVERRIDDEN = ("principal_point_px", "reason")  # of a calibration file, as its session states them
 
@@ -59,10 +60,19 @@ def of_configuration(path: str | None, folder: Path) -> str | None:
     return path if inside == (path or "") else str(folder / inside)
 
 
+def filled(content: Content) -> Content:
+    """Return what a session's file says, with `{}` for a name of which it says nothing."""
+    parts = {key: content[key] for key in MAY_BE_EMPTY if key in content}
+    return content | {
+        key: {name: {} if said is None else said for name, said in part.items()}
+        for key, part in parts.items()
+    }
+
+
 def session(
     name: str, file: StrPath, content: Content, parameters: Content, root: StrPath = "."
 ) -> Session:
-    """Build a `Session` from its checked YAML file.
+    """Build a `Session` from its checked YAML file, `filled`.
 
     Its `override` changes steps of `parameters`, the study's; relative paths start from `root`.
     """
@@ -71,12 +81,12 @@ def session(
     recordings = {} if content.get("virtual") is None else _virtual(name, content)
     shared = {key: content[key] for key in FOR_ALL_TAKES if key in content}
     takes = {
-        key: _take(key, shared | (value or {}), recordings.get("takes", {}).get(key), subjects)
+        key: _take(key, shared | value, recordings.get("takes", {}).get(key), subjects)
         for key, value in content.get("takes", {}).items()
     }
     withheld = consent.withheld(takes, subjects)
     config = Path(file).parent.parent
-    cameras = {key: _camera(value or {}) for key, value in content["cameras"].items()}
+    cameras = {key: _camera(value) for key, value in content["cameras"].items()}
     for key, path in recordings.get("static", {}).items():
         cameras[key] = replace(cameras[key], static=path)
     return Session(
@@ -181,8 +191,7 @@ def _merged(parameters: Content, override: Content) -> Content:
 
 
 def _subjects(content: Content) -> dict[str, Subject]:
-    stated = {key: value or {} for key, value in content.get("subjects", {}).items()}
-    virtual = "virtual" in content
+    stated, virtual = content.get("subjects", {}), "virtual" in content
     return {
         key: Subject(
             **{**value, "consent": consent.stated(value, virtual), "seen": sightings(value)}

@@ -13,10 +13,10 @@ def find(file: Path, content: Content) -> Iterator[str]:
 
     Of a session with several filmed takes, each entry names its take.
     """
-    filmed = {name: _cameras(take or {}, content) for name, take in _takes(content).items()}
+    filmed = {name: _cameras(take, content) for name, take in _takes(content).items()}
     for subject, stated in content.get("subjects", {}).items():
         there = [name for name, take in filmed.items() if take and _holds(content, name, subject)]
-        for entry in sightings(stated or {}):
+        for entry in sightings(stated):
             where = f"{file}: subjects.{subject}.seen"
             if "take" not in entry and len(there) != 1:
                 yield (
@@ -35,7 +35,7 @@ def _takes(content: Content) -> Content:
 
 
 def _holds(content: Content, take: str, subject: str) -> bool:
-    stated: Content = _takes(content)[take] or {}
+    stated: Content = _takes(content)[take]
     return subject in (stated if "subjects" in stated else content)["subjects"]
 
 

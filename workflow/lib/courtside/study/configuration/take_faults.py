@@ -14,7 +14,7 @@ RECORDINGS = ("videos", "pose2d", "devices")  # keys of a take that was recorded
 
 def imported(content: Content) -> list[str]:
     """Return the skeletons of keypoints that takes of a session import, each once, in order."""
-    takes = [take for take in content.get("takes", {}).values() if take]
+    takes = content.get("takes", {}).values()
     names = [name for take in takes for key in ("pose2d", "pose3d") for name in take.get(key, {})]
     return list(dict.fromkeys(names))
 
@@ -26,7 +26,7 @@ def of_other_programs(folder: Path, file: Path, content: Content) -> Iterator[st
     """
     there = sorted(path.stem for path in (folder / "skeletons").glob("*.yaml"))
     wanted = set(content.get("override", {}).get("models", []))
-    for name, take in ((n, t) for n, t in content.get("takes", {}).items() if t):
+    for name, take in content.get("takes", {}).items():
         subjects = take.get("subjects", content.get("subjects", {}))
         filmed = take.get("videos", content["cameras"])
         for key, known in (("pose2d", filmed), ("pose3d", subjects)):
@@ -105,7 +105,7 @@ def evaluated(
         _, content = found.get(session, (None, {}))
         if take not in content.get("takes", {}):
             continue
-        named = content["takes"][take] or {}
+        named = content["takes"][take]
         there = sorted(named.get("pose2d", {}))
         if "virtual" in content and against is not None:
             yield f"{where}.takes.{name}: expected null, for it has a truth, found {against!r}"
@@ -135,7 +135,7 @@ def find(
     yield from unknown(f"{where}.videos", take.get("videos", {}), cameras)
     yield from unknown(f"{where}.subjects", there, subjects)
     yield from _device_faults(where, take, cameras, there)
-    made = (take.get("virtual") or {}).get("devices", {})
+    made = take.get("virtual", {}).get("devices", {})
     recorded = [*(cameras if virtual else cameras_of(take)), *take.get("devices", {}), *made]
     yield from unknown(f"{where}.clocks", take.get("clocks", {}), recorded)
     first = _reference(take)
@@ -147,7 +147,7 @@ def find(
         )
     yield from _filmed_faults(where, take.get("virtual"), cameras, there)
     if take.get("steady") and not virtual:
-        for name in (n for n in take.get("videos", {}) if not (cameras.get(n) or {}).get("static")):
+        for name in (n for n in take.get("videos", {}) if "static" not in cameras.get(n, {})):
             yield (
                 f"{where}.steady: expected `static` of camera {name}, against which shake is "
                 "measured, found none; name a recording of the empty court"
