@@ -107,14 +107,16 @@ def test_calibration_files_that_are_used_are_checked(study):
     ]
     session = study.sessions["walk-4cams-tiny"]
     empty = replace(session, takes={}, static_points=None)
-    assert not calibration.checks_file(empty)
-    assert calibration.checks_file(replace(empty, static_points="points.csv"))
-    assert not calibration.checks_file(study.sessions["players-tiny"])
+    videos, check = calibration.every_file_check(study)
+    assert calibration.file_checks(empty) == [videos]
+    assert calibration.file_checks(replace(empty, static_points="points.csv")) == [videos, check]
+    unused = replace(session, parameters=session.parameters | {"take_calibrations": []})
+    assert calibration.file_checks(unused) == []
+    assert calibration.file_checks(study.sessions["players-tiny"]) == []
 
 
 def test_painted_lines_check_a_file_where_all_cameras_film_the_court(study):
     session = study.sessions["walk-4cams-tiny"]
-    assert not calibration.checks_court(session)
     on_court = replace(session, court="badminton")
     assert calibration.file_checks(on_court) == [
         "results/walk-4cams-tiny/calibration/file/videos.json",
@@ -122,7 +124,9 @@ def test_painted_lines_check_a_file_where_all_cameras_film_the_court(study):
         "results/walk-4cams-tiny/calibration/file/check.json",
     ]
     empty = replace(on_court, takes={}, static_points=None)
-    assert not calibration.checks_court(empty)
+    assert calibration.file_checks(empty) == [
+        "results/walk-4cams-tiny/calibration/file/videos.json"
+    ]
     filmed = {name: replace(one, static="s.mp4") for name, one in session.cameras.items()}
     assert calibration.file_checks(replace(empty, cameras=filmed)) == [
         "results/walk-4cams-tiny/calibration/file/videos.json",

@@ -24,30 +24,20 @@ def every_file_check(study: Study) -> list[str]:
 
 
 def file_checks(session: Session) -> list[str]:
-    """Return the checks of a session's calibration file: by pictures, painted lines, and others."""
+    """Return the checks of a session's calibration file; none if takes are not measured with it.
+
+    By pictures of the hall, by painted lines, and by people and static points.
+    """
+    if "file" not in session.take_calibrations():
+        return []
+    filmed = any(take.cameras for take in session.takes.values())
     checks = {
-        paths.VIDEO_CHECK: checks_videos(session),
-        paths.COURT_CHECK: checks_court(session),
-        paths.CALIBRATION_CHECK: checks_file(session),
+        paths.VIDEO_CHECK: bool(session.filmed_halls()),
+        paths.COURT_CHECK: session.shows_court(),
+        paths.CALIBRATION_CHECK: filmed or bool(session.static_points),
     }
     known = {"session": session.name, "suffix": "json"}
     return [path.format(**known) for path, is_made in checks.items() if is_made]
-
-
-def checks_videos(session: Session) -> bool:
-    """Return whether the calibration file of a session is used and pictures can check it."""
-    return "file" in session.take_calibrations() and bool(session.filmed_halls())
-
-
-def checks_court(session: Session) -> bool:
-    """Return whether the calibration file of a session is used and painted lines can check it."""
-    return "file" in session.take_calibrations() and session.shows_court()
-
-
-def checks_file(session: Session) -> bool:
-    """Return whether the calibration file of a session is used and something can check it."""
-    filmed = any(take.cameras for take in session.takes.values())
-    return "file" in session.take_calibrations() and (filmed or bool(session.static_points))
 
 
 def every_photo_model(study: Study) -> list[str]:
