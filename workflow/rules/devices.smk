@@ -39,7 +39,7 @@ rule export_device:
         "results/{session}/logs/export_device/{take}.{device}.log",
     params:
         code=code("export_device.py"),
-        person=lambda w: device_of(w).subject,
+        person=lambda w: take_of(w).person_of_devices,
     script:
         "../scripts/export_device.py"
 
@@ -57,7 +57,7 @@ rule export_source:
         source=rf"(?!cameras\.){NAME}(?<!-corrected)",
     params:
         code=code("export_source.py"),
-        person=of_job(devices.person),
+        person=lambda w: take_of(w).person_of_devices,
     script:
         "../scripts/export_source.py"
 
@@ -126,7 +126,7 @@ rule select_person:
         "results/{session}/logs/select_person/{take}.{model}.log",
     params:
         code=code("select_person.py"),
-        person=of_job(devices.person),
+        person=lambda w: take_of(w).person_of_devices,
     script:
         "../scripts/select_person.py"
 

@@ -145,7 +145,7 @@ rule evaluate_sources:
     params:
         code=code("evaluate_sources.py"),
         labels=lambda w: dict(w.items()),
-        person=of_job(devices.person),
+        person=lambda w: take_of(w).person_of_devices,
         step=step("measure_arcs"),
     script:
         "../scripts/evaluate_sources.py"
@@ -182,7 +182,7 @@ rule evaluate_body_frames:
     params:
         code=code("evaluate_body_frames.py"),
         labels=lambda w: dict(w.items()),
-        person=of_job(devices.person),
+        person=lambda w: take_of(w).person_of_devices,
         owners=of_job(devices.clocks, corrected=False),
     script:
         "../scripts/evaluate_body_frames.py"

@@ -183,7 +183,7 @@ def test_only_the_fixed_cameras_are_no_source_of_the_export_rule():
 
 
 def test_persons_and_kinds_of_devices(job, study):
-    assert devices.person(job(**CLAPS)) == "p1"
+    assert job(**CLAPS).take.person_of_devices == "p1"
     assert devices.kinds(job(**CLAPS)) == {"d415": "rgbd", "mocopi": "inertial"}
     assert devices.all_kinds(study) == {"d415": "rgbd", "mocopi": "inertial"}
 

@@ -91,6 +91,11 @@ class Take:
         folders = [] if self.videos else self.pose2d.values()
         return tuple(dict.fromkeys(name for own in (self.videos, *folders) for name in own))
 
+    @property
+    def person_of_devices(self) -> str:
+        """The person whom all its devices follow; others need a take of their own."""
+        return next(iter(self.devices.values())).subject
+
 
 @dataclass(frozen=True)
 class Session:

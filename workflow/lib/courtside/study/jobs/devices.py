@@ -68,15 +68,18 @@ def skeleton_file(job: Job) -> Path:
 
 def exported(job: Job) -> str:
     """Return the motion of a device that a file for other programs is made from, where agreed."""
-    Job(job.study, {**job.wildcards, "person": job.device.subject}).demand("export")
+    _demand_export(job)
     return job.fill(paths.DEVICE)
 
 
 def exported_source(job: Job) -> str:
     """Return the joints of a source for export; raise an error without the person's consent."""
-    source = sources(job, corrected=False)[job["source"]]
-    exported(Job(job.study, {**job.wildcards, "device": source.device}))  # demands the consent
-    return source.file
+    _demand_export(job)
+    return sources(job, corrected=False)[job["source"]].file
+
+
+def _demand_export(job: Job) -> None:
+    Job(job.study, {**job.wildcards, "person": job.take.person_of_devices}).demand("export")
 
 
 def source_skeleton(job: Job) -> Path:
@@ -100,11 +103,6 @@ def _fused(job: Job, stage: str) -> str:
     fusion = session.fusions_of(job.take)[0]
     way = {"calibration": session.take_calibrations()[0], "fusion": fusion}
     return job.fill(paths.SKELETONS, stage=stage, **way)
-
-
-def person(job: Job) -> str:
-    """Return the person whom the devices of a take follow."""
-    return next(iter(job.take.devices.values())).subject
 
 
 def clocks(job: Job, corrected: bool = True) -> dict[str, str]:
@@ -160,13 +158,12 @@ def _vision(job: Job) -> str:
 
 def fitting(job: Job) -> dict[str, Any]:
     """Return the options of the fit to a source: person and height, filter, stated errors."""
-    source = job["source"]
-    who = job.take.devices[sources(job)[source].device].subject
+    who = job.take.person_of_devices
     return {
         **job.some("filter_motion", ["max_gap_s", "cutoff_hz"]),
         "person": who,
         "height_m": job.session.subjects[who].height_m,
-        "sigma_m": source_sigmas(job)[source],
+        "sigma_m": source_sigmas(job)[job["source"]],
     }
 
 
@@ -198,7 +195,7 @@ def compared_angles(job: Job) -> dict[str, Any]:
     """Return the person, the devices and the stated errors of the sources of `fitted`."""
     names = fitted(job)
     return {
-        "person": person(job),
+        "person": job.take.person_of_devices,
         "devices": {name: device for name, device in clocks(job).items() if name in names},
         "sigma_m_of": source_sigmas(job),
     }

@@ -23,7 +23,7 @@ def layers(job: Job) -> list[dict[str, Any]]:
                     "name": name,
                     "of": source.skeleton,
                     "shown": not found,
-                    "person": devices.person(job),
+                    "person": job.take.person_of_devices,
                     "source": name.removesuffix("-corrected"),
                     "placed": bool(found),
                 }

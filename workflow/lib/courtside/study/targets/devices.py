@@ -1,6 +1,5 @@
 """What the study makes of takes with devices: figures, exports, errors of virtual ones."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 from courtside.study import paths
@@ -36,16 +35,15 @@ class DeviceTake:
         return pattern.format(**self.labels, model=self.model, **more)
 
     @property
-    def fitted(self) -> dict[str, str]:
-        """The sources to which the skeletal model is fitted, with the person of each."""
+    def fitted(self) -> list[str]:
+        """The sources to which the skeletal model is fitted."""
         kinds = {device.kind for device in self.take.devices.values()}
         fused = self.session.take_calibrations() and self.session.fusions_of(self.take)
         seen = "rgbd" in kinds or fused
-        found: dict[str, str] = {}
+        found: list[str] = []
         for name, device in self.take.devices.items():
-            corrected = (f"{name}-corrected",) if seen and device.kind == "inertial" else ()
-            sources = device.sources(name, self.metric_body)
-            found |= dict.fromkeys((*sources, *corrected), device.subject)
+            corrected = [f"{name}-corrected"] if seen and device.kind == "inertial" else []
+            found += [*device.sources(name, self.metric_body), *corrected]
         return found
 
     def true_file(self, pattern: str, **more: str) -> list[str]:
@@ -88,10 +86,9 @@ def every_device_export(study: Study) -> list[str]:
     """Return the files of devices for other programs, of persons who agreed to them."""
     found = []
     for one in device_takes(study):
-        refusing = consent.refusing(one.session, one.take, "export")
+        if one.take.person_of_devices in consent.refusing(one.session, one.take, "export"):
+            continue
         for name, device in one.take.devices.items():
-            if device.subject in refusing:
-                continue
             if device.kind == "inertial":
                 known = {**one.labels, "device": name, "suffix": EXPORTED}
                 found += paths.each(paths.DEVICE_EXPORT, **known)
@@ -100,17 +97,17 @@ def every_device_export(study: Study) -> list[str]:
                 known = {**one.labels, "source": sources, "model": one.model}
                 found += paths.each(paths.SOURCE_EXPORT, **known, suffix=POSED)
         if paths.MODELLED in one.session.parameters["export_stages"]:
-            agreed = {name: who for name, who in one.fitted.items() if who not in refusing}
-            found += _modelled(one, agreed)
+            found += _modelled(one)
     return found
 
 
-def _modelled(one: DeviceTake, sources: Mapping[str, str]) -> list[str]:
-    """Return the exported files of the skeletal model of sources, each with its person."""
+def _modelled(one: DeviceTake) -> list[str]:
+    """Return the exported files of the skeletal model of a take's sources."""
+    known = {"calibration": DEVICES, "person": one.take.person_of_devices}
     patterns = {paths.MODELLED_EXPORT: (*JOINTS, "mot", "osim"), paths.MOTION_EXPORT: POSED}
     return [
-        one.file(pattern, calibration=DEVICES, fusion=name, person=who, suffix=suffix)
-        for name, who in sources.items()
+        one.file(pattern, fusion=name, suffix=suffix, **known)
+        for name in one.fitted
         for pattern, suffixes in patterns.items()
         for suffix in suffixes
     ]
