@@ -4,7 +4,7 @@ Every file holds `format` (what it is, with a version) beside its arrays, and ne
 object.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import TypeVar, get_type_hints
 
 import numpy as np
@@ -36,10 +36,13 @@ def write(path: StrPath, form: str, spec: Spec, arrays: Mapping[str, ArrayLike])
         np.savez_compressed(stream, format=np.array(form), **checked)  # type: ignore[arg-type]
 
 
-def read(path: StrPath, form: str, spec: Spec) -> dict[str, NDArray]:
+def read(
+    path: StrPath, form: str, spec: Spec | Callable[[Collection[str]], Spec]
+) -> dict[str, NDArray]:
     """Read arrays written by `write`: one for each key of `spec`.
 
-    An `InputError` if the file is not an npz of this form, or its arrays are not as stated.
+    `spec` may be a function that returns it by the keys that the file has. An `InputError` if the
+    file is not an npz of this form, or its arrays are not as stated.
     """
     with (
         reading(path, f"an npz file ({form})"),
@@ -49,7 +52,7 @@ def read(path: StrPath, form: str, spec: Spec) -> dict[str, NDArray]:
     stated = str(found.pop("format", "no format"))
     if stated != form:
         raise InputError(f"{path}: expected format {form!r}, found {stated!r}; make it again")
-    fault = _fault(spec, found)
+    fault = _fault(spec(found) if callable(spec) else spec, found)
     if fault:
         raise InputError(f"{path}: {fault}; make it again")
     return found

@@ -3,17 +3,15 @@
 Only code that evaluates a result may read it.
 """
 
-import zipfile
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from courtside.geometry.camera import Camera
 from courtside.records import npz
-from courtside.study.errors import RAISED_BY_READERS, StrPath, reading
+from courtside.study.errors import StrPath, reading
 
 FORM = "courtside truth 1"
 SPEC = {
@@ -25,39 +23,39 @@ SPEC = {
     "court_points": ("str", ("P",)),
     "court_xyz": ("float", ("P", "3")),
 }
+OF_WALK: npz.Spec = {
+    "time_s": ("float", ("G",)),
+    "K": ("float", ("3", "3")),
+    "dist": ("float", ("L",)),
+    "cam_from_world": ("float", ("G", "3", "4")),
+    "principal_point_px": ("float", ("G", "2")),
+}
+# What is written only where a world differs from the preset.
+SOMETIMES: npz.Spec = {"readout_s": ("float", ("C",))}
+SOMETIMES_OF_WALK: npz.Spec = {
+    "focal_scale": ("float", ("G",)),
+    "row_warp_px": ("float", ("G", "2", "2")),
+    "readout_s": ("float", ()),
+}
 
 
 @dataclass(frozen=True, eq=False)
-class _Steady:
-    """The walked camera at its frames."""
-
-    # Time of each frame since the first: mid-exposure of the middle row
-    time_s: Annotated[NDArray, "float G"]
-    K: Annotated[NDArray, "float 3 3"]  # the lens without stabilisation, px
-    dist: Annotated[NDArray, "float L"]
-    cam_from_world: Annotated[NDArray, "float G 3 4"]  # pose at `time_s`, metres
-    # Principal point of each frame, which a stabiliser moves; equal to that of `K` without one
-    principal_point_px: Annotated[NDArray, "float G 2"]
-
-
-@dataclass(frozen=True, eq=False)
-class Walk(_Steady):
+class Walk:
     """The walked camera at its frames, with what a world may add that no calibration knows."""
 
+    time_s: NDArray  # (G,) of each frame since the first: mid-exposure of the middle row
+    K: NDArray  # (3, 3): the lens without stabilisation, px
+    dist: NDArray  # (L,)
+    cam_from_world: NDArray  # (G, 3, 4): pose at `time_s`, metres
+    # (G, 2): principal point of each frame, which a stabiliser moves; equal to that of `K` without
+    # one
+    principal_point_px: NDArray
     # (G,): focal length of each frame over that of `K`; None: 1
     focal_scale: NDArray | None = None
     # (G, 2, 2) px: how a stabiliser bends the rows of each frame, by
     # `virtualgym.cameras.row_warp.shifts`; None: not at all
     row_warp_px: NDArray | None = None
     readout_s: NDArray | float | None = None  # of its rolling shutter; None: the preset's
-
-
-SOMETIMES: npz.Spec = {
-    "focal_scale": ("float", ("G",)),
-    "row_warp_px": ("float", ("G", "2", "2")),
-    "readout_s": ("float", ()),
-}
-READOUT: npz.Spec = {"readout_s": ("float", ("C",))}
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,13 +97,12 @@ def write(
     for name, walk in walks.items():
         given = {key: value for key, value in vars(walk).items() if value is not None}
         arrays |= {f"{name}/{key}": value for key, value in given.items()}
-    npz.write(path, FORM, _spec(walks, arrays), arrays)
+    npz.write(path, FORM, _spec(arrays), arrays)
 
 
 def read(path: StrPath) -> Truth:
     """Read the truth of a session; raise `InputError` if the file is not one of `write`."""
-    names, stored = _walk_names(path)
-    arrays = npz.read(path, FORM, _spec(names, stored))
+    arrays = npz.read(path, FORM, _spec)
     rows = zip(
         *(arrays[key] for key in ("camera", "size", "K", "dist", "cam_from_world")), strict=True
     )
@@ -114,35 +111,26 @@ def read(path: StrPath) -> Truth:
             Camera(str(name), tuple(size.tolist()), matrix, dist, pose)
             for name, size, matrix, dist, pose in rows
         ]
+    keys = [*OF_WALK, *SOMETIMES_OF_WALK]
     walks = {
-        name: Walk(**{key: arrays[at] for key in _keys() if (at := f"{name}/{key}") in arrays})
-        for name in names
+        name: Walk(**{key: arrays[at] for key in keys if (at := f"{name}/{key}") in arrays})
+        for name in _walk_names(arrays)
     }
     known = arrays["court_points"], arrays["court_xyz"], arrays.get("readout_s")
     return Truth(cameras, walks, *known)
 
 
-def _keys() -> npz.Spec:
-    return {**npz.spec_of(_Steady), **SOMETIMES}
+def _spec(stored: Collection[str]) -> npz.Spec:
+    """Return the spec of a file with these keys."""
+    found = {**SPEC, **{key: kind for key, kind in SOMETIMES.items() if key in stored}}
+    for name in _walk_names(stored):
+        for key, (kind, dimensions) in {**OF_WALK, **SOMETIMES_OF_WALK}.items():
+            if key in OF_WALK or f"{name}/{key}" in stored:
+                # Each walk has its own number of frames.
+                own = (f"G of {name}" if length == "G" else length for length in dimensions)
+                found[f"{name}/{key}"] = kind, tuple(own)
+    return found
 
 
-def _spec(walks: Iterable[str], there: Collection[str]) -> npz.Spec:
-    # Each walk has its own number of frames G.
-    of_walks = {
-        f"{name}/{key}": (kind, tuple("G of " + name if one == "G" else one for one in dimensions))
-        for name in walks
-        for key, (kind, dimensions) in _keys().items()
-        if key not in SOMETIMES or f"{name}/{key}" in there
-    }
-    return {**SPEC, **of_walks, **(READOUT if "readout_s" in there else {})}
-
-
-def _walk_names(path: StrPath) -> tuple[list[str], list[str]]:
-    """Return the names of the walks and keys in a file; none if `npz.read` will refuse it."""
-    try:
-        with zipfile.ZipFile(path) as stored:
-            keys = [name.removesuffix(".npy") for name in stored.namelist()]
-    except RAISED_BY_READERS:
-        return [], []
-    names = [key.rpartition("/")[0] for key in keys]
-    return list(dict.fromkeys(name for name in names if name)), keys
+def _walk_names(keys: Iterable[str]) -> list[str]:
+    return list(dict.fromkeys(key.rpartition("/")[0] for key in keys if "/" in key))
