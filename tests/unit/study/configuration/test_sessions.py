@@ -197,6 +197,14 @@ def test_takes_are_measured_with_those_calibrations_that_the_study_names():
     assert found.take_calibrations() == ["known18", "known8"]
 
 
+def test_fixed_cameras_measure_a_take_that_enough_of_them_see_where_they_are_calibrated():
+    parameters = {"calibrations": WAYS, "take_calibrations": ["file"], "fusions": ["all-robust"]}
+    found = session(calibration_file="c.toml", parameters=parameters)
+    two, one = FILMED["take"], sessions.Take("one", {"a": "a.mp4"}, ())
+    assert (found.measures(two), found.measures(one)) == (True, False)
+    assert not session(parameters=parameters).measures(two)
+
+
 def test_choices_of_images_that_are_the_same_are_made_once(tmp_path):
     sweep = {"n_images": [11, 5], "n_offsets": 3, "offsets_up_to": 40, "mappers": ["global"]}
     parameters = {"sweep": sweep, "map_images": {"rule": "even"}}

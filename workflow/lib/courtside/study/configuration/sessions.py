@@ -207,6 +207,10 @@ class Session:
         needed = len(named) if Fusion.parse(fusion).rule == HALFBODY else 2
         return used if len(used) >= needed else ()
 
+    def measures(self, take: Take) -> bool:
+        """Say whether fixed cameras measure a take: there is a calibration, and a fusion of it."""
+        return bool(self.take_calibrations() and self.fusions_of(take))
+
     def variants(self) -> list[Variant]:
         """Return all structures from motion of the sweep, each choice of images once."""
         sweep = self.parameters["sweep"]

@@ -31,7 +31,7 @@ class Source:
 def sources(job: Job, corrected: bool = True) -> dict[str, Source]:
     """Return the sources of a take, the one whose clock is the reference first."""
     of_network, found = job.model.skeleton, {}
-    if job.session.fusions_of(job.take) and job.session.take_calibrations():
+    if job.session.measures(job.take):
         found[CAMERAS] = Source(job.fill(paths.CAMERA_SOURCE), of_network, CAMERAS)
     devices = sorted(job.take.devices.items(), key=lambda pair: pair[1].kind == "inertial")
     for name, device in devices:

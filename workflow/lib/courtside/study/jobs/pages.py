@@ -116,8 +116,7 @@ def first_skeleton(job: Job) -> Path:
 
 def viewed_cameras(job: Job) -> str | list:
     """Return the cameras that a viewer draws; none of a take whose views are not fused."""
-    ways = job.session.take_calibrations() if job.session.fusions_of(job.take) else []
-    return job.fill(paths.CAMERAS, calibration=ways[0]) if ways else []
+    return first_way(job, paths.CAMERAS) if job.session.measures(job.take) else []
 
 
 def viewed_court(job: Job) -> Path | list:

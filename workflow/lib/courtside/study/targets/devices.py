@@ -38,8 +38,7 @@ class DeviceTake:
     def fitted(self) -> list[str]:
         """The sources to which the skeletal model is fitted."""
         kinds = {device.kind for device in self.take.devices.values()}
-        fused = self.session.take_calibrations() and self.session.fusions_of(self.take)
-        seen = "rgbd" in kinds or fused
+        seen = "rgbd" in kinds or self.session.measures(self.take)
         found: list[str] = []
         for name, device in self.take.devices.items():
             corrected = [f"{name}-corrected"] if seen and device.kind == "inertial" else []

@@ -13,7 +13,7 @@ def every_viewer(study: Study) -> list[str]:
 
 def viewers(session: Session, take: Take) -> list[str]:
     """Return the viewer of a take, with the first network; none where there is no skeleton."""
-    if not (take.devices or (session.take_calibrations() and session.fusions_of(take))):
+    if not (take.devices or session.measures(take)):
         return []
     model = session.parameters["models"][0]
     return takes.files(paths.VIEWER, session, take, model=model)
@@ -35,8 +35,7 @@ def people_pages(session: Session, take: Take) -> list[str]:
 
     A virtual take of one subject shows nobody else, and has none.
     """
-    fused = session.take_calibrations() and session.fusions_of(take)
-    known = take.videos and fused and session.parameters["models"]
+    known = take.videos and session.measures(take) and session.parameters["models"]
     wanted = not session.virtual or len(take.subjects) > 1
     if not (known and wanted) or consent.refusing(session, take, "pictures"):
         return []

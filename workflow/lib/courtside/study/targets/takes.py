@@ -73,8 +73,7 @@ def every_verdict(study: Study) -> list[str]:
 
 def verdicts(session: Session, take: Take) -> list[str]:
     """Return the table of verdicts on a take; none without calibration or cameras to fuse."""
-    measured = session.take_calibrations() and session.fusions_of(take)
-    return files(paths.QUALITY, session, take) if measured else []
+    return files(paths.QUALITY, session, take) if session.measures(take) else []
 
 
 def every_figure(study: Study) -> list[str]:
