@@ -30,7 +30,7 @@ for artefact in STUDY.artefacts.values():
 
 rule convert_network:
     input:
-        tflite_path=of_job(recordings.network_source),
+        tflite_path=of_job(lambda job: recordings.network(job).path),
     output:
         onnx_path=paths.ONNX,
     log:
@@ -46,7 +46,7 @@ rule convert_network:
 
 rule check_network:
     input:
-        network_file=of_job(recordings.network_source),
+        network_file=of_job(lambda job: recordings.network(job).path),
         skeleton=of_job(Job.skeleton_file),
     output:
         onnx_path=paths.CHECKED_ONNX,
@@ -57,7 +57,7 @@ rule check_network:
     params:
         code=code("check_network.py"),
         part="{part}",
-        sha256=of_job(recordings.network_sha256),
+        sha256=of_job(lambda job: recordings.network(job).sha256),
         decoder=lambda w: asked(recordings.decoder, Job(STUDY, dict(w.items())), w.part),
     script:
         "../scripts/check_network.py"

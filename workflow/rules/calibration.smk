@@ -285,7 +285,7 @@ rule refine_cameras:
         clicks=of_job(calibration.unused_clicks),
         court=of_job(Job.court_file),
         static=lambda w: session_of(w).static_points or [],
-        skeleton=of_job(calibration.first_skeleton),
+        skeleton=of_job(takes.first_skeleton),
         seen=files_of(calibration.refining, "pose2d", "sync", "people"),
     output:
         cameras_toml=paths.CAMERAS,

@@ -235,7 +235,7 @@ rule evaluate_joint_errors:
 rule evaluate_skin_depths:
     input:
         lifted_npz=of_job(takes.every_take, paths.DEPTH_SOURCE),
-        truth_npz=of_job(evaluation.true_takes),
+        truth_npz=of_job(takes.every_take, paths.TRUE_TAKE),
     output:
         depths_csv=paths.SKIN_DEPTHS,
     log:
@@ -251,7 +251,7 @@ rule evaluate_skin_depths:
 rule evaluate_detection:
     input:
         pose2d_npz=of_job(takes.each_camera, paths.POSE2D),
-        take_truth_npz=of_job(evaluation.true_take),
+        take_truth_npz=of_job(Job.true_file, paths.TRUE_TAKE),
         truth_npz=of_job(Job.true_file, paths.TRUTH),
         reference_npz=of_job(evaluation.reference),
         skeleton_yaml=of_job(Job.skeleton_file),
@@ -275,7 +275,7 @@ rule evaluate_round_trip:
         sync_json=paths.CAMERA_CLOCKS,
         skeleton_yaml=of_job(Job.skeleton_file),
         derived_yaml=CONFIG / paths.DERIVED_JOINTS_YAML,
-        truth_npz=of_job(evaluation.true_take),
+        truth_npz=of_job(Job.true_file, paths.TRUE_TAKE),
     output:
         rows_csv=paths.ROUND_TRIP,
     log:

@@ -49,7 +49,7 @@ rule draw_badminton_fig06:
 
 rule draw_badminton_fig08:
     input:
-        errors_csv=of_job(figures.session_errors),
+        errors_csv=lambda w: targets.calibration.every_error([session_of(w)]),
     output:
         **session_figure("badminton_fig08"),
     log:

@@ -27,7 +27,7 @@ rule draw_court_points:
 
 rule draw_coverage:
     input:
-        errors_csv=of_job(figures.session_errors),
+        errors_csv=lambda w: targets.calibration.every_error([session_of(w)]),
     output:
         **session_figure("coverage"),
     log:

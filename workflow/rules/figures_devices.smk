@@ -95,9 +95,11 @@ rule draw_thesis_fig3:
 
 rule draw_smoothness:
     input:
-        distortion_csv=devices.smoothed(STUDY, paths.ARCS, what="distortion"),
-        errors_csv=devices.smoothed_truth(STUDY, paths.SOURCE_ERRORS),
-        truth_csv=devices.smoothed_truth(STUDY, paths.TRUE_DISTORTION),
+        distortion_csv=[
+            one.file(paths.ARCS, what="distortion") for one in targets.devices.device_takes(STUDY)
+        ],
+        errors_csv=targets.devices.every_true_file(STUDY, paths.SOURCE_ERRORS),
+        truth_csv=targets.devices.every_true_file(STUDY, paths.TRUE_DISTORTION),
     output:
         **study_figure("smoothness", "smoothness", ("single view", "sources")),
     log:

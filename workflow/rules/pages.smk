@@ -12,7 +12,7 @@ rule build_people_page:
         cameras=of_job(pages.first_way, paths.CAMERAS),
         pose2d=of_job(pages.first_keypoints),
         sync=of_job(pages.first_way, paths.CAMERA_CLOCKS),
-        skeleton=of_job(pages.first_skeleton),
+        skeleton=of_job(takes.first_skeleton),
         court=of_job(Job.court_file),
         videos=lambda w: list(take_of(w).videos.values()),
         people_csv=of_job(takes.people_csv),

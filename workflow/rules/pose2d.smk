@@ -29,7 +29,7 @@ rule detect_pose:
         decoder=of_job(recordings.decoder, "landmarks"),
         trim_s=of_job(recordings.trim_s),
         n_wanted=of_job(recordings.n_wanted),
-        recorded=of_job(recordings.recorded),
+        has_static=of_job(recordings.has_static),
     script:
         "../scripts/detect_pose.py"
 

@@ -84,7 +84,7 @@ rule name_people:
         persons=lambda w: list(take_of(w).subjects),
         stated=of_job(takes.sightings),
         take=lambda w: f"{w.session}/{w.take}",
-        page=of_job(pages.people_page),
+        page=lambda w: targets.pages.people_pages(session_of(w), take_of(w)),
         file=lambda w: session_of(w).file,
     script:
         "../scripts/name_people.py"
@@ -113,7 +113,7 @@ rule triangulate:
         step=step("triangulate"),
         sex_of=of_job(takes.sexes),
         fusion=of_job(takes.fusion),
-        recorded=of_job(takes.recorded),
+        recorded=lambda w: not session_of(w).virtual,
     script:
         "../scripts/triangulate.py"
 

@@ -15,7 +15,7 @@ from courtside.video import images, reader
 
 
 def main(
-    paths, pose2d_npz, *, camera, model, person_detector, decoder, providers, trim_s, recorded,
+    paths, pose2d_npz, *, camera, model, person_detector, decoder, providers, trim_s, has_static,
     **options,
 ):  # fmt: skip
     cv2.setNumThreads(1)
@@ -31,7 +31,7 @@ def main(
     options["clothing"] = Clothing(joints)
     track, shown = follow(frames, (detector, landmarks), paths.background, **options)
     if shown:
-        report(f"{camera}: {paths.background}", shown, recorded)
+        report(f"{camera}: {paths.background}", shown, has_static)
     found = keypoints.Keypoints2D(
         camera=camera,
         model=model,
@@ -64,10 +64,10 @@ def follow(
     return track, search.behind(empty, first, track.xy[:, 0])
 
 
-def report(picture, shown, recorded):
+def report(picture, shown, has_static):
     places = ", ".join(f"({x:.0f}, {y:.0f})" for x, y in map(middle, shown))
     found = f"{picture} shows people, around {places} px, who are found all the same"
-    if not recorded:
+    if not has_static:
         log.logger.info("%s: they hardly move, and the picture is made of the take", found)
         return
     log.logger.warning(

@@ -207,17 +207,14 @@ def test_truth_is_that_of_virtual_takes(job, study):
     )
     assert job(**CLAPS).true_file(paths.TRUE_PATHS) == paths_csv
     assert devices.thesis_truth(study) == paths_csv
-    assert devices.smoothed_truth(study, paths.TRUE_PATHS) == [paths_csv]
     real = replace(study.sessions["single-view-tiny"], virtual=None)
     study = replace(study, sessions={"single-view-tiny": real})
     assert job(study, **CLAPS).true_file(paths.TRUE_PATHS) == []
     assert devices.thesis_truth(study) == []
-    assert devices.smoothed_truth(study, paths.TRUE_PATHS) == []
 
 
-def test_arcs_of_the_thesis_and_of_all_takes_with_devices(study, studies):
+def test_arcs_of_the_thesis(study, studies):
     arcs = f"{FOLDER}/body/arcs.blazepose-full.distortion.csv"
     assert devices.thesis_file(study, "distortion") == arcs
-    assert devices.smoothed(study, paths.ARCS, what="distortion") == [arcs]
     with pytest.raises(InputError, match="expected a take of the study, found single-view-tiny"):
         devices.thesis_file(studies(sessions=["plain-tiny"]), "paths")

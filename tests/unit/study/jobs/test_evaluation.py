@@ -16,13 +16,6 @@ CLICKS = {"click_sigma_px": 1.75, "click_bias_px": 1.25, "click_loss": 4.0}
 TRUE = "results/virtual/players-tiny/takes"
 
 
-def test_truth_is_that_of_virtual_takes(job):
-    both = [f"{TRUE}/shot/truth.npz", f"{TRUE}/rally/truth.npz"]
-    assert evaluation.true_takes(job(session="players-tiny")) == both
-    assert evaluation.true_take(job(**SHOT)) == both[0]
-    assert evaluation.true_take(job(session="walk-4cams-tiny", take="balancing")) == []
-
-
 def test_recorded_takes_are_compared_with_the_imported_keypoints_that_are_named(job, study):
     assert evaluation.reference(job(**SHOT)) == []
     take = {"session": "walk-4cams-tiny", "take": "balancing"}

@@ -7,14 +7,6 @@ SHOT = {"session": "players-tiny", "take": "shot", "calibration": "known18"}
 STROKE = {**SHOT, "fusion": "all-robust", "model": "net"}
 
 
-def test_errors_of_a_session(job):
-    assert figures.session_errors(job(session="plain-tiny")) == [
-        "results/plain-tiny/evaluation/global-n12-o0.csv",
-        "results/plain-tiny/evaluation/incremental-n12-o0.csv",
-        "results/plain-tiny/evaluation/known.csv",
-    ]
-
-
 def test_axes_of_a_condition_are_its_settings_with_several_values(job, studies):
     vary = {"size_px": [[640, 360], [960, 540]], "seed": [1, 2], "stabiliser": [True, False]}
     conditions = {"wide": {"session": "plain-tiny", "vary": vary}}

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from courtside.study.configuration.sessions import Device
-from courtside.study.jobs import pages
+from courtside.study.jobs import pages, takes
 
 SHOT = {"session": "players-tiny", "take": "shot", "model": "blazepose-full"}
 CLAPS = {"session": "single-view-tiny", "take": "claps", "model": "blazepose-full"}
@@ -66,13 +66,11 @@ def test_videos_with_skeletons_are_written_as_the_study_says(job):
 def test_the_page_of_people_is_by_the_first_calibration_and_network(job):
     one = job(session="walk-4cams-tiny", take="balancing")
     folder = "results/walk-4cams-tiny/takes/balancing"
-    assert pages.people_page(one) == [f"{folder}/pages/people.html"]
     found = pages.first_way(one, "{take}/{calibration}/{model}.found.npz")
     assert found == "balancing/file/blazepose-full.found.npz"
     assert pages.first_keypoints(one)[0] == f"{folder}/pose2d/blazepose-full/cam01.npz"
-    assert pages.first_skeleton(one).name == "blazepose33.yaml"
+    assert takes.first_skeleton(one).name == "blazepose33.yaml"
     assert pages.people_target(one) == "data/walk-4cams-tiny/people.csv"
-    assert pages.people_page(job(**SHOT)) == []
 
 
 def test_takes_are_known_to_the_page_where_names_were_saved(job, study, tmp_path):

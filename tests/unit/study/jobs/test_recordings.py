@@ -65,7 +65,7 @@ def test_only_videos_of_fixed_cameras_are_trimmed(job):
 )
 def test_backgrounds_are_recorded_or_estimated_and_devices_have_none(job, wildcards, path):
     assert recordings.background(job(**wildcards)) == path
-    assert recordings.recorded(job(**wildcards)) == ("/static/" in str(path))
+    assert recordings.has_static(job(**wildcards)) == ("/static/" in str(path))
 
 
 def test_a_video_is_filmed_for_its_subjects_and_that_of_a_device_for_one_person(job, study):
@@ -83,8 +83,7 @@ def test_networks_come_from_pinned_artefacts(job, study):
     network = study.models["blazepose-full"].detector.network
     assert recordings.network(one) == network
     path = f"results/external/{network.artefact}/{network.member}"
-    assert recordings.network_source(one) == path
-    assert recordings.network_sha256(one) == network.sha256
+    assert recordings.network(one).path == path
     both = {"detector": "detector", "landmarks": "landmarks"}
     found = {part: recordings.network_file(job(model="blazepose-full"), part) for part in both}
     assert found == {part: f"results/networks/blazepose-full/{part}.onnx" for part in both}
@@ -110,8 +109,8 @@ def test_an_onnx_file_is_checked_and_run_as_it_is(job, study):
         "results/networks/mine/detector.checked.onnx"
     )
     part = job(own_models(study), model="mine", part="landmarks")
-    assert recordings.network_source(part) == "data/n.onnx"
-    assert recordings.network_sha256(part) == "0" * 64
+    assert recordings.network(part).path == "data/n.onnx"
+    assert recordings.network(part).sha256 == "0" * 64
     assert recordings.decoder(mine, "detector") == {"decoder": "yolox"}
     how = {"decoder": "simcc", "outputs": ["x", "y"], "split": 2}
     assert recordings.decoder(mine, "landmarks") == how

@@ -132,3 +132,11 @@ def test_painted_lines_check_a_file_where_all_cameras_film_the_court(study):
         "results/walk-4cams-tiny/calibration/file/videos.json",
         "results/walk-4cams-tiny/calibration/file/court.json",
     ]
+
+
+def test_errors_of_a_session_are_of_each_structure_from_motion_and_of_known_points(study):
+    assert calibration.every_error([study.sessions["plain-tiny"]]) == [
+        "results/plain-tiny/evaluation/global-n12-o0.csv",
+        "results/plain-tiny/evaluation/incremental-n12-o0.csv",
+        "results/plain-tiny/evaluation/known.csv",
+    ]

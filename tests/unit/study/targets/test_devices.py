@@ -68,6 +68,8 @@ def test_body_frames_of_virtual_takes_are_evaluated(study):
     assert devices.every_body_frame(study) == [
         "results/single-view-tiny/evaluation/takes/claps/body_frames/blazepose-full.csv"
     ]
+    real = replace(study.sessions["single-view-tiny"], virtual=None)
+    assert devices.every_body_frame(replace(study, sessions={real.name: real})) == []
 
 
 def test_a_study_without_devices_has_no_figure_of_them(studies):

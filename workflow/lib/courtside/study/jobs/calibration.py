@@ -171,11 +171,6 @@ def _seen(job: Job, way: str, names: list[str]) -> list[dict[str, Any]]:
     return found
 
 
-def first_skeleton(job: Job) -> Path:
-    """Return the skeleton of the network whose people refine cameras."""
-    return job.study.skeleton_file(job.session.parameters["models"][0])
-
-
 def ties(job: Job) -> str:
     """Return the ties of the structure from motion that a calibration rests on."""
     return job.fill(paths.TIES, **vars(_way(job).variant))

@@ -12,7 +12,7 @@ from courtside.study import paths
 from courtside.study.configuration.sessions import Study
 from courtside.study.errors import InputError
 from courtside.study.jobs.job import Job
-from courtside.study.targets.devices import DeviceTake, device_takes, thesis_take
+from courtside.study.targets.devices import DeviceTake, thesis_take
 
 OF_KIND = {"inertial": "mocopi27", "nuitrack": "nuitrack19"}  # skeletons that devices come with
 CAMERAS = "cameras"  # the source that fixed cameras give
@@ -249,13 +249,3 @@ def _thesis_take(study: Study) -> DeviceTake:
         name = study.parameters["draw_thesis_fig3"]["take"]
         raise InputError(f"draw_thesis_fig3.take: expected a take of the study, found {name}")
     return found
-
-
-def smoothed(study: Study, pattern: str, **more: str) -> list[str]:
-    """Return a file of every take with devices."""
-    return [one.file(pattern, **more) for one in device_takes(study)]
-
-
-def smoothed_truth(study: Study, pattern: str) -> list[str]:
-    """Return a file of every virtual take with devices, one that rests on its truth."""
-    return [path for one in device_takes(study) for path in one.true_file(pattern)]

@@ -22,16 +22,6 @@ PAIRS = [  # of fusions that are compared, ours first
 ]
 
 
-def true_takes(job: Job) -> list[str]:
-    """Return the truth of every take of a session."""
-    return job.of_each(paths.TRUE_TAKE, take=job.session.takes)
-
-
-def true_take(job: Job) -> str | list:
-    """Return the truth of a take where there is one."""
-    return job.true_file(paths.TRUE_TAKE)
-
-
 def reference(job: Job) -> list[str]:
     """Return the imported keypoints that a recorded take is compared with; nothing of a virtual."""
     takes = job.study.parameters["evaluate_networks"]["takes"]

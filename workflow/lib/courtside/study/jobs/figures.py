@@ -15,11 +15,6 @@ from courtside.study.targets.calibration import (
 from courtside.study.targets.together import fig05_layouts
 
 
-def session_errors(job: Job) -> list[str]:
-    """Return all tables of calibration errors of a session."""
-    return every_error([job.session])
-
-
 def condition_errors(job: Job) -> list[str]:
     """Return all tables of errors of the variations under a condition."""
     return every_error(varied(job.study, drawn_conditions(job.study)[job["condition"]]))

@@ -8,7 +8,6 @@ from courtside.study.configuration import consent
 from courtside.study.jobs import devices, takes
 from courtside.study.jobs.job import Job
 from courtside.study.methods import STAGE_WORDS
-from courtside.study.targets import pages as page_targets
 from courtside.study.targets import takes as targets
 
 
@@ -52,11 +51,6 @@ def skeleton_files(job: Job) -> list[Path]:
     """Return the skeletons of a viewer's layers, each once, in their order."""
     names = dict.fromkeys(layer["of"] for layer in layers(job))
     return [job.study.folder / paths.SKELETON_YAML.format(skeleton=name) for name in names]
-
-
-def people_page(job: Job) -> list[str]:
-    """Return the page on which persons of a take are named; nothing where none is made."""
-    return page_targets.people_pages(job.session, job.take)
 
 
 def people_target(job: Job) -> str:
@@ -107,11 +101,6 @@ def first_way(job: Job, pattern: str) -> str:
 def first_keypoints(job: Job) -> list[str]:
     """Return the 2D keypoints of each camera by these."""
     return takes.keypoints_2d(Job(job.study, {**job.wildcards, **_first(job)}))
-
-
-def first_skeleton(job: Job) -> Path:
-    """Return the skeleton of the first network."""
-    return job.study.skeleton_file(_first(job)["model"])
 
 
 def viewed_cameras(job: Job) -> str | list:

@@ -50,8 +50,8 @@ def background(job: Job) -> str | list:
     return job.fill(paths.STATIC if job.camera.static else paths.BACKGROUND)
 
 
-def recorded(job: Job) -> bool:
-    """Return whether a fixed camera's picture without people was recorded so."""
+def has_static(job: Job) -> bool:
+    """Return whether a fixed camera's picture without people was recorded so, not estimated."""
     return background(job) == job.fill(paths.STATIC)
 
 
@@ -67,16 +67,6 @@ def network(job: Job) -> Network:
     if found is None:
         raise InputError(f"{job['model']}: expected a network, found no {job['part']}")
     return found
-
-
-def network_source(job: Job) -> str:
-    """Return the file of a network as it comes: TFLite or ONNX."""
-    return network(job).path
-
-
-def network_sha256(job: Job) -> str:
-    """Return its checksum."""
-    return network(job).sha256
 
 
 def network_file(job: Job, part: str) -> str | list:

@@ -12,6 +12,11 @@ from courtside.study.jobs.job import Job
 from courtside.study.methods import PEOPLE, Fusion
 
 
+def first_skeleton(job: Job) -> Path:
+    """Return the skeleton of the first network of a session."""
+    return job.study.skeleton_file(job.session.parameters["models"][0])
+
+
 def each_camera(job: Job, pattern: str) -> list[str]:
     """Return a file of each camera of a take, in the take's order."""
     return job.of_each(pattern, camera=job.take.cameras)
@@ -96,11 +101,6 @@ def sexes(job: Job) -> dict[str, str | None]:
     known = job.session.subjects
     people = job.take.subjects if "take" in job.wildcards else known
     return {name: known[name].sex if known[name].sex in ("m", "f") else None for name in people}
-
-
-def recorded(job: Job) -> bool:
-    """Return whether the people of a session are recorded, not virtual."""
-    return not job.session.virtual
 
 
 def hands(job: Job) -> dict[str, str | None]:

@@ -67,9 +67,14 @@ def thesis_take(study: Study) -> DeviceTake | None:
     return None
 
 
+def every_true_file(study: Study, pattern: str) -> list[str]:
+    """Return a file of every virtual take with devices, one that rests on its truth."""
+    return [path for one in device_takes(study) for path in one.true_file(pattern)]
+
+
 def every_body_frame(study: Study) -> list[str]:
     """Return the errors of the body frames of virtual takes with devices."""
-    return [path for one in device_takes(study) for path in one.true_file(paths.BODY_FRAME_ERRORS)]
+    return every_true_file(study, paths.BODY_FRAME_ERRORS)
 
 
 def every_source_angle(study: Study) -> list[str]:

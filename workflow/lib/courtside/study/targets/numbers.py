@@ -36,7 +36,7 @@ def every_table(study: Study) -> list[str]:
         *takes.every_comparison_of_views(study),
         *_of_named_takes(study),
         *devices.every_body_frame(study),
-        *(p for one in devices.device_takes(study) for p in one.true_file(paths.SOURCE_ERRORS)),
+        *devices.every_true_file(study, paths.SOURCE_ERRORS),
     ]
 
 
