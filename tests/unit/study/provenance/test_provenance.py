@@ -3,7 +3,6 @@
 import hashlib
 import json
 import os
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -214,17 +213,9 @@ def test_faulty_jobs_are_refused():
 
 
 def test_parameters_become_json():
-    @dataclass
-    class Camera:
-        name: str
-        size: tuple
-
-    value = {1: Path("a"), "b": {"y", "x"}, "c": Camera("left", (2, 3)), "d": object(), "e": None}
+    value = {1: Path("a"), "b": {"name": "left", "size": (2, 3)}, "d": object(), "e": None}
     found = provenance.plain(value)
-    assert found == {
-        "1": "a", "b": ["x", "y"], "c": {"name": "left", "size": [2, 3]}, "d": "a object",
-        "e": None,
-    }  # fmt: skip
+    assert found == {"1": "a", "b": {"name": "left", "size": [2, 3]}, "d": "a object", "e": None}
     assert json.loads(json.dumps(found)) == found
 
 

@@ -5,7 +5,6 @@ library code that it reaches, or None), inputs and outputs (paths), params (with
 done (its outputs are up to date), made (in this run).
 """
 
-import dataclasses
 import graphlib
 import json
 import shlex
@@ -174,17 +173,13 @@ def _seeds(value: Any, where: str) -> Iterator[tuple[str, Any]]:
 
 
 def plain(value: Any) -> Any:
-    """Return a value as JSON can hold it: paths as text, sets in order, records as dictionaries."""
+    """Return a value as JSON can hold it: paths as text, an unknown object as its type."""
     if value is None or isinstance(value, bool | int | float):
         return value
     if isinstance(value, StrPath):
         return str(value)
-    if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        value = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
     if isinstance(value, Mapping):
         return {str(key): plain(inner) for key, inner in value.items()}
-    if isinstance(value, set | frozenset):
-        return sorted((plain(inner) for inner in value), key=str)
     if isinstance(value, list | tuple):
         return [plain(inner) for inner in value]
     return f"a {type(value).__name__}"
