@@ -35,7 +35,7 @@ def rows(skeletons: list[Skeleton], table: DerivedJoints) -> pd.DataFrame:
             continue
         used = [by_skeleton[skeleton.name] for skeleton in skeletons]
         for skeleton, definition in zip(skeletons, used, strict=True):
-            weights = table.definitions[definition].weights
+            weights = table.definitions[definition]
             about = skeleton, list(weights), tuple(weights.values())
             found.append(_row(name, *about, definition, len(set(used)) == 1))
     return pd.DataFrame(found)

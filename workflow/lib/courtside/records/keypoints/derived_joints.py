@@ -17,18 +17,11 @@ RIG = "rig"  # name in the table of the skeleton of virtual sessions' truth
 
 
 @dataclass(frozen=True)
-class Definition:
-    """How a derived joint is made: in words, and as weights of joints that sum to 1."""
-
-    means: str
-    weights: dict[str, float]
-
-
-@dataclass(frozen=True)
 class DerivedJoints:
     """The table of derived joints."""
 
-    definitions: dict[str, Definition]
+    # For each definition the weights of the joints that it is made of; they sum to 1
+    definitions: dict[str, dict[str, float]]
     # For each derived joint and skeleton the name of its definition
     joints: dict[str, dict[str, str]]
 
@@ -55,7 +48,7 @@ class DerivedJoints:
         joints = list(joints)
         if name not in self.joints and name in joints:
             return np.array([float(joint == name) for joint in joints])
-        parts = self.definitions[self.definition(skeleton, name)].weights
+        parts = self.definitions[self.definition(skeleton, name)]
         missing = [part for part in parts if part not in joints]
         if missing:
             raise InputError(
@@ -72,12 +65,12 @@ def read(path: StrPath) -> DerivedJoints:
     """
     content = schemas.read(path, "derived_joints")
     definitions = {
-        name: Definition(one["means"], {joint: float(w) for joint, w in one["weights"].items()})
+        name: {joint: float(weight) for joint, weight in one["weights"].items()}
         for name, one in content["definitions"].items()
     }
     table = DerivedJoints(definitions, content["joints"])
-    for name, definition in table.definitions.items():
-        total = sum(definition.weights.values())
+    for name, weights in table.definitions.items():
+        total = sum(weights.values())
         if abs(total - 1.0) > SUM_TOLERANCE:
             raise InputError(
                 f"{path}: definitions.{name}: expected weights that sum to 1, found {total:g}; "
