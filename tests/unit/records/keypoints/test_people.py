@@ -1,5 +1,7 @@
 """The table of who is which tracklet: round trip, and keypoints by person."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -71,7 +73,7 @@ def test_each_person_gets_the_row_of_each_frame():
 
 def test_row_0_throughout_changes_nothing():
     one = view(rows=1)
-    found = people.assigned(one, np.zeros((1, 5), int))
+    found = replace(table(), index={"left": np.zeros((1, 5), int)}).assigned(one)
     for name in ("xy", "score", "reason", "xyz_in_body", "clothing"):
         np.testing.assert_array_equal(getattr(found, name), getattr(one, name))
 
@@ -79,7 +81,7 @@ def test_row_0_throughout_changes_nothing():
 @pytest.mark.parametrize("index", [np.zeros((1, 4), int), np.full((1, 5), 3)])
 def test_a_table_of_other_keypoints_is_refused(index):
     with pytest.raises(InputError, match="left: expected people in 5 frames of 3 tracklets"):
-        people.assigned(view(), index)
+        replace(table(), index={"left": index}).assigned(view())
 
 
 def test_a_camera_without_people_is_named():

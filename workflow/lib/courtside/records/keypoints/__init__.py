@@ -1,7 +1,7 @@
 """Skeletons, 2D and 3D keypoints, people, reasons of missing points.
 
 keypoints: `read_2d`, `write_2d`, `read_3d`, `write_3d`
-people: `read`, `write`, `assigned`: which tracklet is which person
+people: `read`, `write`, `People.assigned`: which tracklet is which person
 sightings: `read`, `stated`, `of_other_takes`: where the user says that a person is
 skeleton: `read`: joints, bones, groups; `heel_and_toe`
 derived_joints: `read`, `of`, `append`, `combine`: neck, head centre, mid-hip and the like

@@ -57,13 +57,37 @@ class People:
         return {name: (rows >= 0).mean(axis=1) for name, rows in self.index.items()}
 
     def assigned(self, view: Keypoints2D) -> Keypoints2D:
-        """Return keypoints by person instead of by tracklet; see the function of this name."""
+        """Return the keypoints of one camera by person instead of by tracklet.
+
+        Where no tracklet shows a person all is NaN, with the reason UNSEEN. An `InputError` if
+        people were found in other cameras, frames or tracklets.
+        """
         if view.camera not in self.index:
             raise InputError(
                 f"{view.camera}: expected people of the cameras {', '.join(self.index)}, found "
                 "none of this camera; associate them again"
             )
-        return assigned(view, self.index[view.camera])
+        index, frames = self.index[view.camera], len(view.time_s)
+        if index.shape[1:] != (frames,) or index.max(initial=-1) >= len(view.xy):
+            raise InputError(
+                f"{view.camera}: expected people in {frames} frames of {len(view.xy)} tracklets, "
+                f"found {index.shape[1]} frames and tracklet {index.max(initial=-1)}; associate "
+                "them again"
+            )
+        known, row, at = index >= 0, np.maximum(index, 0), np.arange(frames)
+
+        def pick(values: NDArray, missing: float | np.uint8) -> NDArray:
+            empty = ~known.reshape(*known.shape, *(1,) * (values.ndim - 2))
+            return np.where(empty, missing, values[row, at]).astype(values.dtype)
+
+        return replace(
+            view,
+            xy=pick(view.xy, np.nan),
+            score=pick(view.score, np.nan),
+            reason=pick(view.reason, np.uint8(missing_reason.UNSEEN)),
+            xyz_in_body=pick(view.xyz_in_body, np.nan),
+            clothing=pick(view.clothing, np.nan),
+        )
 
 
 def write(path: StrPath, people: People) -> None:
@@ -91,31 +115,3 @@ def read(path: StrPath) -> People:
     index = dict(zip(map(str, found["cameras"]), tables, strict=True))
     plain = {key: found[key] for key in PLAIN}
     return People(str(found["model"]), found["person_id"], index=index, **plain)
-
-
-def assigned(view: Keypoints2D, index: NDArray) -> Keypoints2D:
-    """Return the keypoints of one camera by person instead of by tracklet.
-
-    `index` (P, T) has the tracklet of each person in each frame, -1 for none: there all is NaN with
-    the reason UNSEEN. An `InputError` if it has other frames or tracklets than the keypoints.
-    """
-    index, frames = np.asarray(index), len(view.time_s)
-    if index.shape[1:] != (frames,) or index.max(initial=-1) >= len(view.xy):
-        raise InputError(
-            f"{view.camera}: expected people in {frames} frames of {len(view.xy)} tracklets, found "
-            f"{index.shape[1]} frames and tracklet {index.max(initial=-1)}; associate them again"
-        )
-    known, row, at = index >= 0, np.maximum(index, 0), np.arange(frames)
-
-    def pick(values: NDArray, missing: float | np.uint8) -> NDArray:
-        empty = ~known.reshape(*known.shape, *(1,) * (values.ndim - 2))
-        return np.where(empty, missing, values[row, at]).astype(values.dtype)
-
-    return replace(
-        view,
-        xy=pick(view.xy, np.nan),
-        score=pick(view.score, np.nan),
-        reason=pick(view.reason, np.uint8(missing_reason.UNSEEN)),
-        xyz_in_body=pick(view.xyz_in_body, np.nan),
-        clothing=pick(view.clothing, np.nan),
-    )
