@@ -30,7 +30,7 @@ rule build_people_page:
         subjects=lambda w: list(take_of(w).subjects),
         stated=of_job(takes.sightings),
         target=of_job(pages.people_target),
-        shown=of_job(takes.blur_faces),  # demands the consent to pictures; faces are always hidden
+        pin=of_job(Job.demand, "pictures"),  # an error without consent; faces are always hidden
     script:
         "../scripts/build_people_page.py"
 

@@ -12,7 +12,7 @@ from courtside.study.execution import log
 from courtside.study.execution.script import run
 
 
-def main(paths, page_html, *, session, take, takes, subjects, stated, target, shown):
+def main(paths, page_html, *, session, take, takes, subjects, stated, target):
     seen = footage.read(paths.cameras, paths.pose2d, None, paths.sync, paths.videos)
     found, joints = people.read(paths.found), skeleton.read(paths.skeleton)
     columns = {k: strips.times(found, seen, k) for k in people_page.shown(found)}

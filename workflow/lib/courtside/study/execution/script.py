@@ -6,7 +6,7 @@ from typing import Any
 
 from courtside.study.execution import log
 
-IGNORED = ("code", "pin")  # parameters that only tell Snakemake when to run a job again
+IGNORED = ("code", "pin")  # parameters that only tell Snakemake when, or whether, to run a job
 
 
 def run(main: Callable[..., None], job: Any) -> None:
