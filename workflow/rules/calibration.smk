@@ -241,7 +241,7 @@ rule calibrate_wand:
 
 rule calibrate_from_people:
     input:
-        files=files_of(calibration.filmed, "pose2d"),
+        files=files_of(calibration.placing, "pose2d"),
         lens_tomls=of_job(calibration.known_lenses),
         static=lambda w: session_of(w).known_lengths and session_of(w).static_points or [],
     output:
@@ -255,7 +255,7 @@ rule calibrate_from_people:
     params:
         code=code("calibrate_from_people.py"),
         names=lambda w: list(session_of(w).cameras),
-        takes=of_job(calibration.filmed),
+        takes=of_job(calibration.placing),
         known_lengths=lambda w: list(session_of(w).known_lengths),
         clicks=of_job(calibration.clicks),
         views=step("triangulate"),

@@ -158,9 +158,9 @@ def models_of(imported):
 
 def drawn(stem, name, category, labels):
     """Return the three files of a figure; the PNG goes into the report with its caption."""
-    shown = {"caption": f"../report/draw_{name}.rst", "labels": labels}
-    shown |= {"category": category[0], "subcategory": category[1]}
-    return {"pdf": f"{stem}.pdf", "csv": f"{stem}.csv", "png": report(f"{stem}.png", **shown)}
+    in_report = {"caption": f"../report/draw_{name}.rst", "labels": labels}
+    in_report |= {"category": category[0], "subcategory": category[1]}
+    return {"pdf": f"{stem}.pdf", "csv": f"{stem}.csv", "png": report(f"{stem}.png", **in_report)}
 
 
 def figure(name):

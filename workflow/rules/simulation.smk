@@ -13,7 +13,7 @@ for session in STUDY.sessions.values():
     filming = [take for take in session.takes.values() if take.videos]
     backdrops = expand(paths.BACKDROPS, session=session.name) if filming else []
 
-    if session.filmed():
+    if session.cameras_and_walks():
 
         rule:
             name:
@@ -42,7 +42,7 @@ for session in STUDY.sessions.values():
             params:
                 code=code("simulate_session.py"),
                 settings=session.virtual,
-                names=session.filmed(),
+                names=session.cameras_and_walks(),
             script:
                 "../scripts/simulate_session.py"
 

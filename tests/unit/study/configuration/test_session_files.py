@@ -99,7 +99,7 @@ def test_a_session_with_walks_names_its_recordings(tmp_path):
         None,
         None,
     )
-    assert found.filmed() == ["a", "w1", "w2"]
+    assert found.cameras_and_walks() == ["a", "w1", "w2"]
 
 
 def test_a_virtual_session_gets_its_files_by_name():
@@ -118,7 +118,7 @@ def test_a_virtual_session_without_static_frames_has_no_pictures_of_the_empty_ha
     content = VIRTUAL | {"virtual": virtual, "walks": {}}
     found = session_files.session("gym", "gym.yaml", content, PARAMETERS)
     assert [camera.static for camera in found.cameras.values()] == [None, None]
-    assert (found.filmed(), found.recorded_empty()) == (["side", "back"], [])
+    assert (found.cameras_and_walks(), found.recorded_empty()) == (["side", "back"], [])
     varied = session_files.variations(found, "seeds", {"vary": {"seed": [1]}})["seeds-0"]
     assert varied.recorded_empty() == []
 

@@ -145,7 +145,7 @@ def test_the_sweep_has_offsets_for_few_images_only():
 
 
 def test_only_virtual_sessions_film_boards():
-    assert session(walks={"w": "w.mp4"}).filmed() == ["a", "b", "w"]
+    assert session(walks={"w": "w.mp4"}).cameras_and_walks() == ["a", "b", "w"]
     assert session(walks={"w": "w.mp4"}).recorded_empty() == ["a", "b", "w"]
     assert session(virtual={"boards": True}).films_boards()
     assert not session(virtual={"boards": False}).films_boards()

@@ -232,7 +232,7 @@ def test_maps_of_refined_cameras_show_their_base_too(job):
 def test_people_alone_place_cameras_with_their_heights_and_known_lenses(job, study):
     real = job(session="walk-4cams-tiny", calibration="people")
     session = study.sessions["walk-4cams-tiny"]
-    (one,) = calibration.filmed(real)
+    (one,) = calibration.placing(real)
     take = session.takes[one["take"]]
     assert one["heights_m"] == [session.subjects[who].height_m for who in take.subjects]
     assert [path.rpartition("/")[2] for path in one["pose2d"]] == [f"{c}.npz" for c in take.cameras]

@@ -78,7 +78,7 @@ def _study(config: Content, config_file: str, folder: Path, root: StrPath) -> St
         if content is not None:
             content = session_files.filled(content)
             faults += session_faults.find(folder, file, content, known, Path(root))
-            faults += _override_faults(file, content, models)
+            faults += _unknown_models(file, content, models)
             found[name] = (file, content)
     if not faults:
         faults += _step_faults(config, config_file, models or {}, found)
@@ -109,7 +109,7 @@ def _step_faults(
     yield from take_faults.unknown(f"{where}.networks", wanted, {*models, *imported})
 
 
-def _override_faults(file: Path, content: Content, models: Content | None) -> list[str]:
+def _unknown_models(file: Path, content: Content, models: Content | None) -> list[str]:
     """Return a fault for each unknown model of a session; all are known if `models` has faults."""
     wanted = content.get("override", {}).get("models", [])
     there = [*(models or wanted), *take_faults.imported(content)]

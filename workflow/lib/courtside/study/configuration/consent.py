@@ -81,7 +81,7 @@ def left_out(session: "Session", wanted: Iterable[str] = ("export", "pictures"))
 def faults(file: Path, content: dict[str, Any]) -> Iterator[str]:
     """Yield what contradicts itself in the consent of persons, one line each."""
     virtual = "virtual" in content
-    shown = not content.get("blur_faces", not virtual) and bool(content.get("takes"))
+    faces_shown = not content.get("blur_faces", not virtual) and bool(content.get("takes"))
     for name, subject in content.get("subjects", {}).items():
         agreed = stated(subject, virtual)
         for word in (w for w in agreed if NEEDS.get(w, w) not in agreed):
@@ -89,7 +89,7 @@ def faults(file: Path, content: dict[str, Any]) -> Iterator[str]:
                 f"{file}: subjects.{name}.consent: expected {NEEDS[word]} with {word}, found "
                 f"{list(agreed)}; add it, or write [] for somebody who has withdrawn"
             )
-        if shown and "pictures" in agreed and "faces" not in agreed:
+        if faces_shown and "pictures" in agreed and "faces" not in agreed:
             yield (
                 f"{file}: blur_faces: expected `faces` in the consent of {name} to show faces, "
                 f"found {list(agreed)}; ask them, or remove blur_faces: false"

@@ -114,5 +114,5 @@ def _network_faults(where: str, network: dict[str, Any], known: Artefacts) -> It
     if members.get(member) != network["sha256"]:
         yield (
             f"{where}: expected a member of external.yaml with its checksum, "
-            f"found {schemas.shown(artefact)}: {schemas.shown(member)}"
+            f"found {schemas.shortened(artefact)}: {schemas.shortened(member)}"
         )

@@ -137,16 +137,16 @@ def _lines(error: Any) -> Iterator[str]:  # of jsonschema, whose types leave all
         yield f"{where}: expected the key {error.message.split(' ')[0]}, missing {missing}; add it"
     elif error.validator in ("oneOf", "anyOf"):
         expected = error.schema.get("description", "another form")
-        yield f"{where}: expected {expected}, found {shown(error.instance)}"
+        yield f"{where}: expected {expected}, found {shortened(error.instance)}"
     else:
         wanted = _wanted(error)
         if hint := error.schema.get("description"):
             wanted = hint if error.validator == "pattern" else f"{wanted} ({hint})"
-        found = shown(error.instance)
+        found = shortened(error.instance)
         if error.validator == "uniqueItems":
             values = error.instance
             twice = next(value for at, value in enumerate(values) if value in values[:at])
-            found = f"{shown(twice)} again"
+            found = f"{shortened(twice)} again"
         if error.validator == "type" and _is_unquoted(error.instance, error.validator_value):
             found += "; put it in quotes"
         yield f"{where}: expected {wanted}, found {found}"
@@ -196,7 +196,7 @@ def _wanted(error: Any) -> str:
     return words.get(error.validator, error.validator + " {}").format(value)
 
 
-def shown(value: object) -> str:
+def shortened(value: object) -> str:
     """Return a value as at most 80 characters of a line."""
     text = repr(value)
     return text if len(text) <= 80 else f"{text[:77]}..."

@@ -36,7 +36,8 @@ def find(
         yield f"{file}: court: expected 'none' or one of {known_courts}, found {court!r}"
     yield from _name_faults(file, content)
     yield from _virtual_faults(file, content) if virtual else _recorded_faults(file, content, root)
-    yield from _override_faults(file, content)
+    yield from _static_point_faults(file, content)
+    yield from _replacement_faults(file, content)
     yield from _people_faults(file, content)
     yield from consent.faults(file, content)
     yield from sighting_faults.find(file, content)
@@ -120,11 +121,10 @@ def _people_faults(file: Path, content: Content) -> Iterator[str]:
         )
 
 
-def _override_faults(file: Path, content: Content) -> Iterator[str]:
-    """Yield the faults of static points and of numbers that replace those of a calibration file."""
-    calibration, where = content.get("calibration", {}), f"{file}: calibration"
+def _static_point_faults(file: Path, content: Content) -> Iterator[str]:
+    """Yield the faults of static points, and of known lengths between them."""
     measured = "known_lengths" in content
-    if "static_points" in content and not (calibration or measured):
+    if "static_points" in content and not ("calibration" in content or measured):
         yield (
             f"{file}: static_points: expected `calibration` (a file that they check) or "
             "`known_lengths` (lengths between them), found neither; add one, or remove them"
@@ -135,6 +135,11 @@ def _override_faults(file: Path, content: Content) -> Iterator[str]:
             "override.calibrations, found only one or neither; add both: only this calibration "
             "uses known lengths"
         )
+
+
+def _replacement_faults(file: Path, content: Content) -> Iterator[str]:
+    """Yield the faults of numbers that replace those of a calibration file."""
+    calibration, where = content.get("calibration", {}), f"{file}: calibration"
     points = calibration.get("principal_point_px", {})
     yield from take_faults.unknown(f"{where}.principal_point_px", points, content["cameras"])
     if bool(points) != ("reason" in calibration):

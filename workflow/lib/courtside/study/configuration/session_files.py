@@ -159,8 +159,8 @@ def variations(base: Session, name: str, content: Content) -> dict[str, Session]
         varied = dict(zip(vary, values, strict=True))
         own = f"{name}-{k}"
         virtual = {**(base.virtual or {}), "boards": False, **content.get("set", {}), **varied}
-        shown = {"cameras": base.cameras, "walks": base.walks, "virtual": virtual}
-        files = _virtual(own, shown)
+        films = {"cameras": base.cameras, "walks": base.walks, "virtual": virtual}
+        files = _virtual(own, films)
         found[own] = replace(
             base,
             name=own,
@@ -206,14 +206,13 @@ def sightings(subject: Content) -> tuple[Content, ...]:
     return tuple(seen if isinstance(seen, list) else [seen])
 
 
-def _take(
-    name: str, content: Content, filmed: Content | None, subjects: dict[str, Subject]
-) -> Take:
+def _take(name: str, content: Content, made: Content | None, subjects: dict[str, Subject]) -> Take:
+    """Build a take; `made` has the files that the simulation of a virtual one makes."""
     there = tuple(content.get("subjects", subjects))
     return Take(
         name=name,
-        videos=dict(content.get("videos", {})) if filmed is None else filmed["videos"],
-        devices=_devices(content if filmed is None else filmed, there),
+        videos=dict(content.get("videos", {})) if made is None else made["videos"],
+        devices=_devices(content if made is None else made, there),
         subjects=there,
         trim_s=tuple(content["trim_s"]) if "trim_s" in content else None,
         **{key: content[key] for key in AS_STATED if key in content},

@@ -236,8 +236,8 @@ class Session:
         if not self.walks or not all(Path(path).is_dir() for path in self.walks.values()):
             return None
         there = [file for path in self.walks.values() for file in Path(path).iterdir()]
-        shown = [file for file in there if not file.name.startswith(".")]
-        return sum(file.suffix.lower() in files.PHOTOS for file in shown)
+        visible = [file for file in there if not file.name.startswith(".")]
+        return sum(file.suffix.lower() in files.PHOTOS for file in visible)
 
     def recordings(self) -> list[str]:
         """Return the files and folders of a user that its videos, photos and devices are in."""
@@ -248,7 +248,7 @@ class Session:
         named = [*static, *self.walks.values(), *filmed, *devices]
         return [path for path in named if path and not path.startswith(f"{paths.RESULTS}/")]
 
-    def filmed(self) -> list[str]:
+    def cameras_and_walks(self) -> list[str]:
         """Return the names of all cameras and walks."""
         return [*self.cameras, *self.walks]
 
@@ -276,9 +276,9 @@ class Session:
             for name, take in self.takes.items()
         }
         halls = {"": static} | {
-            take: shown for take, shown in of_takes.items() if not set(shown) <= set(static)
+            take: cameras for take, cameras in of_takes.items() if not set(cameras) <= set(static)
         }
-        return {name: shown for name, shown in halls.items() if len(shown) > 1}
+        return {name: cameras for name, cameras in halls.items() if len(cameras) > 1}
 
     def films_boards(self) -> bool:
         """Say whether the session is virtual and its cameras take pictures of a chessboard."""

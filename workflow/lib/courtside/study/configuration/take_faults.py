@@ -145,7 +145,7 @@ def find(
             f"{'camera' if cameras_of(take) else 'device'}, whose clock is the reference, found "
             "one; state the other clocks against it"
         )
-    yield from _filmed_faults(where, take.get("virtual"), cameras, there)
+    yield from _virtual_faults(where, take.get("virtual"), cameras, there)
     if take.get("steady") and not virtual:
         for name in (n for n in take.get("videos", {}) if "static" not in cameras.get(n, {})):
             yield (
@@ -224,27 +224,27 @@ def _device_faults(
             )
 
 
-def _filmed_faults(
-    where: str, filmed: Content | None, cameras: Content, subjects: Collection[str]
+def _virtual_faults(
+    where: str, made: Content | None, cameras: Content, subjects: Collection[str]
 ) -> Iterator[str]:
     """Check what a take of a virtual session is made from."""
-    if not filmed:
+    if not made:
         return
-    clocks = [*cameras, *filmed.get("devices", {})]
-    yield from unknown(f"{where}.virtual.cameras", filmed.get("cameras", []), cameras)
-    yield from unknown(f"{where}.virtual.clocks", filmed.get("clocks", {}), clocks)
-    yield from unknown(f"{where}.virtual.shake", filmed.get("shake", {}), cameras)
-    yield from _simulated_faults(f"{where}.virtual", filmed)
-    if set(filmed["players"]) != set(subjects):
+    clocks = [*cameras, *made.get("devices", {})]
+    yield from unknown(f"{where}.virtual.cameras", made.get("cameras", []), cameras)
+    yield from unknown(f"{where}.virtual.clocks", made.get("clocks", {}), clocks)
+    yield from unknown(f"{where}.virtual.shake", made.get("shake", {}), cameras)
+    yield from _simulated_faults(f"{where}.virtual", made)
+    if set(made["players"]) != set(subjects):
         yield (
             f"{where}.virtual.players: expected each of {sorted(subjects)}, found "
-            f"{sorted(filmed['players'])}; correct one of them"
+            f"{sorted(made['players'])}; correct one of them"
         )
 
 
-def _simulated_faults(where: str, filmed: Content) -> Iterator[str]:
+def _simulated_faults(where: str, made: Content) -> Iterator[str]:
     """Check keys of virtual devices and shakes that do not fit each other."""
-    for name, device in filmed.get("devices", {}).items():
+    for name, device in made.get("devices", {}).items():
         for key in sorted(set(device) - {"kind", "subject", "rate_hz"}):
             kind = "inertial" if key in OF_VIRTUAL_SUITS else "rgbd"
             if device["kind"] != kind:
@@ -252,7 +252,7 @@ def _simulated_faults(where: str, filmed: Content) -> Iterator[str]:
                     f"{where}.devices.{name}.{key}: expected it of a device of the kind {kind} "
                     f"only, found {device['kind']}; remove it"
                 )
-    for name, shake in filmed.get("shake", {}).items():
+    for name, shake in made.get("shake", {}).items():
         if ("knock_s" in shake) != (shake.get("knock_deg", 0) > 0):
             yield (
                 f"{where}.shake.{name}: expected knock_s with a knock_deg above 0, or neither, "

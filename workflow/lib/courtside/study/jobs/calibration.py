@@ -38,10 +38,10 @@ def halls(job: Job) -> list[dict[str, Any]]:
                 name: job.fill(paths.BACKGROUND, camera=name, take=take)
                 if take and not session.cameras[name].static
                 else job.fill(paths.STATIC, camera=name)
-                for name in shown
+                for name in cameras
             },
         }
-        for take, shown in session.filmed_halls().items()
+        for take, cameras in session.filmed_halls().items()
     ]
 
 
@@ -88,7 +88,7 @@ def checked(job: Job) -> list[dict[str, Any]]:
     return _seen(job, "file", [name for name, take in job.session.takes.items() if take.cameras])
 
 
-def filmed(job: Job) -> list[dict[str, Any]]:
+def placing(job: Job) -> list[dict[str, Any]]:
     """Return of each take whose people place cameras its keypoints, clocks and heights, m."""
     model, found = job.session.parameters["models"][0], []
     for name in wanted_takes(job):

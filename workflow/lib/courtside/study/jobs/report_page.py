@@ -137,8 +137,8 @@ def _session(study: Study, session: Session) -> dict[str, Any]:
     way = next(iter(session.take_calibrations()), ways[0].name if ways else None)
     variant = _reported_variant(session, way)
     known = {"session": session.name}
-    shown = dict.fromkeys(name for one in ways for name in (one.base, one.name) if name)
-    quality = {name: paths.CALIBRATION_QUALITY.format(**known, calibration=name) for name in shown}
+    every = dict.fromkeys(name for one in ways for name in (one.base, one.name) if name)
+    quality = {name: paths.CALIBRATION_QUALITY.format(**known, calibration=name) for name in every}
     model: dict[str, Any] = {}
     if variant:
         model = {"model": paths.SFM_SUMMARY.format(**known, **vars(variant))}

@@ -80,13 +80,13 @@ def every_figure(study: Study) -> list[str]:
     """Return the figures of all takes."""
     stems = []
     for session, take in study.takes():
-        names = shown(session, take, session.parameters["take_figures"])
+        names = allowed_figures(session, take, session.parameters["take_figures"])
         stems += files(paths.TAKE_FIGURE, session, take, figure=names)
     return paths.formats(stems)
 
 
-def shown(session: Session, take: Take, figures: Iterable[str]) -> list[str]:
-    """Return the figures of a take that consent to pictures allows.
+def allowed_figures(session: Session, take: Take, figures: Iterable[str]) -> list[str]:
+    """Return those figures that a take can have and consent to pictures allows.
 
     A take without videos has none with pictures, one that is not on a badminton court none of
     strokes.

@@ -45,7 +45,8 @@ def every_players_figure(study: Study) -> list[str]:
     for session, take in study.named_takes(study.parameters["evaluate_round_trip"]["takes"]):
         stems += takes.files(paths.CALIBRATED_FIGURE, session, take, figure="badminton_tab01")
     for session, take in study.named_takes(study.parameters["draw_stroke"]["takes"]):
-        model, names = session.parameters["models"][0], takes.shown(session, take, STROKE_FIGURES)
+        names = takes.allowed_figures(session, take, STROKE_FIGURES)
+        model = session.parameters["models"][0]
         stems += takes.files(paths.TAKE_FIGURE, session, take, model=model, figure=names)
     stems += [paths.STUDY_FIGURE.format(figure="badminton_fig05")] if fig05_layouts(study) else []
     for session, take in study.named_takes(study.parameters["draw_three_cameras"]["takes"]):
