@@ -5,6 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy import stats
+from scipy.spatial.transform import Rotation
 
 from courtside.calibration.bundle import selection
 from courtside.calibration.court import court, joint_adjustment, resection
@@ -12,7 +14,7 @@ from courtside.calibration.records import tie_points
 from courtside.calibration.records.support import Support
 from courtside.evaluation import calibration
 from courtside.geometry import similarity
-from fixtures.cameras import networks_made
+from fixtures.cameras import networks_made, scene
 from fixtures.cameras.scene import look_at, opencv_projection
 
 COURT = court.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
@@ -156,3 +158,62 @@ def test_a_skewed_projection_matrix_is_scored_unchanged():
     for name in ("xo_cm", "yo_cm", "volume_rms_cm"):
         assert errors[name] == pytest.approx(2, abs=1e-6)
     assert "camera_position_cm" not in errors
+
+
+RING = scene.ring(3, dist=(-0.05, 0.01, 1e-3, 0, 0))
+
+
+def test_published_errors_are_those_of_the_ends_of_x_and_y():
+    xyz = COURT.xyz + 0.0
+    xyz[1] += [0.03, 0, 0.04]
+    xyz[2] += [0, -0.02, 0]
+    xyz[7] += 1.0  # no part of it
+    found = calibration.court_points(COURT, xyz)
+    assert found == pytest.approx({"xo_cm": 5.0, "yo_cm": 2.0, "xy_cm": 3.5})
+
+
+def test_errors_of_cameras_are_means_over_cameras():
+    changed = []
+    for camera, shift_m, turn_deg, focal in zip(
+        RING, [0.01, 0.02, 0.06], [0.5, 0, 1.0], [1.01, 0.98, 1.0], strict=True
+    ):
+        turn = Rotation.from_euler("y", turn_deg, degrees=True).as_matrix()
+        rotation = turn @ camera.cam_from_world[:, :3]
+        centre = camera.centre_in_world + np.array([0, shift_m, 0])
+        pose = np.column_stack([rotation, -rotation @ centre])
+        K = camera.K * [[focal, 1, 1], [1, focal, 1], [1, 1, 1]]
+        changed.append(replace(camera, cam_from_world=pose, K=K))
+    found = calibration.poses(changed, RING)
+    expected = {"camera_position_cm": 3.0, "camera_rotation_deg": 0.5, "focal_percent": 1.0}
+    assert found == pytest.approx(expected, rel=1e-6)
+
+
+def test_numbers_over_the_volume():
+    error = np.zeros((101, 3))
+    error[:, 2] = np.arange(101) / 100
+    found = calibration.over_volume(error)
+    assert found["volume_p95_cm"] == pytest.approx(95)
+    assert found["volume_rms_cm"] == pytest.approx(np.sqrt((np.arange(101) ** 2).mean()))
+
+
+def test_coverage_of_gaussian_errors_is_their_level():
+    rng = np.random.default_rng(0)
+    root = rng.normal(size=(20000, 3, 3)) * 0.01
+    covariance = root @ root.transpose(0, 2, 1)
+    error = np.einsum("nij,nj->ni", root, rng.normal(size=(20000, 3)))
+    found = calibration.coverage(error, covariance)
+    for level in (50, 90, 95):  # four standard deviations of a share of 20000
+        share = level / 100
+        assert found[f"coverage{level}"] == pytest.approx(
+            share, abs=4 * np.sqrt(share * (1 - share) / 20000)
+        )
+    expected = 100 * np.sqrt((error**2).sum(axis=1).mean())
+    assert found["predicted_volume_cm"] == pytest.approx(expected, rel=0.03)
+
+
+def test_errors_twice_as_large_as_stated_are_seen():
+    error = 0.02 * np.random.default_rng(1).normal(size=(5000, 3))
+    found = calibration.coverage(error, np.tile(1e-4 * np.eye(3), (5000, 1, 1)))
+    share = stats.chi2.cdf(stats.chi2.ppf(0.95, 3) / 4, 3)
+    assert found["coverage95"] == pytest.approx(share, abs=4 * np.sqrt(share * (1 - share) / 5000))
+    assert share < 0.5

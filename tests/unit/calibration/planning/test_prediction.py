@@ -10,6 +10,7 @@ from courtside.calibration.bundle import selection, solver
 from courtside.calibration.court import joint_adjustment, line_edges, quality, sfm_alignment
 from courtside.calibration.planning import cameras, prediction, tie_points
 from courtside.calibration.planning.prediction import Prediction
+from courtside.evaluation.calibration import over_volume
 from courtside.geometry.camera import project
 from fixtures.cameras import hall_plan
 
@@ -75,7 +76,7 @@ def test_predicted_errors_are_those_of_simulated_sessions():
         )
         truly = {camera.name: project(camera, grid) for camera in fixed}
         error_m = sfm_alignment.reconstruct(solved.cameras, truly) - grid
-        rms_cm.append(quality.over_volume(error_m)["volume_rms_cm"])
+        rms_cm.append(over_volume(error_m)["volume_rms_cm"])
     assert np.quantile(rms_cm, [0.05, 0.5, 0.95]) == pytest.approx(found.error_cm, rel=0.25)
 
 

@@ -12,7 +12,7 @@ round_trip: `table`, `distance_after`: the paper's table 1
 marker_system: `fit`, `table`: joints against an optical marker system
 camera_sets: `compare`, `gains`: fewer cameras, and other fusions
 skin_depths: `estimate`: depth of joints behind the skin
-calibration: `of_ties`, `of_known`, `score`: one trial of calibration
+calibration: `of_ties`, `of_known`, `score`: one trial of calibration; `over_volume`, `coverage`
 racket: `calibrate`, `measure`, `score`, `rows`: one trial of measuring a racket
 numbers: Numbers of the documents, and where each comes from
 tables: Tables of the study from these

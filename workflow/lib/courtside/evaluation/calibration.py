@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 from courtside.calibration.court import joint_adjustment, known_points, quality, sfm_alignment
 from courtside.calibration.court.court import Court
 from courtside.calibration.court.resection import Fitted, Linear
+from courtside.calibration.point_covariance import ellipsoid, mahalanobis
 from courtside.calibration.records.tie_points import Record
+from courtside.geometry import rotations
 from courtside.geometry.camera import Camera, project
 from courtside.geometry.triangulation import triangulate
 from courtside.study.errors import InputError
@@ -21,6 +23,9 @@ ERRORS = (
     "coverage95", "squared_ratio",
 )  # fmt: skip
 COLUMNS = FIRST + ERRORS
+# Of chi-squared with three degrees of freedom; `scipy.stats` has it too, but takes half a second to
+# import.
+LIMITS = {level: ellipsoid(level) for level in (0.5, 0.9, 0.95)}
 
 
 def choices(court: Court, sets: Sequence[str]) -> Iterator[tuple[int, bool, NDArray]]:
@@ -138,10 +143,10 @@ def score(
     seen = {true.name: np.vstack([project(true, grid), clicks[true.name]]) for true in truth}
     xyz = sfm_alignment.reconstruct(cameras, seen)
     error_m = xyz[: len(grid)] - grid
-    found = quality.court_points(court, xyz[len(grid) :])
-    found |= quality.over_volume(error_m) | quality.poses(cameras, truth)
+    found = court_points(court, xyz[len(grid) :])
+    found |= over_volume(error_m) | poses(cameras, truth)
     if point_covariance is not None:
-        found |= quality.coverage(error_m, point_covariance(grid))
+        found |= coverage(error_m, point_covariance(grid))
     return {"outcome": ""} | found
 
 
@@ -159,9 +164,62 @@ def score_linear(
 
     grid = quality.volume(court)
     seen = {camera.name: project(camera, grid) for camera in truth}
-    errors = quality.court_points(court, place(clicks))
-    errors |= quality.over_volume(place(seen) - grid)
+    errors = court_points(court, place(clicks))
+    errors |= over_volume(place(seen) - grid)
     placed = [camera for true in truth if (camera := found[true.name].camera)]
     if len(placed) == len(truth):
-        errors |= quality.poses(placed, truth)
+        errors |= poses(placed, truth)
     return {"outcome": ""} | errors
+
+
+def court_points(court: Court, xyz: NDArray) -> dict[str, float]:
+    """Return the published errors: at the end of x `xo_cm` and y `yo_cm`, and their mean `xy_cm`.
+
+    `xyz` (P, 3) are all court points as reconstructed from clicks, m.
+    """
+    ends = court.indices("three")[1:]
+    xo_cm, yo_cm = 100 * np.linalg.norm(xyz[ends] - court.xyz[ends], axis=1)
+    return {"xo_cm": xo_cm, "yo_cm": yo_cm, "xy_cm": (xo_cm + yo_cm) / 2}
+
+
+def poses(cameras: Sequence[Camera], truth: Sequence[Camera]) -> dict[str, float]:
+    """Return mean errors of cameras: position (cm), rotation (degrees), focal length (%).
+
+    `truth` has the cameras in the same order.
+    """
+    place, turn, focal = [], [], []
+    for found, true in zip(cameras, truth, strict=True):
+        place.append(np.linalg.norm(found.centre_in_world - true.centre_in_world))
+        between = found.cam_from_world[:, :3] @ true.cam_from_world[:, :3].T
+        turn.append(np.degrees(rotations.angles(between)))
+        focal.append(abs(found.K[1, 1] / true.K[1, 1] - 1))
+    return {
+        "camera_position_cm": 100 * np.mean(place),
+        "camera_rotation_deg": np.mean(turn),
+        "focal_percent": 100 * np.mean(focal),
+    }
+
+
+def over_volume(error_m: NDArray) -> dict[str, float]:
+    """Return root mean square and 95 % quantile of displacements (N, 3) m, in cm."""
+    distance = 100 * np.linalg.norm(error_m, axis=1)
+    return {
+        "volume_rms_cm": np.sqrt(np.mean(distance**2)),
+        "volume_p95_cm": np.quantile(distance, 0.95),
+    }
+
+
+def coverage(error_m: NDArray, covariance: NDArray) -> dict[str, float]:
+    """Return how often errors lie within the ellipsoids of their covariance, and the size expected.
+
+    Errors (N, 3) are in m, covariances (N, 3, 3) in m2. The result holds `coverage50`, `coverage90`
+    and `coverage95`, 0..1, `squared_ratio`, the normalised estimation error squared (1 where the
+    covariance is right, more where it is too small), and `predicted_volume_cm`, the expected root
+    mean square.
+    """
+    square = mahalanobis(error_m, covariance)
+    shares = {
+        f"coverage{100 * level:.0f}": np.mean(square <= limit) for level, limit in LIMITS.items()
+    }
+    size_cm = 100 * np.sqrt(np.mean(np.trace(covariance, axis1=1, axis2=2)))
+    return {**shares, "squared_ratio": np.mean(square) / 3, "predicted_volume_cm": size_cm}

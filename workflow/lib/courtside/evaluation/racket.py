@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from courtside.calibration.court import joint_adjustment, known_points, quality, sfm_alignment
 from courtside.calibration.court.court import Court
 from courtside.calibration.records.tie_points import Record
+from courtside.evaluation.calibration import over_volume
 from courtside.geometry.camera import Camera, project
 from courtside.geometry.triangulation import triangulate
 from courtside.study.errors import InputError
@@ -77,7 +78,7 @@ def _way(
         place = find()
     except InputError as error:
         return Way(method, n_clicks, str(error), None, np.nan)
-    errors = quality.over_volume(place(seen) - grid)
+    errors = over_volume(place(seen) - grid)
     return Way(method, n_clicks, "", place, errors["volume_rms_cm"])
 
 

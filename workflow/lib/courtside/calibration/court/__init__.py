@@ -12,5 +12,5 @@ points_alone: calibrate, summary: all cameras from points alone, together
 place_checks: read, shifts: the points of a session; cameras whose points are all shifted
 click_checks: leave_one_out, find_wrong_clicks, inward_shift, inward_shift_of_points, check
 quality: check_cameras, adjust_and_check, check_maps, leave_one_out_errors, expected_cm,
-    expected_volume; errors against the truth
+    expected_volume
 """

@@ -1,4 +1,4 @@
-"""Checks of calibrated cameras without the truth, and their errors where the truth is known."""
+"""Checks of calibrated cameras without the truth, and the errors to expect of them."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -11,11 +11,10 @@ from courtside.calibration import point_covariance as propagation
 from courtside.calibration.bundle import selection
 from courtside.calibration.court import click_checks, joint_adjustment
 from courtside.calibration.court.court import ClickedPoints, Court, to_line_centres
-from courtside.calibration.point_covariance import ellipsoid, field, mahalanobis
+from courtside.calibration.point_covariance import field
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records.covariance import CameraCovariance
 from courtside.calibration.records.support import Support
-from courtside.geometry import rotations
 from courtside.geometry.camera import Camera, in_picture, project
 from courtside.study.errors import InputError
 
@@ -26,9 +25,6 @@ SUPPORTED = 0.3
 # badminton court.
 HEIGHTS_M = (0.0, 1.0, 2.0, 3.0)
 COLUMNS, ROWS = 5, 7  # of the grid, along the short and the long side
-# Of chi-squared with three degrees of freedom; `scipy.stats` has it too, but takes half a second to
-# import.
-LIMITS = {level: ellipsoid(level) for level in (0.5, 0.9, 0.95)}
 
 
 def check_cameras(
@@ -195,64 +191,6 @@ def volume(
     y = np.linspace(0, court.size_m[1], rows)
     z, y, x = np.meshgrid(np.asarray(heights_m, dtype=float), y, x, indexing="ij")
     return np.stack([x, y, z], axis=-1).reshape(-1, 3)
-
-
-def court_points(court: Court, xyz: NDArray) -> dict[str, float]:
-    """Return the published errors: at the end of x `xo_cm` and y `yo_cm`, and their mean `xy_cm`.
-
-    `xyz` (P, 3) are all court points as reconstructed from clicks, m.
-    """
-    ends = court.indices("three")[1:]
-    xo_cm, yo_cm = 100 * np.linalg.norm(xyz[ends] - court.xyz[ends], axis=1)
-    return {"xo_cm": xo_cm, "yo_cm": yo_cm, "xy_cm": (xo_cm + yo_cm) / 2}
-
-
-def poses(cameras: Sequence[Camera], truth: Sequence[Camera]) -> dict[str, float]:
-    """Return mean errors of cameras: position (cm), rotation (degrees), focal length (%).
-
-    `truth` has the cameras in the same order.
-    """
-    place, turn, focal = [], [], []
-    for found, true in zip(cameras, truth, strict=True):
-        place.append(np.linalg.norm(found.centre_in_world - true.centre_in_world))
-        between = found.cam_from_world[:, :3] @ true.cam_from_world[:, :3].T
-        turn.append(np.degrees(rotations.angles(between)))
-        focal.append(abs(found.K[1, 1] / true.K[1, 1] - 1))
-    return {
-        "camera_position_cm": 100 * np.mean(place),
-        "camera_rotation_deg": np.mean(turn),
-        "focal_percent": 100 * np.mean(focal),
-    }
-
-
-def over_volume(error_m: NDArray) -> dict[str, float]:
-    """Return root mean square and 95 % quantile of displacements (N, 3) m, in cm."""
-    distance = 100 * np.linalg.norm(error_m, axis=1)
-    return {
-        "volume_rms_cm": np.sqrt(np.mean(distance**2)),
-        "volume_p95_cm": np.quantile(distance, 0.95),
-    }
-
-
-def coverage(error_m: NDArray, covariance: NDArray) -> dict[str, float]:
-    """Return how often errors lie within the ellipsoids of their covariance, and the size expected.
-
-    Errors (N, 3) are in m, covariances (N, 3, 3) in m2. The result holds `coverage50`, `coverage90`
-    and `coverage95`, 0..1, `squared_ratio`, the normalised estimation error squared (1 where the
-    covariance is right, more where it is too small), and `predicted_volume_cm`, the expected root
-    mean square.
-    """
-    square = mahalanobis(error_m, covariance)
-    shares = {
-        f"coverage{100 * level:.0f}": np.mean(square <= limit) for level, limit in LIMITS.items()
-    }
-    size_cm = expected_rms_cm(covariance)
-    return {**shares, "squared_ratio": np.mean(square) / 3, "predicted_volume_cm": size_cm}
-
-
-def expected_rms_cm(covariance: NDArray) -> float:
-    """Return the root mean square length, cm, of errors with covariances (N, 3, 3) m2."""
-    return 100 * np.sqrt(np.mean(np.trace(covariance, axis1=1, axis2=2)))
 
 
 def expected_cm(

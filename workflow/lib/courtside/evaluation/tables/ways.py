@@ -6,6 +6,7 @@ import numpy as np
 
 from courtside.calibration.court import quality
 from courtside.calibration.court.court import Court
+from courtside.evaluation.calibration import over_volume
 from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
 from courtside.geometry.similarity import umeyama
@@ -38,7 +39,7 @@ def against_truth(cameras: Sequence[Camera], truth: Sequence[Camera], court: Cou
     seen = np.stack([camera_models.project(true, grid) for true in truth])
     xyz = triangulate_all([own[true.name] for true in truth], seen)
     remaining = {"volume_rms_cm": xyz - grid, "shape_cm": umeyama(xyz, grid).points(xyz) - grid}
-    return {name: quality.over_volume(off)["volume_rms_cm"] for name, off in remaining.items()}
+    return {name: over_volume(off)["volume_rms_cm"] for name, off in remaining.items()}
 
 
 def accepted(takes: Sequence[Keypoints3D]) -> dict:
