@@ -5,7 +5,6 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from courtside.geometry import similarity
-from courtside.study.errors import InputError
 from fixtures.cameras.scene import opencv_projection, points, ring
 
 TRUE = similarity.Sim3(
@@ -94,45 +93,3 @@ def test_kabsch_gives_scipys_rotations_and_never_a_reflection(mirror):
 def test_points_without_a_transform_are_programming_faults(x_in_a, x_in_b, message):
     with pytest.raises(ValueError, match=message):
         similarity.umeyama(x_in_a, x_in_b)
-
-
-@pytest.mark.parametrize("n_wrong", [0, 1, 3, 6])
-def test_wrong_points_are_left_out(n_wrong):
-    rng = np.random.default_rng(n_wrong)
-    x_in_a = points(18)
-    x_in_b = TRUE.points(x_in_a) + rng.normal(0, 0.002, (18, 3))
-    x_in_b[:n_wrong] += rng.uniform(0.5, 2, (n_wrong, 3))
-    found, accepted = similarity.robust_umeyama(x_in_a, x_in_b, 0.002)
-    assert accepted.tolist() == [False] * n_wrong + [True] * (18 - n_wrong)
-    assert_same(found, similarity.umeyama(x_in_a[n_wrong:], x_in_b[n_wrong:]))
-    again, _ = similarity.robust_umeyama(x_in_a, x_in_b, 0.002)
-    assert again.scale == found.scale and (again.rotation == found.rotation).all()
-
-
-def test_points_that_scatter_more_than_stated_are_kept_all_the_same():
-    rng = np.random.default_rng(1)
-    x_in_a = points(18)
-    x_in_b = TRUE.points(x_in_a) + rng.normal(0, 0.1, (18, 3))
-    _, accepted = similarity.robust_umeyama(x_in_a, x_in_b, 0.002)
-    assert accepted.sum() >= 16
-
-
-def test_missing_points_are_no_obstacle():
-    x_in_a, x_in_b = points(8), TRUE.points(points(8))
-    x_in_a[2], x_in_b[5, 1] = np.nan, np.nan
-    found, accepted = similarity.robust_umeyama(x_in_a, x_in_b, 0.01)
-    assert np.flatnonzero(~accepted).tolist() == [2, 5]
-    assert_same(found, TRUE)
-
-
-def test_mirrored_and_collinear_points_are_refused():
-    x_in_b = TRUE.points(points(12))
-    with pytest.raises(InputError, match=r"right-handed world .* exchange the names"):
-        similarity.robust_umeyama(points(12) * [-1, 1, 1], x_in_b, 0.005)
-    line = np.outer(range(6), [1, 2, 3])
-    with pytest.raises(
-        InputError, match=r"court points: expected three or more that are not on one line"
-    ):
-        similarity.robust_umeyama(line, line, 0.005)
-    with pytest.raises(InputError, match="found 2 that two cameras see"):
-        similarity.robust_umeyama(points(2), points(2), 0.005)

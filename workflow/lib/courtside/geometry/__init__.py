@@ -4,7 +4,7 @@ camera: `Camera`, `plain`, `project`, `undistort`, `crop`, `scaled`, `check_size
 picture_size: `relation`, `scaled_size`, `advice`: a video's size against the calibrated one
 camera_fields: checked numbers of calibration files (`numbers`, `pose`, `five_coefficients`)
 rotations: `rotation_from_rodrigues`, `rodrigues_from_rotation`, `interpolate`, `invert`, `composed`
-similarity: `Sim3`, `umeyama`, `rigid`, `robust_umeyama`, `kabsch`
+similarity: `Sim3`, `umeyama`, `rigid`, `fit_many`, `kabsch`
 interpolation: `linear`, `between`, `nearest`, `shares`
 boxes: `usual_side`
 epipolar: `straight_px`, `relative_pose`, `fundamental`, `lines`, `distance_px`, `ray_sines`

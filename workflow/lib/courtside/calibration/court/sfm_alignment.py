@@ -10,8 +10,9 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.calibration.court import robust_similarity
 from courtside.calibration.court.court import ClickedPoints, Court
-from courtside.geometry import similarity, triangulation
+from courtside.geometry import triangulation
 from courtside.geometry.camera import Camera
 from courtside.geometry.similarity import Sim3
 from courtside.study.errors import InputError
@@ -90,7 +91,7 @@ def align(court: Court, xyz_in_sfm: NDArray) -> tuple[Sim3, NDArray]:
     Also return which points (P,) bool it accepts. Raises `InputError` if the points are too few,
     collinear or mirrored.
     """
-    return similarity.robust_umeyama(xyz_in_sfm, court.xyz, court.sigma_m)
+    return robust_similarity.fit(xyz_in_sfm, court.xyz, court.sigma_m)
 
 
 def check(
@@ -213,7 +214,7 @@ def stretch(
 
 def _affine_agree(design: NDArray, places: NDArray) -> NDArray:
     """Return which points (n,) bool agree with the affine map that fits most of them."""
-    subsets = similarity.triples(len(design), MOST_SUBSETS)
+    subsets = robust_similarity.triples(len(design), MOST_SUBSETS)
     spanned = np.abs(np.linalg.det(design[subsets]))
     subsets = subsets[spanned > 0.1 * spanned.max()]
     columns = np.linalg.solve(design[subsets], places[subsets])
