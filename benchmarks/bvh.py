@@ -20,13 +20,15 @@ import bvhio
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
+from repository import ROOT
+
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.devices import bvh
 from courtside.exports import bvh as writer
 from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy, forward
 from courtside.records.keypoints import skeleton
 
-SKELETON = Path(__file__).parents[1] / "config" / "skeletons" / "mocopi27.yaml"
+SKELETON = ROOT / "config" / "skeletons" / "mocopi27.yaml"
 GROWTH = (1, 2, 4)
 LINE = "{:<22}{:>8d}{:>11.3f}{:>16.1f}{:>9.3f}{:>10.2f}"
 

@@ -20,7 +20,9 @@ import numpy as np
 import pandas as pd
 from scipy.spatial.transform import Rotation
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
+from repository import ROOT
+
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court_lines import verdict as court_verdict
 from courtside.calibration.file_check import court_place, faults, residuals, verdict
@@ -29,7 +31,6 @@ from courtside.records.keypoints import keypoints, skeleton
 from courtside.records.truth import session_truth
 from courtside.study.configuration import yaml_files
 
-ROOT = Path(__file__).parents[1]
 MODEL = "blazepose-heavy-flip"
 LINES = yaml_files.read(ROOT / "config" / "config.yaml")["propose_court_points"]
 CLICK_PX, N_POINTS, SEEN = 1.0, 8, 0.8

@@ -15,7 +15,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
+from repository import ROOT
+
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.point_covariance import WITHIN_90
 from courtside.evaluation.movement import contacts
 from courtside.evaluation.numbers import stated
@@ -24,7 +26,6 @@ from courtside.kinematics import cutoffs
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.records.truth import take_truth
 
-ROOT = Path(__file__).parents[1]
 TAKES = {
     "`players-b`, drill to six corners, 24 s": ("players-b/footwork",),
     "`players-a` and `players-b`, single strokes and a rally": (

@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 
 import real_footage
+from repository import ROOT
 
-ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
 from courtside.evaluation.numbers import stated

@@ -16,7 +16,9 @@ import cv2
 import numpy as np
 from av.video.reformatter import Interpolation, VideoReformatter
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
+from repository import ROOT
+
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.video import reader
 
 

@@ -21,8 +21,8 @@ import cv2
 import numpy as np
 
 import peers
+from repository import ROOT
 
-ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.study.execution import artefacts, files
 

@@ -23,7 +23,7 @@ import numpy as np
 import pandas as pd
 import scipy
 
-from many_sessions import ROOT
+from repository import ROOT
 
 sys.path[:0] = [str(ROOT / "workflow" / "lib"), str(ROOT / "workflow" / "scripts")]
 

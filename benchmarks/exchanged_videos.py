@@ -20,7 +20,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
+from repository import ROOT
+
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.file_check import exchanged_videos
 from courtside.geometry.camera import Camera, read_toml, turned
 from courtside.records.truth import session_truth

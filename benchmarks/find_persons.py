@@ -23,7 +23,7 @@ import numpy as np
 import pandas as pd
 
 import hall_markers
-from many_sessions import ROOT
+from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 

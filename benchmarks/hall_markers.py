@@ -25,7 +25,8 @@ import pandas as pd
 import yaml
 from scipy.spatial.transform import Rotation
 
-from many_sessions import ROOT, copied
+from many_sessions import copied
+from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 

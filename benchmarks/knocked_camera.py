@@ -17,7 +17,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from people_seen import LIMITS, ROOT, STATED, of_takes
+from people_seen import LIMITS, STATED, of_takes
+from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.people import knocks, prior, views

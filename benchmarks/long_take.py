@@ -22,7 +22,8 @@ from types import SimpleNamespace
 import numpy as np
 import yaml
 
-from many_sessions import ROOT, mib
+from many_sessions import mib
+from repository import ROOT
 
 try:
     import resource

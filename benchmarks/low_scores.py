@@ -16,7 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).parents[1]
+from repository import ROOT
+
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.evaluation import error_fit, joints
 from courtside.evaluation.numbers import stated

@@ -23,7 +23,8 @@ from pathlib import Path
 
 import yaml
 
-ROOT = Path(__file__).parents[1]
+from repository import ROOT
+
 KEPT = ("Snakefile", "workflow", "config", "profiles", "environment.lock")
 LINE = (
     "{:>8} sessions x {} takes x {} cameras{:>9} jobs{:>9.1f} s{:>9.1f} s of processor{:>9.0f} MB"

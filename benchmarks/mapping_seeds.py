@@ -16,8 +16,10 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
-sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "scripts"))
+from repository import ROOT
+
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
+sys.path.insert(0, str(ROOT / "workflow" / "scripts"))
 import adjust_network
 import map_images
 
@@ -28,7 +30,6 @@ from courtside.records.truth import session_truth
 from courtside.study.configuration import yaml_files
 from virtualgym.session import clicks
 
-ROOT = Path(__file__).parents[1]
 CLICKS = "click_sigma_px", "click_bias_px", "click_loss"
 LINE = "{:<13}{:<8}{:>7}{:>9}{:>9}{:>9}"
 

@@ -22,7 +22,8 @@ import numpy as np
 import pandas as pd
 from scipy.spatial.transform import Rotation
 
-from people_seen import LIMITS, ROOT, STATED, of_takes
+from people_seen import LIMITS, STATED, of_takes
+from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.court import court as court_files

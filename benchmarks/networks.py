@@ -27,8 +27,9 @@ import pandas as pd
 import yaml
 
 import hall_markers
-from many_sessions import ROOT, copied
+from many_sessions import copied
 from real_footage import LATER
+from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 

@@ -17,8 +17,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from many_sessions import ROOT
 from real_footage import LATER
+from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 

@@ -21,7 +21,7 @@ import pandas as pd
 
 import body_model
 import peers
-from many_sessions import ROOT
+from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 

@@ -21,7 +21,8 @@ from courtside.calibration.court import joint_adjustment
 from courtside.calibration.records import tie_points
 from courtside.evaluation import calibration as trials
 from courtside.evaluation.numbers import calibration, register, stated
-from ways_to_calibrate import HALLS, ROOT, WEIGHTS
+from repository import ROOT
+from ways_to_calibrate import HALLS, WEIGHTS
 
 COMMAND = "`python benchmarks/other_halls.py`"
 TABLES = {"calibration": "halls", "calibration-strengths": "halls-strengths"}

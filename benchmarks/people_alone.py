@@ -22,7 +22,8 @@ from pathlib import Path
 import numpy as np
 import scipy
 
-from people_seen import CONFIG, LIMITS, ROOT, WEIGHTS
+from people_seen import CONFIG, LIMITS, WEIGHTS
+from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration import point_covariance

@@ -1,9 +1,9 @@
 """What cameras see of people in takes, and config.yaml's settings of cameras refined by them."""
 
 import sys
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
+from repository import ROOT
+
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.people.views import Limits
 from courtside.reconstruction import common_views

@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from many_sessions import ROOT
+from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 

@@ -21,9 +21,9 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 
+from repository import ROOT
 from strokes import made, skeletons
 
-ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.court import court
 from courtside.evaluation.movement import contacts, reactions, strokes

@@ -21,8 +21,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
-sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "scripts"))
+from repository import ROOT
+
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
+sys.path.insert(0, str(ROOT / "workflow" / "scripts"))
 import filter_motion
 
 from courtside.calibration import file_formats
@@ -36,7 +38,7 @@ from courtside.records.cameras import clicks
 from courtside.records.keypoints import keypoints, people, skeleton
 from courtside.study.configuration import yaml_files
 
-CONFIG = Path(__file__).parents[1] / "config"
+CONFIG = ROOT / "config"
 # Frames: OpenPose's number 0, and Pose2Sim's first row, show the video's frame 1. By number, its
 # keypoints are nearest to those of this study so, in each of the four cameras, and lie on the limbs
 # of the picture (tests/test_real_footage.py).

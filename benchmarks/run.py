@@ -15,7 +15,9 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "workflow" / "lib"))
+from repository import ROOT
+
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
 import cv2
 import pandas as pd
@@ -27,7 +29,6 @@ import rows
 import run_log
 from comparisons import decoding, filtering, hierarchy, pose, structure, study, triangulation
 
-ROOT = Path(__file__).resolve().parents[1]
 ALL = [triangulation, filtering, pose, hierarchy, decoding, study, structure]
 IMAGES = 10, 20, 40, 75
 VIDEO = "external/pose2sim/Pose2Sim/Demo_SinglePerson/videos/cam01.mp4"

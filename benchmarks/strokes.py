@@ -18,7 +18,8 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 
-ROOT = Path(__file__).parents[1]
+from repository import ROOT
+
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.court import court
 from courtside.calibration.point_covariance import WITHIN_90

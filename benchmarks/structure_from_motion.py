@@ -27,7 +27,9 @@ from pathlib import Path
 import numpy as np
 import pycolmap
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
+from repository import ROOT
+
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.bundle import selection
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court import joint_adjustment, sfm_alignment
@@ -37,7 +39,6 @@ from courtside.records.truth import session_truth
 from courtside.sfm import database, features, grid, mapping, matching, model, registration
 from courtside.study.configuration import yaml_files
 
-ROOT = Path(__file__).parents[1]
 STEPS = "features", "matching", "mapping"
 LINE = "{:<13}{:>10}{:>10}{:>10}{:>9}{:>9}{:>12}{:>10}{:>10}"
 

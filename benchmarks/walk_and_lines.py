@@ -27,8 +27,9 @@ from courtside.evaluation.numbers import stated
 from courtside.evaluation.numbers.players import NETWORK
 from courtside.reconstruction import joint_correction
 from courtside.records.cameras import clicks
+from repository import ROOT
 
-ROOT, CONFIG = ways_to_calibrate.ROOT, ways_to_calibrate.CONFIG
+CONFIG = ways_to_calibrate.CONFIG
 WEIGHTS = {**ways_to_calibrate.WEIGHTS, "max_iterations": 30}
 SESSIONS = ("players-b",)
 WAYS = ("clicks", "both", "lines")

@@ -25,7 +25,8 @@ from pathlib import Path
 
 import numpy as np
 
-from people_seen import ROOT, WEIGHTS
+from people_seen import WEIGHTS
+from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration import point_covariance

@@ -25,7 +25,8 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from people_seen import CONFIG, LIMITS, ROOT, STATED, WEIGHTS, of_takes
+from people_seen import CONFIG, LIMITS, STATED, WEIGHTS, of_takes
+from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
