@@ -67,7 +67,8 @@ def code_digest(script: StrPath, library: StrPath) -> str:
     It changes with the syntax trees, not with comments, docstrings or formatting. `library` is the
     folder that holds the packages of the library. A syntax error is an `InputError`.
     """
-    return _code_digest(_paths(script, library))
+    found = _modules(script, library)
+    return _code_digest([Path(script), *(found[name] for name in sorted(found))])
 
 
 def _code_digest(paths: Sequence[Path]) -> str:
@@ -76,13 +77,12 @@ def _code_digest(paths: Sequence[Path]) -> str:
 
 def modules_of(script: StrPath, library: StrPath) -> set[str]:
     """Return the full names of all library modules and packages that a file reaches."""
-    return set(_reached(Path(script), lambda path: _links(_parsed(path)[1], Path(library))))
+    return set(_modules(script, library))
 
 
-def _paths(script: StrPath, library: StrPath) -> list[Path]:
-    """Return a script and the files of the modules that it reaches, by their names."""
-    found = _reached(Path(script), lambda path: _links(_parsed(path)[1], Path(library)))
-    return [Path(script), *(found[name] for name in sorted(found))]
+def _modules(script: StrPath, library: StrPath) -> dict[str, Path]:
+    """Return {name: file} of all library modules and packages that a file reaches."""
+    return _reached(Path(script), lambda path: _links(_parsed(path)[1], Path(library)))
 
 
 class Remembered:
