@@ -177,7 +177,7 @@ rule fit_skeleton:
         code=code("fit_skeleton.py"),
         step=of_job(lambda job: job.some("filter_motion", ["max_gap_s"])),
         sex_of=of_job(takes.sexes),
-        height_m_of=of_job(takes.heights),
+        height_m_of=of_job(takes.stated, "height_m"),
     script:
         "../scripts/fit_skeleton.py"
 
@@ -199,7 +199,7 @@ rule export_motion:
     params:
         code=code("export_motion.py"),
         sex_of=of_job(takes.sexes),
-        mass_kg_of=of_job(takes.masses),
+        mass_kg_of=of_job(takes.stated, "mass_kg"),
     script:
         "../scripts/export_motion.py"
 
@@ -279,7 +279,7 @@ rule find_strokes:
         f"results/{{session}}/logs/find_strokes/{paths.OF_FUSED}.log",
     params:
         code=code("find_strokes.py"),
-        hand_of=of_job(takes.hands),
+        hand_of=of_job(takes.stated, "hand"),
     script:
         "../scripts/find_strokes.py"
 

@@ -123,13 +123,13 @@ def test_sexes_are_those_of_a_take_or_of_the_whole_session(job, study):
     assert takes.sexes(one) == {"p1": None}
 
 
-def test_masses_are_those_that_the_session_states(job, study):
-    assert takes.masses(job(**SHOT)) == {"p1": 74}
+def test_what_is_stated_of_persons_is_by_person_of_a_take(job, study):
+    assert takes.stated(job(**SHOT), "mass_kg") == {"p1": 74}
     session = study.sessions["players-tiny"]
     unstated = {**session.subjects, "p1": replace(session.subjects["p1"], mass_kg=None)}
     other = replace(session, subjects=unstated)
     one = job(replace(study, sessions={"players-tiny": other}), **SHOT)
-    assert takes.masses(one) == {"p1": None}
+    assert takes.stated(one, "mass_kg") == {"p1": None}
 
 
 def test_files_for_other_programs_are_made_of_a_stage_with_consent(job, study):

@@ -93,16 +93,12 @@ def colour_frames(job: Job) -> str | list:
     return job.fill(paths.COLOUR_FRAMES) if job.device.kind == "rgbd" else []
 
 
-def fused(job: Job) -> str:
-    """Return the fixed cameras' skeletons to compare devices with: last stage, first method."""
-    return _fused(job, job.stages()[-1])
-
-
-def _fused(job: Job, stage: str) -> str:
+def fused(job: Job, stage: str = "") -> str:
+    """Return the fixed cameras' skeletons of a stage, by default the last, by the first method."""
     session = job.session
     fusion = session.fusions_of(job.take)[0]
     way = {"calibration": session.take_calibrations()[0], "fusion": fusion}
-    return job.fill(paths.SKELETONS, stage=stage, **way)
+    return job.fill(paths.SKELETONS, stage=stage or job.stages()[-1], **way)
 
 
 def clocks(job: Job, corrected: bool = True) -> dict[str, str]:
@@ -187,7 +183,7 @@ def fitted(job: Job) -> dict[str, str]:
     """
     found = {name: job.fill(paths.FITTED_SOURCE, source=name) for name in source_sigmas(job)}
     if CAMERAS in sources(job) and paths.MODELLED in job.study.written_stages(job["model"]):
-        found[CAMERAS] = _fused(job, paths.MODELLED)
+        found[CAMERAS] = fused(job, paths.MODELLED)
     return found
 
 

@@ -33,12 +33,10 @@ def layers(job: Job) -> list[dict[str, Any]]:
 
 def _fused_layers(job: Job) -> list[dict[str, Any]]:
     """Return the layers of the fixed cameras; only the last stage is shown at first."""
-    session, stages = job.session, job.stages()
-    fusion = session.fusions_of(job.take)[0]
-    way = {"calibration": session.take_calibrations()[0], "fusion": fusion}
+    stages = job.stages()
     return [
         {
-            "file": job.fill(paths.SKELETONS, stage=stage, **way),
+            "file": devices.fused(job, stage),
             "name": STAGE_WORDS[stage],
             "of": job.model.skeleton,
             "shown": stage == stages[-1],

@@ -103,25 +103,15 @@ def sexes(job: Job) -> dict[str, str | None]:
     return {name: known[name].sex if known[name].sex in ("m", "f") else None for name in people}
 
 
-def hands(job: Job) -> dict[str, str | None]:
-    """Return {person: playing hand} of a take; None unless stated."""
-    return {name: job.session.subjects[name].hand for name in job.take.subjects}
+def stated(job: Job, key: str) -> dict[str, Any]:
+    """Return {person: what the session states under a key} of a take; None where it does not."""
+    return {name: getattr(job.session.subjects[name], key) for name in job.take.subjects}
 
 
 def known_of_network(job: Job, pattern: str) -> Path | list:
     """Return a file of `config/` on a network, where there is one of it."""
     path = job.study.folder / pattern.format(model=job["model"])
     return path if path.is_file() else []
-
-
-def heights(job: Job) -> dict[str, float | None]:
-    """Return {person: height in metres} of a take, None where the session does not state it."""
-    return {name: job.session.subjects[name].height_m for name in job.take.subjects}
-
-
-def masses(job: Job) -> dict[str, float | None]:
-    """Return {person: mass in kilograms} of a take, None where the session does not state it."""
-    return {name: job.session.subjects[name].mass_kg for name in job.take.subjects}
 
 
 def exported_motion(job: Job) -> str:
