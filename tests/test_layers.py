@@ -65,7 +65,7 @@ OWNERS = {
 SLOW = ("scipy.", "jsonschema")
 SLOWEST = ("scipy.signal", "scipy.stats")
 # How rules name files of truth.
-TRUTH = ("truth.npz", "TRUTH", "TRUE_TAKE", "true_take", "BACKDROPS", "backdrops")
+TRUTH = ("truth.npz", "TRUTH", "TRUE_TAKE", "BACKDROPS", "backdrops")
 FOR_SCRIPTS = {"courtside", "virtualgym", "numpy", "pandas", "cv2", *sys.stdlib_module_names}
 
 

@@ -62,13 +62,13 @@ try:
     }
     REMARKS = []  # on recordings and stated bodies: told at the start, and again at the end
     if workflow.is_main_process:  # jobs need not look again, nor load what looks
-        from courtside.validation import check as recorded
+        from courtside.validation import check as validation
         from courtside.validation import providers
         from courtside.validation.remembered import Remembered
 
         providers.check(STUDY)
         looks = Remembered(Path(".snakemake") / "courtside" / "recordings.json")
-        REMARKS = [f"Remark: {remark}" for remark in recorded.check(STUDY, looks)]
+        REMARKS = [f"Remark: {remark}" for remark in validation.check(STUDY, looks)]
         print(*REMARKS, sep="\n", end="\n" * bool(REMARKS), file=sys.stderr)
     own = [f"data/{name}" for name in STUDY.sessions]
     own += [path for session in STUDY.sessions.values() for path in session.recordings()]
