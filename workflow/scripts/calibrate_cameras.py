@@ -83,8 +83,8 @@ def solve(record, clicks_csv, court_yaml, *, pictures, search=None, **options):
         lines=constraints.knowledge,
         **options,
     )
-    warnings = [*checked["warnings"], *constraints.warnings]
-    return found, checked | constraints.summary() | {"warnings": warnings}
+    told = {"warnings": [*checked["warnings"], *constraints.warnings]}
+    return found, checked | constraints.summary() | told | {"remarks": constraints.remarks}
 
 
 if __name__ == "__main__":

@@ -43,9 +43,11 @@ def main(
     except InputError as error:
         found = refinement.unchanged(base, known, str(error))
     covariance = known if found.taken == "base" else found.covariance
-    said = [found.line, *found.wrong, *lost, *knocks.lines(rows)]
-    for line in said:
-        log.logger.warning("%s", line)
+    kept = found.taken == "base"  # with what is wrong in it; otherwise that is put right
+    report |= {"line": found.line, "warnings": [*(found.wrong if kept else []), *lost]}
+    report["remarks"] = [found.line, *([] if kept else found.wrong), *knocks.lines(rows)]
+    for line in report["warnings"] + report["remarks"]:
+        log.logger.info("%s", line)
     report |= {"taken": found.taken, "verdicts": found.verdicts, "wrong": found.wrong}
     report["expected_before_cm"] = expected_cm(paths.court, base, known)
     report["expected_volume_rms_cm"] = expected_cm(paths.court, found.cameras, covariance)
@@ -53,7 +55,7 @@ def main(
     camera_models.write_toml(cameras_toml, found.cameras, source=f"{calibration}, {found.taken}")
     camera_covariance.write(covariance_npz, covariance)
     tables.write(table_csv, found.table, float_format="%.4f")
-    write_json(quality_json, {**report, "warnings": said})
+    write_json(quality_json, report)
 
 
 def people_of(paths, base, takes, limits):

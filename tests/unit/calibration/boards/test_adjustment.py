@@ -182,7 +182,8 @@ def test_a_real_recording_against_caliscope():
     assert -0.3 < mean < 0.3
     assert spread < 0.9
     assert count > 900
-    (floor, scatter) = adjustment.summary(found, seen, board, stated=False)["warnings"]
+    report = adjustment.summary(found, seen, board, stated=False)
+    (floor,), (scatter,) = report["remarks"], report["warnings"]
     assert "z = 0 its plane" in floor
     assert "the cameras did not film at one time" in scatter
     ours, others = (np.array([c.centre_in_world for c in one]) for one in (found.cameras, theirs))

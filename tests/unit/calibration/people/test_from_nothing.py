@@ -1,5 +1,7 @@
 """Cameras from made people: the true ones after one rigid motion; bad input is one line."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -64,6 +66,9 @@ def test_cameras_with_unknown_lenses_are_found_from_two_persons_and_their_height
     summary = from_nothing.summary(found, ["walk"])
     assert min(summary["accepted_percent"].values()) > 95
     assert summary["line"].startswith("people alone: views of held-out joints disagree by ")
+    told = replace(found, warnings=[unit.ONE_HEIGHT, "floor: it differs"])
+    summary = from_nothing.summary(told, ["walk"])
+    assert (summary["remarks"], summary["warnings"]) == ([unit.ONE_HEIGHT], ["floor: it differs"])
 
 
 def test_a_lens_of_a_board_is_not_guessed():

@@ -32,7 +32,8 @@ def adjusted_once():
 def test_disturbed_cameras_are_refined():
     base = walkers.disturbed(TRUE, KNOWN, 1)
     found = refinement.refine(base, KNOWN, SEEN, LIMITS, STATIC)
-    assert found.taken == "refined" and found.line.startswith("cameras refined: held out")
+    words = "cameras refined by people were taken; what the fit did not see: refined, joints better"
+    assert found.taken == "refined" and found.line.startswith(f"{words} (")
     assert found.verdicts == {"refined": {"joints": "better", "static": "better"}}
     table = found.table.set_index(["what", "camera"])
     assert table.loc[("static_px", "all"), "refined"] < table.loc[("static_px", "all"), "base"]
@@ -40,13 +41,16 @@ def test_disturbed_cameras_are_refined():
     assert moved["base"] == 0 and 0 < moved["refined"] < 20 and moved["sigma"] > 0
     assert found.covariance.covariance.shape == KNOWN.covariance.shape
     assert np.trace(found.covariance.covariance) < np.trace(KNOWN.covariance)
-    assert found.line.endswith("; no court points were held out")
+    assert " thousandths of the height), points at rest better (" in found.line
+    off = table.loc[("static_px", "all")]
+    assert found.line.endswith(f"({off['base']:.1f} -> {off['refined']:.1f} px)")
 
 
 def test_good_cameras_are_kept_as_they_are():
     found = refinement.refine(TRUE, KNOWN, SEEN, LIMITS, STATIC)
     assert found.taken == "base" and found.wrong == []
-    assert found.line.startswith("cameras kept as before: held out, refined cameras: joints")
+    words = "cameras kept as before; what the fit did not see: refined, joints"
+    assert found.line.startswith(words)
     for one, true in zip(found.cameras, TRUE, strict=True):
         np.testing.assert_array_equal(one.K, true.K)
     assert found.covariance is KNOWN
@@ -57,6 +61,7 @@ def test_a_mirrored_principal_point_is_named_and_mended():
     found = refinement.refine(base, KNOWN, SEEN, LIMITS, STATIC, calibrated=base)
     assert found.taken in ("mended", "refined")
     assert "principal point of camera c0 is mirrored in x" in found.wrong[0]
+    assert "did not see: without the faults named, joints better (" in found.line
     assert found.cameras[0].K[0, 2] == pytest.approx(TRUE[0].K[0, 2], abs=6)
 
 
@@ -103,5 +108,6 @@ def test_a_camera_found_again_is_told_adjusted_and_taken():
     found = refinement.refine(base, known, SEEN, LIMITS, Points(), found_again=again)
     assert found.taken == "refined" and found.verdicts["mended"] == {"joints": "better"}
     assert found.wrong[0].startswith("camera c2: expected people in its pictures")
+    assert "did not see: with cameras found again, joints better (" in found.line
     off_m = np.linalg.norm(found.cameras[2].centre_in_world - TRUE[2].centre_in_world)
     assert off_m < 0.03

@@ -339,9 +339,9 @@ def summary(found: Found, seen: Corners, board: Board, *, stated: bool) -> dict[
     triangulated from two cameras or more, mean and standard deviation. `stated` says whether the
     session names the picture on the floor.
     """
-    warnings = []
+    warnings, remarks = [], []
     if not stated:
-        warnings.append(
+        remarks.append(
             f"board: the world is the board of picture {found.world}, z = 0 its plane; name the "
             "picture in which it lies on the floor as `floor`"
         )
@@ -351,7 +351,8 @@ def summary(found: Found, seen: Corners, board: Board, *, stated: bool) -> dict[
             "board moved while the cameras did not film at one time, or pictures are blurred; let "
             "it rest, and give `lenses`"
         )
-    report: dict[str, Any] = {"warnings": warnings, "world_of_picture": found.world}
+    report: dict[str, Any] = {"warnings": warnings, "remarks": remarks}
+    report["world_of_picture"] = found.world
     own = [seen.camera == c for c in range(len(found.cameras))]
     rms_px = [float(np.sqrt(np.nanmean(found.error_px[rows] ** 2))) for rows in own]
     warnings += _worse_cameras(found, rms_px)

@@ -51,7 +51,8 @@ class LineConstraints:
     n_edges: dict[str, int]  # by camera
     off_sigmas: dict[str, float]  # by camera: root mean square distance from the walk's prediction
     painting_m: float  # standard deviation of the painting deviation, across the line
-    warnings: list[str]  # cameras whose lines are not seen, or contradict the walk
+    warnings: list[str]  # cameras whose lines contradict the walk
+    remarks: tuple[str, ...] = ()  # cameras whose lines are not seen
 
     def summary(self) -> dict[str, Any]:
         """Return a summary for a JSON file."""
@@ -77,16 +78,16 @@ def of_pictures(
     """
     weights = {**weights, "max_iterations": joint_adjustment.SOLVE_ITERATIONS}
     base = joint_adjustment.solve_with_factors(ties, clicks, court, **weights)
-    found, warnings = {}, []
+    found, remarks = {}, []
     for camera in base.cameras:
         image, search_px = images[camera.name], search_share * camera.size[0]
         seen, reason = edges.measure(camera, image, court, search_px=search_px, lines=lines)
         if seen is None:
-            warnings.append(f"camera {camera.name}: court lines not used: {reason}")
+            remarks.append(f"camera {camera.name}: court lines not used: {reason}")
         else:
             found[camera.name] = seen
     constraints = from_edges(base, ties, clicks, court, found, **weights)
-    return replace(constraints, warnings=[*warnings, *constraints.warnings])
+    return replace(constraints, remarks=tuple(remarks))
 
 
 def from_edges(

@@ -1,6 +1,6 @@
 """A calibration refined by people, beside the one that it began from: taken only where better."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -24,6 +24,12 @@ FEWEST_DIFFERENT = 4.0
 # takes, cameras that fitted its errors were better by 1 to 2 %, and worse over the volume.
 LEAST_ALONE = 0.05
 COLUMNS = ("what", "camera", "base", "mended", "refined", "sigma")
+TAKEN = {
+    "base": "cameras kept as before",
+    "mended": "cameras without the faults named were taken, not adjusted",
+    "refined": "cameras refined by people were taken",
+}
+KINDS = {"court": "court points", "static": "points at rest"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,11 +76,11 @@ def refine(
     scores["refined"] = held_out.score(lambda *part: fit(*part).cameras, seen, points, limits)
     refined = fit(seen, points.court if points.fitted else None)
     ways = {"base": list(cameras), "mended": mended, "refined": refined.cameras}
-    taken, verdicts = _judged(scores, seen, refined.alike, found_again is not None)
+    taken, verdicts, steps = _judged(scores, seen, refined.alike, found_again is not None)
     spread = camera_covariance.of_network([c.name for c in cameras], refined.covariance)
     table = pd.concat([_measures(cameras, scores), _numbers(ways, spread)])
     wrong = [*wrong, *_named(mended, refined.cameras, known)] if taken == "refined" else wrong
-    line = _line(taken, verdicts)
+    line = f"{TAKEN[taken]}; what the fit did not see: {'; '.join(steps)}"
     return Found(
         ways[taken], spread if taken == "refined" else known, taken, line, verdicts, wrong, table
     )
@@ -82,19 +88,33 @@ def refine(
 
 def _judged(
     scores: dict[str, Score], seen: Seen, alike: float, started: bool
-) -> tuple[str, dict[str, dict[str, str]]]:
-    """Return the way that is taken, and the verdicts of each; `started`: cameras found again."""
-    taken, verdicts = "base", {}
+) -> tuple[str, dict[str, dict[str, str]], list[str]]:
+    """Return the way that is taken, the verdicts of each, and in words what changes by each.
+
+    `started`: cameras found again.
+    """
+    taken, verdicts, steps = "base", {}, []
+    names = {"mended": "with cameras found again" if started else "without the faults named"}
     for way in list(scores)[1:]:
-        said = verdicts[way] = held_out.verdicts(scores[taken], scores[way])
-        if taken == "mended" and started:
-            taken = taken if "worse" in said.values() else way
-            continue
-        if way == "refined" and list(said) == ["joints"]:
-            gain = 1 - np.exp(held_out.change(scores[taken], scores[way])[0])
-            said |= _alone(seen, alike, gain)
-        taken = way if held_out.better(said) else taken
-    return taken, verdicts
+        before, after, is_started = scores[taken], scores[way], started and taken == "mended"
+        said = verdicts[way] = held_out.verdicts(before, after)
+        if way == "refined" and list(said) == ["joints"] and not is_started:
+            said |= _alone(seen, alike, 1 - np.exp(held_out.change(before, after)[0]))
+        steps.append(f"{names.get(way, way)}, {', '.join(_changes(said, before, after))}")
+        is_better = "worse" not in said.values() if is_started else held_out.better(said)
+        taken = way if is_better else taken
+    return taken, verdicts, steps
+
+
+def _changes(said: dict[str, str], before: Score, after: Score) -> Iterator[str]:
+    """Yield in words whether views of each kind of points agree better, and by how much."""
+    for what, word in said.items():
+        if what == "joints":
+            off = [f"{1000 * one.typical():.1f}" for one in (before, after)]
+            word = f"{word} ({' -> '.join(off)} thousandths of the height)"
+        elif what in KINDS:
+            word = f"{word} ({before.rms_px(what):.1f} -> {after.rms_px(what):.1f} px)"
+        yield f"{KINDS.get(what, what)} {word}"
 
 
 def unchanged(cameras: Sequence[Camera], known: CameraCovariance, why: str) -> Found:
@@ -137,18 +157,6 @@ def _alone(seen: Seen, alike: float, gain: float) -> dict[str, str]:
         least = f"{100 * gain:.1f} %, expected {100 * LEAST_ALONE:.0f} %"
         found["size of the change"] = f"not better ({least}; {advice})"
     return found
-
-
-def _line(taken: str, verdicts: dict[str, dict[str, str]]) -> str:
-    """Return which cameras are taken, and why, in one line."""
-    said = "; ".join(
-        f"{way} cameras: " + ", ".join(f"{what} {word}" for what, word in found.items())
-        for way, found in verdicts.items()
-    )
-    kept = {"base": "kept as before", "mended": "mended, not adjusted", "refined": "refined"}
-    if not any("court" in found for found in verdicts.values()):
-        said += "; no court points were held out"
-    return f"cameras {kept[taken]}: held out, {said}"
 
 
 def _named(base: Sequence[Camera], refined: Sequence[Camera], known: CameraCovariance) -> list[str]:

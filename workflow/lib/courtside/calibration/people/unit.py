@@ -38,6 +38,8 @@ LEAST_FRAMES = 20  # ASSUME: for the length of a body
 SURE = 2.0  # standard deviations
 NOBODY = 3.0  # standard deviations: cost of a track of no person, and of a person without a track
 HEIGHTS = "stated heights"
+# A remark, not a doubt: the stated error of the scale contains it.
+ONE_HEIGHT = "only one person's height defines the scale; add a second person, or a known length"
 MOST_NAMED = 4  # lengths that a line names
 MOST_WAYS = 4096  # assignments of tracks to persons in one take; only the longest tracks are used
 MOST_PERSONS = 5  # of a take with assignments; with more, tracks are ordered by length
@@ -263,9 +265,7 @@ def by_heights(bodies: Sequence[Body], heights_m: Sequence[Sequence[float | None
     rivals = [np.expm1(one[1] - unit) for one in found if one[0] < cost + SURE**2]
     warnings = [*_rivals(rivals, sigma), *_disagreeing(ratios, SURE * np.sqrt(2) * of_height)]
     if persons == 1:
-        warnings.append(
-            "only one person's height defines the scale; add a second person, or a known length"
-        )
+        warnings.append(ONE_HEIGHT)
     return Unit(float(np.exp(unit)), sigma, HEIGHTS, tuple(warnings))
 
 

@@ -21,7 +21,9 @@ MOST_SIGMA_PX = 3.0  # of a marker
 
 
 def summary(found: Found, wand: Wand, seen: Seen, known: set[str]) -> dict[str, Any]:
-    """Return the fit of the markers, and warnings; `known` are the cameras with given lenses.
+    """Return the fit of the markers, warnings and remarks.
+
+    `known` are the cameras with given lenses.
 
     By camera: number of frames, `rms_px` per axis without wrong markers, the share of these
     (`wrong_percent`) of the markers that another camera sees, standard deviations of the position
@@ -54,6 +56,7 @@ def summary(found: Found, wand: Wand, seen: Seen, known: set[str]) -> dict[str, 
         for key, value in one.items():
             report.setdefault(key, {})[camera.name] = value
     report["warnings"] = _warnings(found, wand) + _of_cameras(found, seen, known, late, late_sigma)
+    report["remarks"] = [] if found.stated else [_world(found)]
     return report
 
 
@@ -79,14 +82,16 @@ def _length_mm(found: Found, wand: Wand) -> dict[str, float | int]:
     return {"median": middle, "spread": spread, "n": len(off)}
 
 
+def _world(found: Found) -> str:
+    return (
+        "wand: the origin is the middle of the wand's path, z is up as in the pictures, and x "
+        f"runs from camera {found.cameras[0].name} to {found.cameras[1].name}; set `floor` to "
+        "frames in which the wand lies on the floor, or click court points"
+    )
+
+
 def _warnings(found: Found, wand: Wand) -> list[str]:
     lines = []
-    if not found.stated:
-        lines.append(
-            "wand: the origin is the middle of the wand's path, z is up as in the pictures, and x "
-            f"runs from camera {found.cameras[0].name} to {found.cameras[1].name}; set `floor` to "
-            "frames in which the wand lies on the floor, or click court points"
-        )
     if found.adjusted.sigma_px > MOST_SIGMA_PX:
         lines.append(
             f"wand: expected markers with a sigma below {MOST_SIGMA_PX:g} px, found "

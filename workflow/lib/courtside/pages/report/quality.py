@@ -68,7 +68,7 @@ def _used(name: str | None, known: dict[str, dict]) -> dict | None:
 
     `words`: what it is; `expected_cm` and, of one refined by people, `base`, `before_cm`, `line`
     (which cameras were taken, by what was held out), `wrong` (numbers named) and `others` (what
-    else its `warnings` say).
+    else its `warnings` and `remarks` say).
     """
     if not name or name not in known:
         return None
@@ -76,10 +76,10 @@ def _used(name: str | None, known: dict[str, dict]) -> dict | None:
     found: dict = {"name": name, "words": methods.CALIBRATED[way.kind], "base": way.base}
     found["expected_cm"] = content.get("expected_volume_rms_cm")
     if way.base:
-        line, *others = content["warnings"]
-        wrong = [one for one in others if one in content.get("wrong", ())]
+        line, wrong = content["line"], content["wrong"]
         found |= {"line": line, "wrong": wrong, "before_cm": content.get("expected_before_cm")}
-        found["others"] = [one for one in others if one not in wrong]
+        told = [*content["warnings"], *content["remarks"]]
+        found["others"] = [one for one in told if one not in (line, *wrong)]
         found |= {"of_base": methods.CALIBRATED[Calibration.parse(way.base).kind]}
     return found
 

@@ -151,7 +151,11 @@ def no_tpose(row: dict) -> Warned | None:
 
 def calibration(name: str, quality: dict) -> list[Warned]:
     """Return the warnings of a calibration; `quality` is the content of its quality.json."""
-    found = [Warned(LOOK, f"Calibration: {text}.") for text in quality.get("warnings", ())]
+    found = [
+        Warned(level, f"Calibration: {text}.")
+        for key, level in (("warnings", LOOK), ("remarks", GOOD))
+        for text in quality.get(key, ())
+    ]
     error, expected = left_out_cm(quality), quality.get("expected_volume_rms_cm")
     ties = quality.get("tie_residual_px")
     for quantity, value, words in (

@@ -130,7 +130,7 @@ def lost_pictures(study: Study) -> list[str]:
 
 
 def warnings(study: Study) -> list[str]:
-    """Return the warnings about cameras with which recorded takes are measured, a line for each."""
+    """Return warnings and remarks on cameras that recorded takes are measured with, a line each."""
     found = []
     for session in study.sessions.values():
         ways = [] if session.virtual else session.take_calibrations()
@@ -138,10 +138,12 @@ def warnings(study: Study) -> list[str]:
         read = [paths.CALIBRATION_QUALITY.format(session=name, calibration=way) for way in ways]
         read += [] if session.virtual else file_checks(session)
         for path in (path for path in read if Path(path).is_file()):
-            told = files.read_json(Path(path)).get("warnings", [])
-            found += [f"Warning: {session.name}: {line}; see {path}" for line in told[:N_WARNINGS]]
+            content = files.read_json(Path(path))
+            told = content.get("warnings", [])
+            found += [f"Warning: {name}: {line}; see {path}" for line in told[:N_WARNINGS]]
             more = len(told) - N_WARNINGS
-            found += [f"Warning: {session.name}: {more} more warnings in {path}"] * (more > 0)
+            found += [f"Warning: {name}: {more} more warnings in {path}"] * (more > 0)
+            found += [f"{name}: {line}; see {path}" for line in content.get("remarks", ())]
     return found
 
 
