@@ -289,7 +289,8 @@ rule judge_take:
     input:
         files_of(
             takes.judged,
-            *("cameras", "people", "sync", "pose3d", "pose2d", "skeleton", "court_check"),
+            *("cameras", "quality", "check", "court_check"),
+            *("people", "sync", "pose3d", "pose2d", "skeleton"),
         ),
     output:
         quality_csv=paths.QUALITY,

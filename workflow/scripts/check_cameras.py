@@ -32,7 +32,9 @@ def main(paths, check_json, check_csv, *, names, override, takes, unit=None):
     tables.write(check_csv, rows, float_format="%.3f")
     content = {
         "warnings": judged.warnings,
-        "faults": [{"what": one.what, "advice": one.advice} for one in judged.faults],
+        "faults": [
+            {"what": one.what, "advice": one.advice, "cameras": one.names} for one in judged.faults
+        ],
         "disagree_px": judged.px,
         "without_faults_px": judged.mended_px,
     }

@@ -33,6 +33,7 @@ def main(paths, check_json, check_csv, *, names, override, unit=None):
     content = {
         "warnings": judged.warnings,
         "cameras": judged.of_camera,
+        "shared": judged.shared,
         "faults": [{"what": one.what, "advice": one.advice} for one in judged.faults],
         "n_agreeing": place.n_agreeing() if place else 0,
     }

@@ -1,20 +1,20 @@
 """Verdicts: a fault of one camera is that camera's, its cause is named, and the rest is good."""
 
-from types import MappingProxyType
-
 import numpy as np
 import pytest
 
 from courtside.quality import causes, verdict
+from courtside.quality.doubts import Doubts
 from courtside.study.execution.verdicts import ALL, COLUMNS, DOUBTFUL, FAILED, GOOD, WHOLE
 from fixtures.people import judged
 
+MIRRORED = "the principal point of camera c1 is mirrored in x"
 SAME = dict.fromkeys(("c0", "c1", "c2", "c3"), (0, 1))
 
 
-def wholes(cameras, by_lines=MappingProxyType({})):
-    """Return {(camera, person): row} of the verdicts, and the table."""
-    table = verdict.judge(judged.gathered(cameras), by_lines)
+def wholes(cameras, **said):
+    """Return {(camera, person): row} of the verdicts, and the table; `said` against cameras."""
+    table = verdict.judge(judged.gathered(cameras), Doubts(**said))
     rows = table[table["measure"] == WHOLE]
     return {(row.camera, row.person): row for row in rows.itertuples()}, table
 
@@ -70,16 +70,55 @@ def test_of_three_cameras_that_contradict_each_other_none_is_blamed_for_sure():
 def test_painted_lines_tell_the_wrong_one_of_three_cameras():
     cameras = judged.turned(judged.footage(n_cameras=3, height_m=1.0), 1, 1.0)
     words = "does not see the court's lines where the others do"
-    rows, _ = wholes(cameras, {"c1": words})
+    rows, _ = wholes(cameras, by_lines={"c1": words})
     assert rows["c1", ALL].verdict != GOOD and rows["c1", ALL].cause == causes.CALIBRATION
     assert rows["c1", ALL].sentence == f"Camera c1: its calibration is off: it {words}."
     assert {rows[name, ALL].verdict for name in ("c0", "c2")} == {GOOD}
     assert rows[ALL, ALL].sentence.endswith(rows["c1", ALL].sentence)
 
 
-def test_painted_lines_alone_make_no_verdict_on_a_take():
-    rows, _ = wholes(judged.footage(), {"c1": "does not see the court's lines"})
+@pytest.mark.parametrize("by", ["by_lines", "by_check"])
+def test_a_camera_that_agrees_is_doubtful_where_a_check_doubts_its_calibration(by):
+    words = {"by_lines": "does not see the court's lines", "by_check": MIRRORED}[by]
+    rows, _ = wholes(judged.footage(), **{by: {"c1": words}})
+    whole = rows["c1", ALL]
+    assert (whole.verdict, whole.cause) == (DOUBTFUL, causes.CALIBRATION)
+    assert whole.sentence.startswith("Camera c1: it agrees with the other cameras, but ")
+    assert whole.sentence.endswith(f"{words}.")
+    assert {rows[f"c{k}", ALL].verdict for k in (0, 2, 3)} == {GOOD}
+    take = rows[ALL, ALL]
+    assert (take.verdict, take.cause) == (DOUBTFUL, causes.CALIBRATION)
+    assert take.sentence == whole.sentence
+
+
+def test_a_camera_is_not_said_to_be_turned_where_a_check_names_another_fault():
+    cameras = judged.turned(judged.footage(), 1, 2.0)
+    rows, _ = wholes(cameras, by_check={"c1": MIRRORED})
+    whole = rows["c1", ALL]
+    assert whole.verdict != GOOD and whole.cause == causes.CALIBRATION
+    off = "its calibration is off: by the check of the calibration file"
+    assert whole.sentence == f"Camera c1: {off} {MIRRORED}."
+
+
+def test_nor_is_one_that_disagrees_with_cameras_that_a_check_names():
+    cameras = judged.turned(judged.footage(), 2, 2.0)
+    rows, _ = wholes(cameras, by_check={"c1": MIRRORED})
+    assert rows["c1", ALL].verdict == DOUBTFUL
+    assert rows["c2", ALL].verdict != GOOD and rows["c2", ALL].cause == causes.CALIBRATION
+    assert rows["c2", ALL].sentence == f"Camera c2: {causes.OTHERS}."
+    assert "turned" not in rows[ALL, ALL].sentence
+
+
+def test_a_take_is_doubtful_where_its_calibration_doubts_itself():
+    rows, _ = wholes(judged.footage(), shared=("floor: 9 degrees", "people: 2 s"))
+    take = rows.pop((ALL, ALL))
+    assert (take.verdict, take.cause) == (DOUBTFUL, causes.CALIBRATION)
+    assert take.sentence == "The calibration is in doubt: floor: 9 degrees; people: 2 s."
     assert {row.verdict for row in rows.values()} == {GOOD}
+    failed, _ = wholes(judged.footage(hidden=dict.fromkeys(range(4), 1.0)), shared=("floor",))
+    take = failed[ALL, ALL]
+    assert (take.verdict, take.cause) == (FAILED, causes.DETECTION)
+    assert take.sentence.endswith(" The calibration is in doubt: floor.")
 
 
 @pytest.mark.parametrize("n_cameras", [2, 4])

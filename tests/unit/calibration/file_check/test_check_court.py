@@ -66,5 +66,5 @@ def test_without_a_court_in_two_pictures_nothing_is_said(tmp_path):
     seen = views(true)
     seen[1:] = np.nan
     told, table = checked(tmp_path, true, true, seen)
-    assert told == {"warnings": [], "cameras": {}, "faults": [], "n_agreeing": 0}
+    assert told == {"warnings": [], "cameras": {}, "shared": [], "faults": [], "n_agreeing": 0}
     assert table.empty

@@ -158,15 +158,27 @@ def verdict(word, camera="c1", person="all", measure="whole"):
 
 
 def test_a_camera_that_is_not_good_is_told_with_its_cause():
-    assert warned.judged(verdict("good")) is None
-    assert warned.judged(verdict("doubtful")) == (warned.LOOK, "Camera c1: its clock is off.")
-    assert level(warned.judged(verdict("failed"))) == warned.DOUBT
-    assert level(warned.judged(verdict("failed", camera="all", person="p1"))) == warned.DOUBT
+    assert warned.judged([verdict("good")]) == []
+    told = warned.judged([verdict("doubtful")])
+    assert told == [(warned.LOOK, "Camera c1: its clock is off.")]
+    assert level(*warned.judged([verdict("failed")])) == warned.DOUBT
+    assert level(*warned.judged([verdict("failed", camera="all", person="p1")])) == warned.DOUBT
 
 
 def test_the_take_and_single_measures_are_not_told_twice():
-    assert warned.judged(verdict("failed", camera="all")) is None
-    assert warned.judged(verdict("failed", measure="found")) is None
+    take, camera = verdict("failed", camera="all"), verdict("doubtful")
+    assert warned.judged([take, camera]) == warned.judged([camera])
+    assert warned.judged([verdict("failed", measure="found")]) == []
+
+
+def test_a_take_that_is_doubtful_though_its_cameras_agree_is_told():
+    take = verdict("doubtful", camera="all")
+    assert warned.judged([take, verdict("good")]) == [(warned.LOOK, take["sentence"])]
+
+
+def test_remarks_of_a_calibration_are_for_information():
+    told = warned.calibration("sfm-n40", QUALITY | {"remarks": ["cameras were refined"]})
+    assert told == [(warned.GOOD, "Calibration: cameras were refined.")]
 
 
 def joint(missing=0.0, few=0.0):

@@ -189,7 +189,10 @@ def test_a_take_is_judged_in_each_way_in_which_it_is_measured(job, study):
     }
     assert first["pose3d"] == f"{folder}/pose3d/file/all-robust/blazepose-full.npz"
     assert first["pose2d"][0] == f"{folder}/pose2d/blazepose-full/cam01.npz"
-    assert first["court_check"] == ""
+    calibration = "results/walk-4cams-tiny/calibration/file"
+    assert first["quality"] == f"{calibration}/quality.json"
+    assert (first["check"], first["court_check"]) == (f"{calibration}/check.json", "")
+    assert not any(way["check"] for way in takes.judged(job(**SHOT)))
 
 
 def test_only_a_take_that_failed_is_judged_in_each_run(job, tmp_path, monkeypatch):

@@ -1,8 +1,8 @@
 """Tests of why a camera disagrees with the others: detection, identity, clock, calibration, video.
 
 Each test changes one property of one camera and checks whether its keypoints then match the joints
-from the other cameras. Errors are in heights of the person in that picture. What the painted lines
-of a court say of a camera decides where no test does.
+from the other cameras. Errors are in heights of the person in that picture. What checks of its
+calibration say of a camera decides where no test does.
 """
 
 from dataclasses import dataclass
@@ -28,6 +28,10 @@ FINEST_S = 0.008  # and not in finer steps than this, or a frame
 MOST_DEG = 15.0  # a camera that is turned further is not recognised
 MOST_POINTS = 3000  # of the fit of a direction
 SPREAD = 0.02  # heights: errors beyond it weigh less in that fit
+OTHERS = (
+    "it disagrees with cameras whose calibration is off by the check of the calibration file: "
+    "correct these first"
+)
 
 
 @dataclass(frozen=True)
@@ -58,17 +62,22 @@ class _Camera:
         return float(np.median(frames[known])) if enough else float("nan")
 
 
-def find(seen: Seen, camera: int, *, found_limit: float, by_lines: str = "") -> Cause:
+def find(
+    seen: Seen, camera: int, *, found_limit: float, doubt: str = "", others: bool = False
+) -> Cause:
     """Return the likelier cause of a camera's disagreement with the others.
 
     `found_limit` is the share of persons found below which detection alone explains it. If the
     other cameras cannot triangulate the person, or there are only two cameras, the cause is
-    unknown. `by_lines` is what the court's painted lines say against the camera's calibration.
+    unknown. `doubt` is what is said against the camera's calibration, as a clause; `others` states
+    that the check of a calibration file names faults of other cameras, which shift the joints.
     """
     cause = _by_people(seen, camera, found_limit)
-    if by_lines and (cause.name == CALIBRATION or not cause.is_shown):
-        return Cause(CALIBRATION, f"its calibration is off: it {by_lines}")
-    return cause
+    if cause.is_shown and cause.name != CALIBRATION:
+        return cause
+    if doubt:
+        return Cause(CALIBRATION, f"its calibration is off: {doubt}")
+    return Cause(CALIBRATION, OTHERS) if others else cause
 
 
 def _by_people(seen: Seen, camera: int, found_limit: float) -> Cause:

@@ -2,18 +2,18 @@
 
 from collections.abc import Mapping
 from itertools import chain
-from types import MappingProxyType
 from typing import NamedTuple
 
 import pandas as pd
 
 from courtside.quality import causes, measures
+from courtside.quality.doubts import Doubts
 from courtside.quality.seen import Seen, disagreement, shown, without
 from courtside.study.execution.verdicts import ALL, COLUMNS, DOUBTFUL, FAILED, GOOD, ORDER, WHOLE
 
 AGREES = "it agrees with the other cameras"
 ANY = "another of the cameras that disagree may be the wrong one"
-
+NONE = Doubts()
 
 AGREED = 0.02  # heights: usual takes have a disagreement of 0.007 to 0.012
 
@@ -84,23 +84,30 @@ def worst(verdicts: list[str]) -> str:
     return max(verdicts, key=ORDER.index, default=GOOD)
 
 
-def judge(seen: Seen, by_lines: Mapping[str, str] = MappingProxyType({})) -> pd.DataFrame:
+def judge(seen: Seen, doubts: Doubts = NONE) -> pd.DataFrame:
     """Judge a take: a row for each measure of each camera and person, and for each as a whole.
-
-    `by_lines` is what a court's painted lines say against a camera's calibration, by its name.
 
     Columns `COLUMNS`. A row with the measure `WHOLE` has the verdict, the likelier cause where it
     is not good, and one sentence; that with `ALL` cameras and persons is the take's. A take failed
     if a person failed in it, or half of its cameras; another camera that is not good makes it
-    doubtful.
+    doubtful, and so do `doubts` about its calibration.
     """
-    by_camera = _cameras(seen, by_lines)
+    by_camera = [_doubted(rows, doubts) for rows in _cameras(seen, doubts)]
     by_person = [_person(seen, at) for at in range(len(seen.points.person_id))]
-    take = _take([rows[0] for rows in by_camera], [rows[0] for rows in by_person])
+    take = _take([rows[0] for rows in by_camera], [rows[0] for rows in by_person], doubts)
     return pd.DataFrame([take, *chain(*by_camera, *by_person)], columns=COLUMNS)
 
 
-def _cameras(seen: Seen, by_lines: Mapping[str, str]) -> list[list[dict]]:
+def _doubted(rows: list[dict], doubts: Doubts) -> list[dict]:
+    """Return the rows of a camera; one that agrees is doubtful if its calibration is doubted."""
+    whole, *others = rows
+    if not (said := doubts.of(whole["camera"])) or whole["verdict"] != GOOD:
+        return rows
+    sentence = f"{whole['sentence'].removesuffix('.')}, but {said}."
+    return [_whole(whole["camera"], ALL, DOUBTFUL, causes.CALIBRATION, sentence), *others]
+
+
+def _cameras(seen: Seen, doubts: Doubts) -> list[list[dict]]:
     """Return the rows of each camera, that of the whole first.
 
     A wrong camera shifts the joints that the other cameras are compared with. If the others agree
@@ -112,26 +119,29 @@ def _cameras(seen: Seen, by_lines: Mapping[str, str]) -> list[list[dict]]:
         others = [at for at in range(len(seen.cameras)) if at not in fixed]
         fewer = bool(fixed) or not all(seen.followed[at].any() for at in others)
         agreed = fewer and disagreement(seen, others) <= AGREED
-        judged = {at: _camera(seen, at, agreed, by_lines) for at in others}
-        suspects = _suspects(seen, others, by_lines)
+        judged = {at: _camera(seen, at, agreed, doubts) for at in others}
+        suspects = _suspects(seen, others, doubts)
         odd = next((at for at in suspects if judged[at][0]["verdict"] != GOOD), None)
         if odd is None:
-            rows = fixed | _uncertain(judged, by_lines)
+            rows = fixed | _uncertain(judged, doubts)
             return [rows[at] for at in range(len(seen.cameras))]
         fixed[odd] = judged[odd]
         seen = without(seen, (*seen.out, odd))
 
 
-def _uncertain(judged: dict[int, list[dict]], by_lines: Mapping[str, str]) -> dict[int, list[dict]]:
-    """Mark cameras that contradict one another: any of them may be the wrong one."""
+def _uncertain(judged: dict[int, list[dict]], doubts: Doubts) -> dict[int, list[dict]]:
+    """Mark cameras that contradict one another: any of them may be the wrong one.
+
+    Not where the check of a calibration file names the wrong ones.
+    """
     wrong = [
         at
         for at, (whole, *rows) in judged.items()
         if whole["verdict"] != GOOD
-        and whole["camera"] not in by_lines
+        and not doubts.of(whole["camera"])
         and any(row["measure"] == "reprojection" and row["verdict"] != GOOD for row in rows)
     ]
-    if len(wrong) < 2:
+    if len(wrong) < 2 or doubts.by_check:
         return judged
     found = dict(judged)
     for at in wrong:
@@ -143,7 +153,7 @@ def _uncertain(judged: dict[int, list[dict]], by_lines: Mapping[str, str]) -> di
     return found
 
 
-def _suspects(seen: Seen, others: list[int], by_lines: Mapping[str, str]) -> list[int]:
+def _suspects(seen: Seen, others: list[int], doubts: Doubts) -> list[int]:
     """Return the cameras that may be the wrong one.
 
     First that without which the others agree far better, then those that painted lines speak
@@ -151,7 +161,7 @@ def _suspects(seen: Seen, others: list[int], by_lines: Mapping[str, str]) -> lis
     """
     if len(others) < 3:
         return []
-    named = [at for at in others if seen.cameras[at].name in by_lines]
+    named = [at for at in others if seen.cameras[at].name in doubts.by_lines]
     rest = {
         at: disagreement(seen, [one for one in others if one != at])
         for at in others
@@ -195,7 +205,7 @@ def _whole(camera: str, person: str, verdict: str, cause: str, sentence: str) ->
     return {**about, "verdict": verdict, "cause": cause, "sentence": sentence}
 
 
-def _camera(seen: Seen, at: int, agreed: bool, by_lines: Mapping[str, str]) -> list[dict]:
+def _camera(seen: Seen, at: int, agreed: bool, doubts: Doubts) -> list[dict]:
     """Judge a camera: its rows, that of the whole first.
 
     `agreed`: all cameras agree except those that are left out or track nobody. The errors are then
@@ -215,8 +225,8 @@ def _camera(seen: Seen, at: int, agreed: bool, by_lines: Mapping[str, str]) -> l
     verdict = worst([row["verdict"] for row in counted])
     if verdict == GOOD:
         return [_whole(name, ALL, GOOD, "", f"Camera {name}: {AGREES}."), *rows]
-    limit, lines = OF_CAMERA["found"].doubtful, by_lines.get(name, "")
-    why = causes.find(seen, at, found_limit=limit, by_lines=lines)
+    limit, others = OF_CAMERA["found"].doubtful, bool(doubts.by_check)
+    why = causes.find(seen, at, found_limit=limit, doubt=doubts.of(name), others=others)
     return [_whole(name, ALL, verdict, why.name, f"Camera {name}: {why.sentence}."), *rows]
 
 
@@ -248,12 +258,12 @@ def _together(rows: list[dict]) -> list[str]:
     ]
 
 
-def _take(cameras: list[dict], persons: list[dict]) -> dict:
+def _take(cameras: list[dict], persons: list[dict], doubts: Doubts) -> dict:
     failed = [row for row in cameras if row["verdict"] == FAILED]
     verdict = worst([row["verdict"] for row in persons])
     if 2 * len(failed) >= len(cameras):
         verdict = FAILED
-    if verdict == GOOD and any(row["verdict"] != GOOD for row in cameras):
+    if verdict == GOOD and (doubts.shared or any(row["verdict"] != GOOD for row in cameras)):
         verdict = DOUBTFUL
     if verdict == GOOD:
         return _whole(ALL, ALL, GOOD, "", "The cameras agree on every person.")
@@ -261,6 +271,8 @@ def _take(cameras: list[dict], persons: list[dict]) -> dict:
     named = sorted(bad, key=lambda row: -ORDER.index(row["verdict"]))
     parts = [row["sentence"] for row in persons if row["verdict"] != GOOD]
     parts += _together(named)
+    parts += [f"The calibration is in doubt: {'; '.join(doubts.shared)}."] * bool(doubts.shared)
     known = [row["cause"] for row in named if row["cause"] != causes.UNKNOWN]
+    known += [causes.CALIBRATION] * bool(doubts.shared)
     cause = max(known, key=known.count) if known else causes.UNKNOWN
     return _whole(ALL, ALL, verdict, cause, " ".join(parts))

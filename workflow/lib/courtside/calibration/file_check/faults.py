@@ -27,6 +27,7 @@ class Fault:
 
     what: str  # of which camera what
     advice: str
+    names: tuple[str, ...]  # of the cameras that it is a fault of
     cameras: tuple[Camera, ...]  # all of them, mended
     n_free: int = 0  # numbers that were fitted
 
@@ -39,11 +40,13 @@ def simple(cameras: Sequence[Camera]) -> Iterator[Fault]:
         for turns in (1, 2, 3):
             what = f"the picture of camera {camera.name} is turned by {90 * turns} degrees"
             advice = "calibrate with pictures turned as the videos are, or turn the videos"
-            yield Fault(what, advice, _put(cameras, at, turned_picture(camera, turns)))
+            mended = turned_picture(camera, turns)
+            yield Fault(what, advice, (camera.name,), _put(cameras, at, mended))
         for scale in SCALES:
             what = f"camera {camera.name} was calibrated at {1 / scale:.3g} times the picture size"
             advice = "export the calibration at the size of the videos"
-            yield Fault(what, advice, _put(cameras, at, scaled_picture(camera, scale)))
+            mended = scaled_picture(camera, scale)
+            yield Fault(what, advice, (camera.name,), _put(cameras, at, mended))
     for one, other in combinations(range(len(cameras)), 2):
         yield _exchanged(cameras, one, other)
 
@@ -57,15 +60,16 @@ def mirrored(cameras: Sequence[Camera], at: int, axis: int) -> Iterator[Fault]:
         what = f"the principal point of camera {camera.name} is mirrored in {letter}"
         last = camera.size[axis] - 1
         advice = f"principal_point_px: {letter} {old:.1f} should be {last} - {old:.1f} = {new:.1f}"
-        yield Fault(what, advice, _put(cameras, at, mended))
+        yield Fault(what, advice, (camera.name,), _put(cameras, at, mended))
 
 
 def _exchanged(cameras: Sequence[Camera], one: int, other: int) -> Fault:
     swapped = list(cameras)
     for a, b in ((one, other), (other, one)):
         swapped[a] = replace(cameras[b], name=cameras[a].name, size=cameras[a].size)
-    what = f"cameras {cameras[one].name} and {cameras[other].name} are exchanged"
-    return Fault(what, "exchange their names or their videos", tuple(swapped))
+    names = cameras[one].name, cameras[other].name
+    what = f"cameras {' and '.join(names)} are exchanged"
+    return Fault(what, "exchange their names or their videos", names, tuple(swapped))
 
 
 def _put(cameras: Sequence[Camera], at: int, mended: Camera) -> tuple[Camera, ...]:
@@ -136,7 +140,7 @@ def fitted(
         what = f"the {way.name} of camera {camera.name}"
         are = "are" if " and " in way.name else "is"
         what += f" is {_percent(camera, mended)}" if way.n_free == 1 else f" {are} wrong"
-        yield Fault(what, way.advice, _put(cameras, at, mended), way.n_free)
+        yield Fault(what, way.advice, (camera.name,), _put(cameras, at, mended), way.n_free)
 
 
 def _percent(camera: Camera, mended: Camera) -> str:

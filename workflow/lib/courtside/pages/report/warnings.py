@@ -59,7 +59,7 @@ def of_take(facts: dict, *, max_shift_px: float, max_zoom_percent: float) -> lis
     found += [clock(camera, each) for camera, each in facts["clocks"].items()]
     found += [device(row) for row in facts["devices"]]
     found += [no_tpose(row) for row in facts["devices"]]
-    found += [judged(row) for row in facts["quality"]]
+    found += judged(facts["quality"])
     found += joints(facts["joints"])
     found += [frames(person, *each) for person, each in facts["left_out"].items()]
     found += [distance(person, measures) for person, measures in facts["persons"].items()]
@@ -191,13 +191,16 @@ def registered(model: dict) -> Warned | None:
     return Warned(level, f"Structure from motion: {text}.") if level else None
 
 
-def judged(row: dict) -> Warned | None:
-    """Return a warning of a camera or person that is not good; `row` is of the verdicts' table."""
-    both = row["camera"] == row["person"] == verdicts.ALL
-    if row["measure"] != verdicts.WHOLE or both or row["verdict"] == verdicts.GOOD:
-        return None
-    level = DOUBT if row["verdict"] == verdicts.FAILED else LOOK
-    return Warned(level, row["sentence"])
+def judged(rows: Sequence[dict]) -> list[Warned]:
+    """Return a warning of each camera and person that is not good, else of a take that is not.
+
+    `rows` are those of the verdicts' table.
+    """
+    wholes = [row for row in rows if row["measure"] == verdicts.WHOLE]
+    bad = [row for row in wholes if row["verdict"] != verdicts.GOOD]
+    each = [row for row in bad if not row["camera"] == row["person"] == verdicts.ALL]
+    levels = {verdicts.DOUBTFUL: LOOK, verdicts.FAILED: DOUBT}
+    return [Warned(levels[row["verdict"]], row["sentence"]) for row in each or bad]
 
 
 def joints(found: dict) -> list[Warned]:

@@ -145,6 +145,7 @@ def judged(job: Job) -> list[dict[str, Any]]:
         one = Job(job.study, {**job.wildcards, **labels})
         patterns = {
             "cameras": paths.CAMERAS,
+            "quality": paths.CALIBRATION_QUALITY,
             "people": paths.PEOPLE,
             "sync": paths.CAMERA_CLOCKS,
             "pose3d": paths.POSE3D,
@@ -152,7 +153,9 @@ def judged(job: Job) -> list[dict[str, Any]]:
         files: dict[str, Any] = {name: one.fill(pattern) for name, pattern in patterns.items()}
         files["pose2d"] = keypoints_2d(one)
         files["skeleton"] = one.skeleton_file().as_posix()
-        by_lines = labels["calibration"] == "file" and session.shows_court()
+        of_file = labels["calibration"] == "file"
+        by_lines = of_file and session.shows_court()
+        files["check"] = one.fill(paths.CALIBRATION_CHECK, suffix="json") if of_file else ""
         files["court_check"] = one.fill(paths.COURT_CHECK, suffix="json") if by_lines else ""
         found.append({"labels": labels, **files})
     return found
