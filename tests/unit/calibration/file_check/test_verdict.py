@@ -67,6 +67,7 @@ def test_a_spoilt_camera_and_what_is_wrong_are_named(spoil, what, by):
     message = verdict.judge([true[0], spoil(true[1]), *true[2:]], data, person_px=300.0)
     assert len(message.warnings) == 1 and "\n" not in message.warnings[0]
     assert what in message.warnings[0]
+    assert message.warnings[0].endswith(verdict.TO_BE_SURE) == (by == "people")
     assert len(message.faults) == 1
     assert message.mended_px[by] < 0.7 * message.px[by]
 

@@ -27,6 +27,10 @@ MOST_MIRRORED = 8  # coordinates mirrored together are tried up to so many: 256 
 LEAST_GAIN = {False: 0.15, True: 0.3}
 LARGEST = {"static": 2e-3, "people": 0.035}
 MEASURES = {"static": residuals.rms_px, "people": residuals.typical_px}
+TO_BE_SURE = (
+    "; more cameras may be wrong by less than joints show: click points at rest (`static_points`) "
+    "to be sure"
+)
 WORDS = {"static": "static points by {:.1f} px", "people": "people's joints by {:.1f} px"}
 
 
@@ -92,6 +96,7 @@ def judge(cameras: Sequence[Camera], seen: Seen, person_px: float = np.inf) -> V
         causes = ", ".join(f"{one.what} ({one.advice})" for one in order)
         left = " and ".join(f"{px:.1f} px" for px in after.values())
         line = f"the cameras of the file disagree: {far}; probably {causes}; then {left} are left"
+        line += "" if "static" in before else TO_BE_SURE
         return Verdict([line], order, before, after, best.cameras)
     if _within(before, limits_px):
         return Verdict([], [], before, before)
