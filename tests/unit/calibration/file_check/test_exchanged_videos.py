@@ -56,6 +56,7 @@ def test_of_right_cameras_nothing_is_said():
     found = exchanged_videos.judge(cameras, matches)
     assert found.warnings == [] and found.names == {name: name for name in found.names}
     assert (found.table.near >= 12).all() and (found.table.n == 92).all()
+    assert found.unjudged == [] and found.remarks == []
 
 
 @pytest.mark.parametrize(("one", "other"), PAIRS)
@@ -123,6 +124,20 @@ def test_pictures_without_a_common_place_say_nothing():
     assert exchanged_videos.judge(cameras, nothing).warnings == []
 
 
+@pytest.mark.parametrize("order", [(0, 1, 2, 3), (0, 1, 3, 2)])
+def test_cameras_that_share_no_place_with_others_are_said_not_to_be_judged(order):
+    cameras, matches = made(n_true=30)
+    _, chance = made(n_true=0, n_false=110)
+    alone = {pair: chance[pair] if {2, 3} & set(pair) else matches[pair] for pair in PAIRS}
+    found = exchanged_videos.judge(given(cameras, order), alone)
+    (line,) = found.remarks
+    assert found.warnings == [] and found.unjudged == ["c2", "c3"]
+    assert line.startswith("whether the videos of c2 and c3 are exchanged could not be judged:")
+    assert "of 550 features that look alike there, " in line
+    one = {pair: chance[pair] if 3 in pair else matches[pair] for pair in PAIRS}
+    assert exchanged_videos.judge(cameras, one).remarks == []  # c3 is seen in another's place
+
+
 def test_features_are_matched_where_they_are_the_same_place():
     cameras = floor_pictures.cameras(2)
     matches = exchanged_videos.match(floor_pictures.pictures(cameras))
@@ -166,17 +181,21 @@ def test_the_step_names_the_take_of_exchanged_videos(tmp_path, capfd):
         {"take": "", "pictures": files},
         {"take": "shot", "pictures": files | {"c0": files["c2"], "c2": files["c0"]}},
         {"take": "serve", "pictures": {name: files[name] for name in ("c0", "c1")}},
+        {"take": "fog", "pictures": dict.fromkeys(("c0", "c1"), str(tmp_path / "fog.png"))},
     ]
+    cv2.imwrite(halls[-1]["pictures"]["c0"], np.full((54, 96), 128, np.uint8))
     script = runpy.run_path(str(ROOT / "workflow" / "scripts" / "check_videos.py"))
     told, table = tmp_path / "videos.json", tmp_path / "videos.csv"
     paths = SimpleNamespace(cameras_toml=tmp_path / "cameras.toml")
     script["main"](paths, told, table, halls=halls)
-    (line,) = json.loads(told.read_text())["warnings"]
+    content = json.loads(told.read_text())
+    (line,), (remark,) = content["warnings"], content["remarks"]
+    assert remark.startswith("take fog: whether the videos of c0 and c1 are exchanged could not be")
     assert line.startswith("take shot: the videos of c0 and c2 are exchanged; correct the session")
     assert capfd.readouterr().err == f"Warning: {line}; see {told}\n"
     rows = pd.read_csv(table, keep_default_na=False)
-    assert rows["take"].tolist() == [""] * 3 + ["shot"] * 3 + ["serve"]
-    assert (rows.near_after / rows.n > 0.6).all()
+    assert rows["take"].tolist() == [""] * 3 + ["shot"] * 3 + ["serve", "fog"]
+    assert (rows.near_after / rows.n > 0.6)[:-1].all() and rows.n.iloc[-1] == 0
 
 
 @pytest.fixture(scope="module")

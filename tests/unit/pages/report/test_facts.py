@@ -110,12 +110,15 @@ def test_warnings_of_a_check_join_those_of_the_calibration_file(tmp_path):
     (tmp_path / "quality.json").write_text(json.dumps({"covariance": "unknown"}))
     (tmp_path / "check.json").write_text(json.dumps({"warnings": ["cam02 is mirrored"]}))
     (tmp_path / "court.json").write_text(json.dumps({"warnings": ["cam05 was turned"]}))
-    checks = [tmp_path / "court.json", tmp_path / "check.json"]
+    videos = {"warnings": [], "remarks": ["cam04 was not judged"]}
+    (tmp_path / "videos.json").write_text(json.dumps(videos))
+    checks = [tmp_path / f"{name}.json" for name in ("videos", "court", "check")]
     files = {"quality": {"file": tmp_path / "quality.json"}, "checks": checks}
     facts = report_facts.of_session(files)
     assert facts["quality"]["file"] == {
         "covariance": "unknown",
         "warnings": ["cam05 was turned", "cam02 is mirrored"],
+        "remarks": ["cam04 was not judged"],
     }
 
 

@@ -49,6 +49,9 @@ class Verdict:
     # Exchanges that explain the pictures as well: in a regular ring of cameras, one exchange looks
     # like another.
     also: list[tuple[str, str]]
+    # Cameras whose pictures do not show it if they are exchanged among them: each shares too little
+    # of the hall with the others. An exchange of one of them with another camera shows.
+    unjudged: list[str]
     table: pd.DataFrame  # of each pair, with the columns `ROWS`
 
     @property
@@ -68,6 +71,19 @@ class Verdict:
             f"{what}; correct the session's file, or the names in the calibration: of {n} features "
             f"of the hall that look alike in two pictures, {near} are where the calibration "
             f"expects them, {mended} after that"
+        ]
+
+    @property
+    def remarks(self) -> list[str]:
+        """One for the cameras that could not be judged, with the reason."""
+        if not self.unjudged:
+            return []
+        some = self.table[self.table[["camera", "other"]].isin(self.unjudged).any(axis=1)]
+        return [
+            f"whether the videos of {' and '.join(self.unjudged)} are exchanged could not be "
+            "judged: their pictures share too little of the hall with others; of "
+            f"{some['n'].sum()} features that look alike there, {some['near_after'].sum()} are "
+            "where the calibration expects them, hardly more than by chance"
         ]
 
 
@@ -98,7 +114,8 @@ def judge(cameras: Sequence[Camera], matches: Matches) -> Verdict:
     names = [camera.name for camera in cameras]
     of = dict(zip(names, (names[k] for k in order), strict=True))
     either = [(names[one], names[other]) for one, other in also]
-    return Verdict(of, either, pd.DataFrame(rows, columns=ROWS))
+    weak = [name for at, name in enumerate(names) if search.evidence(order, {at}) < SURE]
+    return Verdict(of, either, weak if len(weak) > 1 else [], pd.DataFrame(rows, columns=ROWS))
 
 
 def near_lines(

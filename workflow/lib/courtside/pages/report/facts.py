@@ -72,15 +72,15 @@ def of_session(files: dict) -> dict:
     """Read the facts of a session's cameras.
 
     `quality`: {calibration: content}; `model`: content, empty without a file; `static`: rows.
-    `files` are paths by `quality`: {calibration: file}, `checks` (a list; their warnings are those
-    of the calibration `file`), `model` (summary of the structure from motion), `static` (a list);
-    each may be left out.
+    `files` are paths by `quality`: {calibration: file}, `checks` (a list; what they warn of and
+    remark is of the calibration `file`), `model` (summary of the structure from motion), `static`
+    (a list); each may be left out.
     """
     quality = {name: read_json(path) for name, path in files.get("quality", {}).items()}
     checks = [read_json(path) for path in files.get("checks", ())]
-    if checks:
-        told = [line for check in checks for line in check["warnings"]]
-        quality["file"] = {**quality["file"], "warnings": told}
+    for key in ("warnings", "remarks") if checks else ():
+        told = [line for check in checks for line in check.get(key, ())]
+        quality["file"] = {**quality["file"], key: told}
     return {
         "quality": quality,
         "model": read_json(files["model"]) if files.get("model") else {},
