@@ -38,6 +38,7 @@ rule build_people_page:
 rule build_quality_page:
     input:
         files=files_of(pages.judged_takes, "quality", "people", "skeleton", "pose2d", "videos"),
+        calibrations=lambda w: targets.calibration.warning_files(session_of(w)),
         assets=sorted(ASSETS.glob("[pqr]*")),
     output:
         page_html=paths.QUALITY_PAGE,

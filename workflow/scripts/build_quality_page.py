@@ -1,4 +1,4 @@
-"""Build a session's page for quality: verdicts, keypoints and videos of takes -> one HTML file."""
+"""Build a session's page for quality: verdicts, calibrations, videos of takes -> one HTML file."""
 
 from courtside.pages import page
 from courtside.pages import quality as quality_page
@@ -7,9 +7,9 @@ from courtside.study.execution import log, verdicts
 from courtside.study.execution.script import run
 
 
-def main(page_html, *, session, takes):
+def main(calibrations, page_html, *, session, takes):
     shown = [with_pictures(take) for take in log.progress(takes, len(takes), "takes")]
-    page.write(page_html, quality_page.build(session, shown))
+    page.write(page_html, quality_page.build(session, shown, calibrations))
     count = sum(len(take["pictures"]) for take in shown)
     log.logger.info("%s: %d takes, %d pictures", page_html, len(shown), count)
 

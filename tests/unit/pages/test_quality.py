@@ -1,5 +1,7 @@
 """The page for quality: its lines, its pictures, and nobody to be recognised."""
 
+import json
+
 import cv2
 import numpy as np
 import pytest
@@ -68,6 +70,18 @@ def test_a_picture_hides_face_and_surroundings_and_shows_the_joints(tmp_path):
     assert blueish[y - 24 : y + 24, other - 10 : other + 10].sum() > 20
     assert yellow[:, other - 20 :].sum() == 0
     assert detail[y - 8 : y + 4, other - 4 : other + 4].mean() < 12  # nobody of the take
+
+
+def test_the_page_says_what_checks_of_the_calibration_found(rows, tmp_path):
+    check = tmp_path / "file" / "check.json"
+    check.parent.mkdir()
+    content = {"warnings": ["the cameras of the file <disagree>"], "remarks": ["cam03: not judged"]}
+    check.write_text(json.dumps(content))
+    takes = [{"name": "smash", "lines": quality.lines(rows), "pictures": {}, "left_out": ""}]
+    html = quality.build("hall", takes, [check])
+    assert "file: the cameras of the file &lt;disagree&gt;." in html
+    assert "For information (1)" in html and "file: cam03: not judged." in html
+    assert "Calibrations" not in quality.build("hall", takes)
 
 
 def test_the_page_has_a_row_for_each_line_and_says_why_pictures_are_missing(rows):

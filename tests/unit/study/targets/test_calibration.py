@@ -108,6 +108,8 @@ def test_calibration_files_that_are_used_are_checked(study):
     session = study.sessions["walk-4cams-tiny"]
     empty = replace(session, takes={}, static_points=None)
     videos, check = calibration.every_file_check(study)
+    (own,) = set(calibration.warning_files(empty)) - {videos}
+    assert own == "results/walk-4cams-tiny/calibration/file/quality.json"
     assert calibration.file_checks(empty) == [videos]
     assert calibration.file_checks(replace(empty, static_points="points.csv")) == [videos, check]
     unused = replace(session, parameters=session.parameters | {"take_calibrations": []})

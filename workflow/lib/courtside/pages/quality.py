@@ -1,6 +1,8 @@
 """The page of a session for quality: each take and camera with verdict, reason and a picture."""
 
 from collections.abc import Mapping, Sequence
+from itertools import chain
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import cv2
@@ -8,11 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.pages import page
+from courtside.pages.report import warnings
 from courtside.pose import privacy, stick_drawing
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.records.keypoints.people import People
 from courtside.records.keypoints.skeleton import Skeleton
 from courtside.study.errors import StrPath
+from courtside.study.execution.files import read_json
 from courtside.study.execution.verdicts import ALL, ORDER, WAY, WHOLE
 from courtside.video import reader
 
@@ -82,11 +86,14 @@ def shown_frame(view: Keypoints2D) -> int:
     return int(best[np.abs(best - (len(n_seen) - 1) / 2).argmin()])
 
 
-def build(session: str, takes: Sequence[Mapping[str, Any]]) -> str:
+def build(
+    session: str, takes: Sequence[Mapping[str, Any]], calibrations: Sequence[StrPath] = ()
+) -> str:
     """Return the page, to be written by `page.write`.
 
-    Each take has `name`, `lines`, `pictures` ({camera: JPEG}) and `left_out`: in words why there
-    are no pictures, empty where there are.
+    `calibrations` are the files in which they and their checks give warnings and remarks, each
+    in the folder of its calibration. Each take has `name`, `lines`, `pictures` ({camera: JPEG}) and
+    `left_out`: in words why there are no pictures, empty where there are.
     """
     pictures = {
         f"{at}.{camera}": (picture, JPEG)
@@ -94,5 +101,7 @@ def build(session: str, takes: Sequence[Mapping[str, Any]]) -> str:
         for camera, picture in take["pictures"].items()
     }
     title = f"Quality of the takes: {session}"
-    body = page.render("quality.html", title=title, takes=takes, all=ALL, order=ORDER)
+    told = [warnings.said(Path(path).parent.name, read_json(path)) for path in calibrations]
+    said = [*chain(*told)]
+    body = page.render("quality.html", title=title, said=said, takes=takes, all=ALL, order=ORDER)
     return page.build(title, body, css=["report.css", "quality.css"], images=pictures)

@@ -151,11 +151,7 @@ def no_tpose(row: dict) -> Warned | None:
 
 def calibration(name: str, quality: dict) -> list[Warned]:
     """Return the warnings of a calibration; `quality` is the content of its quality.json."""
-    found = [
-        Warned(level, f"Calibration: {text}.")
-        for key, level in (("warnings", LOOK), ("remarks", GOOD))
-        for text in quality.get(key, ())
-    ]
+    found = said("Calibration", quality)
     error, expected = left_out_cm(quality), quality.get("expected_volume_rms_cm")
     ties = quality.get("tie_residual_px")
     for quantity, value, words in (
@@ -173,6 +169,15 @@ def calibration(name: str, quality: dict) -> list[Warned]:
         text = "its accuracy is unknown, so that the error bars do not include its error"
         found.append(Warned(LOOK, f"Calibration {made}: {text}."))
     return found
+
+
+def said(what: str, content: dict) -> list[Warned]:
+    """Return the warnings and remarks of a calibration's file or check, as sentences on `what`."""
+    return [
+        Warned(level, f"{what}: {text}.")
+        for key, level in (("warnings", LOOK), ("remarks", GOOD))
+        for text in content.get(key, ())
+    ]
 
 
 def left_out_cm(quality: dict) -> float | None:

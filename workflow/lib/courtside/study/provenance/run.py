@@ -12,7 +12,7 @@ from courtside.study.errors import InputError
 from courtside.study.execution import files, summary
 from courtside.study.execution import verdicts as verdict_files
 from courtside.study.provenance import environment, provenance
-from courtside.study.targets.calibration import file_checks
+from courtside.study.targets.calibration import warning_files
 
 N_WARNINGS = 3  # of one calibration, on the terminal
 
@@ -133,10 +133,7 @@ def warnings(study: Study) -> list[str]:
     """Return warnings and remarks on cameras that recorded takes are measured with, a line each."""
     found = []
     for session in study.sessions.values():
-        ways = [] if session.virtual else session.take_calibrations()
-        name = session.name
-        read = [paths.CALIBRATION_QUALITY.format(session=name, calibration=way) for way in ways]
-        read += [] if session.virtual else file_checks(session)
+        name, read = session.name, [] if session.virtual else warning_files(session)
         for path in (path for path in read if Path(path).is_file()):
             content = files.read_json(Path(path))
             told = content.get("warnings", [])

@@ -40,6 +40,14 @@ def file_checks(session: Session) -> list[str]:
     return [path.format(**known) for path, is_made in checks.items() if is_made]
 
 
+def warning_files(session: Session) -> list[str]:
+    """Return the files with the warnings about cameras that takes are measured with."""
+    known = {"session": session.name}
+    ways = session.take_calibrations()
+    own = [paths.CALIBRATION_QUALITY.format(**known, calibration=way) for way in ways]
+    return own + file_checks(session)
+
+
 def every_photo_model(study: Study) -> list[str]:
     """Return the models of sessions without fixed cameras, which have walks or photos only."""
     return [
