@@ -25,4 +25,5 @@ def record_provenance():
 def end_of_run(n_failed=0):
     """Return the words at the end of a run; `n_failed` takes were made, but judged as failed."""
     viewers = targets.pages.every_viewer(STUDY)[:1]
-    return run.ending(workflow, time.monotonic() - STARTED_S, LOOK_AT + viewers, n_failed)
+    seconds = time.monotonic() - STARTED_S
+    return run.ending(workflow, REPOSITORY, seconds, LOOK_AT + viewers, n_failed)

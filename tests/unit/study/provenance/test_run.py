@@ -106,16 +106,33 @@ def test_sidecars_that_cannot_be_written_are_told_in_one_line(tmp_path, monkeypa
         run.record(workflow([job], [job]), tmp_path, {}, [])
 
 
-def test_the_end_says_what_was_made():
+def test_the_end_says_what_was_made(tmp_path):
     job = made_up("draw", "results/x/figures/a.png")
-    words = run.ending(workflow([job], [job]), 42, [])
+    words = run.ending(workflow([job], [job]), tmp_path, 42, [])
     assert "1 file made in 42 s" in words
     assert "results/x/figures/a.png" in words
 
 
-def test_the_end_says_what_failed():
+def test_a_report_of_an_earlier_run_is_not_to_be_looked_at(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    job, report = made_up("draw", "results/a.png"), made_up("build_report", "results/report.html")
+    end = {"repository": tmp_path, "seconds": 42, "look_at": ["results/report.html", "no.csv"]}
+    assert "report" not in run.ending(workflow([job], [job]), **end)
+    (tmp_path / "results").mkdir()
+    (tmp_path / "results" / "report.html").touch()
+    both = workflow([job, report], [job, report])
+    assert run.ending(both, **end).endswith("Look at results/report.html.")
+    one = workflow([job], [job])
+    one.config_settings.configfiles = [tmp_path / "config" / "north hall.yaml"]
+    command = "snakemake report --configfile 'config/north hall.yaml'"
+    last = run.ending(one, **end).splitlines()[-1]
+    assert last == f"results/report.html is of an earlier run; {command} makes it anew."
+    assert "report" not in run.ending(workflow(), **end)  # nothing was made: it may be of this run
+
+
+def test_the_end_says_what_failed(tmp_path):
     jobs = [made_up("draw", "a.png"), made_up("draw_all", "b.png")]
-    words = run.ending(workflow(jobs, jobs[:1], failed=jobs[1:]), 42, [])
+    words = run.ending(workflow(jobs, jobs[:1], failed=jobs[1:]), tmp_path, 42, [])
     assert "stopped after 1 of 2 jobs" in words
     assert "draw_all: no log of its own" in words
 
@@ -193,5 +210,5 @@ def test_takes_of_this_run_are_told_with_their_verdicts(tmp_path, monkeypatch):
     assert n_failed == 1 and message[0] == "Verdicts on takes: 1 good, 1 failed."
     assert message[1].startswith("  failed: hall/b")
     assert run.verdicts(workflow([judged[0], other])) == (["Verdicts on takes: 1 good."], 0)
-    words = run.ending(workflow(judged, judged, failed=[]), 3.0, [], 1)
+    words = run.ending(workflow(judged, judged, failed=[]), tmp_path, 3.0, [], 1)
     assert words.startswith("Courtside: 2 files made in 3 s, but 1 take failed")

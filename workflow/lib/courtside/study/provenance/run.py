@@ -1,6 +1,7 @@
 """A run of Snakemake: its jobs as plain values, the command that repeats it, its last words."""
 
 import json
+import shlex
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -87,17 +88,32 @@ def verdicts(workflow: Any) -> tuple[list[str], int]:
     )
 
 
-def ending(workflow: Any, seconds: float, look_at: Iterable[str], n_failed: int = 0) -> str:
-    """Return the words at the end of a run, finished or stopped; `n_failed` takes failed."""
+def ending(
+    workflow: Any, repository: Path, seconds: float, look_at: Iterable[str], n_failed: int = 0
+) -> str:
+    """Return the words at the end of a run, finished or stopped; `n_failed` takes failed.
+
+    Of the files to `look_at`, those that this run was asked for are named.
+    """
     dag, scheduler = workflow.dag, workflow.scheduler
     wanted = [job for job in dag.needrun_jobs(exclude_finished=False) if job.output]
     done = [job for job in wanted if dag.finished(job)]
     failed = scheduler.failed if scheduler else ()
     if not failed and len(done) == len(wanted):
         made = [str(path) for job in done for path in job.output]
-        return summary.finished(made, seconds, list(look_at), n_failed)
+        of_run = {Path(path).as_posix() for job in dag.jobs for path in job.output}
+        asked = [path for path in look_at if path in of_run]
+        text = summary.finished(made, seconds, asked, n_failed)
+        is_older = made and paths.REPORT not in of_run and Path(paths.REPORT).is_file()
+        return f"{text}\n{_older_report(workflow, repository)}" if is_older else text
     faults = [(job.name, [str(path) for path in job.log]) for job in failed]
     return summary.failed(faults, len(done), len(wanted), seconds)
+
+
+def _older_report(workflow: Any, repository: Path) -> str:
+    snakemake, *rest = repeating_command(workflow.config_settings, repository)
+    command = shlex.join([snakemake, "report", *rest])
+    return f"{paths.REPORT} is of an earlier run; {command} makes it anew."
 
 
 def waiting_for_clicks(study: Study) -> list[str]:
