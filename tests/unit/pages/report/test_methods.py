@@ -1,6 +1,7 @@
 """The methods: what was configured is what is said, and what was not used is not."""
 
 import copy
+import re
 
 import pytest
 
@@ -49,6 +50,30 @@ def test_only_the_methods_that_were_used_are_cited(study):
     html = methods_text(study)
     assert "made elsewhere" in html and "Homma" in html
     assert "Lowe" not in html and "Winter" not in html and "Bazarevsky" not in html
+
+
+def test_joints_of_another_program_are_not_said_to_be_found_by_a_network(study):
+    study["sessions"][0] |= {"model": "body25b", "imported": True}
+    html = methods_text(study)
+    assert (
+        "pictures of hall were found by another program and imported (<code>body25b</code>)" in html
+    )
+    assert "Bazarevsky" not in html and "by the network" not in html
+    study["sessions"].append({**study["sessions"][0], "name": "gym"})
+    study["sessions"][0] |= {"model": "blazepose-full", "imported": False}
+    html = methods_text(study)
+    assert "by the network blazepose-full (Bazarevsky et al. 2020); a" in html
+    assert "pictures of gym were found by another program" in html
+
+
+def test_error_bars_are_not_said_to_include_an_error_of_cameras_that_is_not_known(study):
+    assert "and the calibration's; not those" in re.sub(r"\s+", " ", methods_text(study))
+    study["sessions"].append({**study["sessions"][0], "name": "gym", "calibration": "file"})
+    html = re.sub(r"\s+", " ", methods_text(study))
+    words = "and the calibration's (not in gym, where the error of the cameras is not known); not"
+    assert words in html
+    study["sessions"][1]["takes"] = []
+    assert "not in gym" not in methods_text(study)
 
 
 def test_settings_of_several_sessions_are_stated_once(study):

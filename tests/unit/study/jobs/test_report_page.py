@@ -94,6 +94,7 @@ def test_a_session_is_told_with_its_first_calibration_and_its_overrides(content)
     ]
     assert plain["overrides"] == {"extract_features": {"first_octave": -1}}
     assert (players["fusion"], players["model"]) == ("all-robust", "blazepose-full")
+    assert not players["imported"]
     words = "verdicts on takes and cameras, with pictures"
     assert real["links"] == [("walk-4cams-tiny/pages/quality.html", words)]
     assert single["links"] == []

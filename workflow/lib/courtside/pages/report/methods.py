@@ -57,16 +57,18 @@ def paragraphs(parameters: dict, sessions: Sequence[dict]) -> Markup:
 
     `parameters` are the study's steps as configured: `match_images`, `adjust_network` ... Each of
     `sessions` has `name`, `calibration` (of its takes), `mapper`, `n_images`, `fusion`, `model`,
-    `virtual`, `overrides` ({step: {key: value}}), `takes`.
+    `imported` (whether another program found the joints), `virtual`, `overrides` ({step: {key:
+    value}}), `takes`.
     """
     files = [take["files"] for session in sessions for take in session["takes"]]
     mapped = sorted({(s["mapper"], s["n_images"]) for s in sessions if s["mapper"]})
-    models = _different(sessions, "model")
+    networks = _different([one for one in sessions if not one["imported"]], "model")
+    imported = [one for one in sessions if one["imported"]]
     used = {
         "posed": any(one.get("pose3d") for one in files),
         "compared": any(one.get("checks") for one in files),
     }
-    cited = _cited({mapper for mapper, _ in mapped}, models, **used)
+    cited = _cited({mapper for mapper, _ in mapped}, networks, **used)
     return page.render(
         "report_methods.html",
         step=parameters,
@@ -74,7 +76,11 @@ def paragraphs(parameters: dict, sessions: Sequence[dict]) -> Markup:
         simulated=[session["name"] for session in sessions if session["virtual"]],
         calibrations=[_calibrated(name, sessions) for name in _different(sessions, "calibration")],
         mapped=mapped,
-        models=models,
+        networks=networks,
+        imported=[
+            (name, _users(imported, "model", name)) for name in _different(imported, "model")
+        ],
+        uncertain=[session["name"] for session in sessions if _is_uncertain(session)],
         fusions=[(name, _fused(name)) for name in _different(sessions, "fusion")],
         overrides=_overrides(sessions),
         cited=cited,
@@ -85,11 +91,11 @@ def paragraphs(parameters: dict, sessions: Sequence[dict]) -> Markup:
     )
 
 
-def _cited(mappers: set[str], models: Iterable[str], *, posed: bool, compared: bool) -> set[str]:
+def _cited(mappers: set[str], networks: Iterable[str], *, posed: bool, compared: bool) -> set[str]:
     cited = {"paper"} | ({"sift", "colmap"} if mappers else set())
     cited |= {"glomap"} if "global" in mappers else set()
     cited |= {"hartley", "winter", "leva"} if posed else set()
-    cited |= {"blazepose"} if posed and any(m.startswith("blazepose") for m in models) else set()
+    cited |= {"blazepose"} if posed and any(n.startswith("blazepose") for n in networks) else set()
     return cited | ({"thesis"} if compared else set())
 
 
@@ -99,8 +105,19 @@ def _different(sessions: Iterable[dict], key: str) -> list[str]:
 
 def _calibrated(name: str, sessions: Iterable[dict]) -> tuple[str, str, list[str]]:
     """Return a calibration, what it is in words, and the sessions that use it."""
-    users = [session["name"] for session in sessions if session["calibration"] == name]
+    users = _users(sessions, "calibration", name)
     return name, CALIBRATED[Calibration.parse(name).kind], users
+
+
+def _users(sessions: Iterable[dict], key: str, value: str) -> list[str]:
+    return [session["name"] for session in sessions if session[key] == value]
+
+
+def _is_uncertain(session: dict) -> bool:
+    """Return whether skeletons of a session rest on cameras whose error is not known."""
+    way = session["calibration"]
+    measured = any(take["files"].get("pose3d") for take in session["takes"])
+    return bool(way and measured) and not Calibration.parse(way).has_covariance
 
 
 def _fused(name: str) -> str:

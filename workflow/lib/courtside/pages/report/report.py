@@ -13,11 +13,11 @@ def build(study: dict) -> str:
 
     `study` has `title`; `parameters` (the steps as configured); `sessions`, each with `name`,
     `description`, `virtual`, `calibration` (of its takes), `mapper`, `n_images`, `fusion`, `model`,
-    `overrides`, `limits` (`max_shift_px`, `max_zoom_percent`), perhaps `withheld` (lines that say
-    what is missing for lack of consent) and `links` (address, words), `files` (of
+    `imported`, `overrides`, `limits` (`max_shift_px`, `max_zoom_percent`), perhaps `withheld`
+    (lines that say what is missing for lack of consent) and `links` (address, words), `files` (of
     `facts.of_session`) and `takes`, each with `name`, `fusion`, `links` and `files` (of
-    `facts.of_take`); `figures` as `figures.figure` takes
-    them, with `take`; `tables` as `figures.table` takes them.
+    `facts.of_take`); `figures` as `figures.figure` takes them, with `take`; `tables` as
+    `figures.table` takes them.
     """
     known = [_read(session) for session in study["sessions"]]
     grouped = figures.groups(study["figures"], [one["configured"]["name"] for one in known])

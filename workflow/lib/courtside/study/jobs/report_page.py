@@ -154,6 +154,7 @@ def _session(study: Study, session: Session) -> dict[str, Any]:
         "n_images": variant and variant.n_images,
         "fusion": next(iter(session.fusions()), None),
         "model": session.parameters["models"][0],
+        "imported": study.models[session.parameters["models"][0]].decoder == "imported",
         "overrides": _overrides(study, session),
         "withheld": consent.left_out(session),
         "limits": {key: limits[key] for key in ("max_shift_px", "max_zoom_percent")},
