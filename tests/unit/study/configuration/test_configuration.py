@@ -524,6 +524,22 @@ def test_a_session_may_say_that_its_takes_are_not_measured(folder):
     assert study.sessions["hall"].take_calibrations() == []
 
 
+def test_a_session_without_heights_is_not_calibrated_by_people_alone(folder):
+    session = changed("cameras", "back", value=None)
+    study = load(folder, session, calibrations=["file", "people"])
+    assert study.sessions["hall"].calibrations() == ["file"]
+
+
+def test_people_alone_without_heights_are_told_where_nothing_else_is_wanted(folder):
+    session = changed("cameras", "back", value=None)
+    (line,) = faults(folder, session, calibrations=["people"], take_calibrations=["people"])
+    where = "config/config.yaml: calibrations: session hall: expected `height_m` of every person"
+    assert line.startswith(where)
+    stated = session | {"subjects": {"p1": {"height_m": 1.74}}}
+    study = load(folder, stated, calibrations=["people"], take_calibrations=["people"])
+    assert study.sessions["hall"].calibrations() == ["people"]
+
+
 def changed_step(step, **change):
     return {step: yaml_files.read(CONFIG / "config.yaml")[step] | change}
 

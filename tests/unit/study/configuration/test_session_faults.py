@@ -210,7 +210,11 @@ def test_good_sessions_have_no_fault(root, content):
         ),
         (
             PEOPLE | {"subjects": {"p1": {}}},
-            ["subjects: expected `height_m` of whom takes show"],
+            ["subjects: expected `height_m` of every person of one take or more"],
+        ),
+        (
+            PEOPLE | {"subjects": {"p1": {"height_m": 1.7}, "p2": {}}},
+            ["subjects: expected `height_m` of every person of one take or more"],
         ),
         (
             BOARDED | {"board": BOARD | {"videos": {"a": "a.mp4", "b": "b.mp4"}}},

@@ -1,5 +1,7 @@
 """Records of sessions and models, and what a session can do with its recordings."""
 
+from dataclasses import replace
+
 import pytest
 
 from courtside.study.configuration import sessions
@@ -55,6 +57,11 @@ WAYS = [
     *("known", "board", "wand", "people", "known18", "known8", "dlt18", "known18-board"),
 ]
 FILMED = {"take": sessions.Take("take", {"a": "a.mp4", "b": "b.mp4"}, ())}
+SCALED = {  # three cameras, and one person of whom the height is stated
+    "cameras": {name: sessions.FixedCamera() for name in "abc"},
+    "subjects": {"p1": sessions.Subject(1.7), "p2": sessions.Subject()},
+    "takes": {"take": sessions.Take("take", dict.fromkeys("abc", "v.mp4"), ("p1",))},
+}
 BOARD = {"images": "boards", "inner_corners": [7, 4], "square_m": 0.06}
 
 
@@ -81,8 +88,11 @@ def session(**changes):
         ({"board": {"kind": "tags"}, "court_points": "p.csv", "placed": True}, ["board"]),
         ({"wand": {"length_m": 0.5}}, ["wand"]),
         ({"wand": {"length_m": 0.5}, "court_points": "p.csv", "placed": True}, ["wand"]),
-        ({"takes": FILMED}, ["people"]),
-        ({"takes": FILMED, "court": "badminton"}, []),
+        (SCALED, ["people"]),
+        (SCALED | {"court": "badminton"}, []),
+        (SCALED | {"calibration_file": "c.toml"}, ["file", "people"]),
+        (SCALED | {"cameras": {name: sessions.FixedCamera() for name in "ab"}}, []),
+        (SCALED | {"takes": {}, "known_lengths": ({"length_m": 6.1},)}, []),
         ({"walks": {"w": "w.mp4"}}, ["sfm-n40"]),
         ({"court_points": "p.csv"}, ["known", "known18", "known8", "dlt18"]),
         ({"court_points": "p.csv", "placed": True}, ["known"]),
@@ -108,6 +118,18 @@ def session(**changes):
 )
 def test_each_session_has_the_calibrations_that_its_recordings_allow(recordings, ways):
     assert session(**recordings).calibrations() == ways
+
+
+@pytest.mark.parametrize("persons", [("p2",), ("p1", "p2"), ()])
+def test_people_alone_calibrate_only_where_something_tells_their_scale(persons):
+    """A take tells none where the height of anybody in it is missing."""
+    take = replace(SCALED["takes"]["take"], subjects=persons)
+    found = session(**SCALED | {"takes": {"take": take}, "calibration_file": "c.toml"})
+    assert found.calibrations() == ["file"]
+    known = replace(found, known_lengths=({"length_m": 6.1},))
+    assert known.calibrations() == ["file", "people"]
+    more = {"take": take, "other": replace(take, name="other", subjects=("p1",))}
+    assert replace(found, takes=more).calibrations() == ["file", "people"]
 
 
 def test_cameras_are_resected_one_by_one_in_pictures_of_the_empty_hall_only():

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from courtside.study.configuration import consent, sighting_faults, take_faults
 from courtside.study.configuration.session_files import has_places, is_there, of_configuration
-from courtside.study.configuration.sessions import Session, Study
+from courtside.study.configuration.sessions import FEWEST_ALONE, Session, Study
 from courtside.study.configuration.yaml_files import Content
 from courtside.study.execution.artefacts import Artefact
 from courtside.study.paths import CAMERAS, EXTERNAL, VIRTUAL
@@ -16,6 +16,10 @@ from courtside.study.paths import CAMERAS, EXTERNAL, VIRTUAL
 CALIBRATED = CAMERAS.replace(".", r"\.").format(session="[^/]+", calibration="[^/]+")
 SIMULATED = VIRTUAL.format(session="")
 ALL = "all"  # of cameras in fusions, of cameras and persons in tables
+UNSCALED = (
+    "expected `height_m` of every person of one take or more, for the calibration `people`, found "
+    "no such take; state the heights, or `known_lengths`: nothing else defines the scale"
+)
 # What else to do where nobody has clicked the points of a court yet.
 BY_CLICKS = ", or give every camera `static`, and the study makes a page to click them on"
 
@@ -79,6 +83,9 @@ def unmeasured(study: Study, session: Session) -> Iterator[str]:
             f"of session {session.name}, by which its takes are measured, found {wanted}; name one "
             "in both lists, or none in the session's `override`"
         )
+    alone = "people" in session.parameters["calibrations"] and session.court is None
+    if takes and not ways and alone and not session.has_scale():
+        yield f"{study.where(session, 'calibrations')}: session {session.name}: {UNSCALED}"
     if takes and ways and wanted and not any(map(session.fusions_of, takes)):
         yield (
             f"{study.where(session, 'fusions')}: expected one whose cameras film a take of session "
@@ -102,23 +109,28 @@ def _people_faults(file: Path, content: Content) -> Iterator[str]:
             f"found court: {content['court']}; people do not tell where its lines are"
         )
     takes = content.get("takes", {}).values()
-    if "virtual" not in content and not any(map(take_faults.cameras_of, takes)):
+    filmed = [take for take in takes if take_faults.cameras_of(take)]
+    if "virtual" not in content and not filmed:
         yield (
             f"{file}: takes: expected one that fixed cameras film, for the calibration `people`, "
             "found none; state a take with `videos`"
         )
-    if len(content["cameras"]) < 3:
+    if len(content["cameras"]) < FEWEST_ALONE:
         yield (
             f"{file}: cameras: expected three or more for the calibration `people`, found "
             f"{len(content['cameras'])}; people do not tell how two stand"
         )
-    subjects = content.get("subjects", {})
-    known = "known_lengths" in content
-    if not known and not any(one.get("height_m") for one in subjects.values()):
-        yield (
-            f"{file}: subjects: expected `height_m` of whom takes show, for the calibration "
-            "`people`, found none; state it, or `known_lengths`: nothing else defines the scale"
-        )
+    measured = [take for take in filmed if not _refused(content, take)]
+    known = "known_lengths" in content or any(_has_heights(content, take) for take in measured)
+    if measured and not known:
+        yield f"{file}: subjects: {UNSCALED}"
+
+
+def _has_heights(content: Content, take: Content) -> bool:
+    """Say whether the heights of all persons of a take are stated."""
+    subjects: Content = content.get("subjects", {})
+    there = [subjects.get(name, {}) for name in take.get("subjects", subjects)]
+    return bool(there) and all(one.get("height_m") for one in there)
 
 
 def _static_point_faults(file: Path, content: Content) -> Iterator[str]:

@@ -13,6 +13,7 @@ from courtside.study.methods import ALONE, HALFBODY, Calibration, Fusion, Varian
 
 DEFAULT = "config.yaml"  # in config/, over which a user's files are merged
 DEFAULT_DETECTOR = "blazepose-detector"  # of config/detectors.yaml
+FEWEST_ALONE = 3  # cameras that people alone can place
 ONE_STAGE = ("rtmo", "yolo-pose")  # decoders of networks that find persons themselves
 
 
@@ -155,7 +156,8 @@ class Session:
             "file": self.calibration_file is not None,
             "board": self.board is not None,
             "wand": self.wand is not None,
-            ALONE: filmed and self.court is None,  # whose world it would not be
+            # Whose world a court's would not be
+            ALONE: self.court is None and self.has_scale() and len(self.cameras) >= FEWEST_ALONE,
             "known": pictured,
             "dlt": pictured,
             "sfm": walked and bool(self.cameras) and not self.unclicked,
@@ -176,6 +178,15 @@ class Session:
 
         ways = map(Calibration.parse, self.parameters["calibrations"])
         return [way.name for way in ways if allowed(way)]
+
+    def has_scale(self) -> bool:
+        """Say whether people alone give lengths in metres.
+
+        All persons of a filmed take have a height, or lengths are known.
+        """
+        shown = [take.subjects for take in self.takes.values() if take.cameras]
+        heights = [[self.subjects[name].height_m for name in names] for names in shown]
+        return bool(shown and self.known_lengths) or any(each and all(each) for each in heights)
 
     def take_calibrations(self) -> list[str]:
         """Return the session's calibrations that its takes are measured with."""
