@@ -131,10 +131,10 @@ def rows(results, name, takes, names):
     session = yaml_files.read(ROOT / "config" / "sessions" / f"{name}.yaml")
     stated_takes = {take: session["takes"][take] for take in takes}
     everybody = list(session["subjects"])
-    heights_m = [
-        [session["subjects"][who]["height_m"] for who in take.get("subjects", everybody)]
-        for take in stated_takes.values()
-    ]
+    heights_m = {
+        name: {who: session["subjects"][who]["height_m"] for who in take.get("subjects", everybody)}
+        for name, take in stated_takes.items()
+    }
     folder = results / "virtual" / name
     real = session_truth.read(folder / "truth.npz").cameras
     real = [camera for camera in real if camera.name in names]

@@ -19,7 +19,7 @@ def main(
 ):
     lenses = file_formats.known_lenses(None, {}, paths.lens_tomls)
     filmed = [[keypoints.read_2d(path) for path in take["pose2d"]] for take in takes]
-    heights_m, known = [take["heights_m"] for take in takes], []
+    heights_m, known = {take["take"]: take["heights_m"] for take in takes}, []
     if known_lengths:
         weights = {key: steps["clicks"][key] for key in ("click_sigma_px", "click_bias_px")}
         points, xy = clicks.read_static(paths.static, names)

@@ -21,6 +21,7 @@ from fixtures.people import keypoints_made, remembered, tracks_made
 
 CAMERAS = corner_cameras.four_cameras()[:3]
 NAMES = [camera.name for camera in CAMERAS]
+HEIGHTS = {"walk": {"p1": 1.6, "p2": 1.8}}
 WALK = tracks_made.persons(40)
 TIME_S = np.arange(40) / 10
 JOINTS = ["nose", *skeleton.JOINTS]
@@ -79,11 +80,11 @@ def test_cameras_are_guessed_from_a_take():
     ]
     take = "walk", views, dict.fromkeys(NAMES, Clock())
     lenses = {camera.name: camera for camera in CAMERAS}
-    found = self_calibration.guess(NAMES, lenses, [take], [[1.6, 1.8]])
+    found = self_calibration.guess(NAMES, lenses, [take], HEIGHTS)
     assert [camera.name for camera in found.cameras] == NAMES
     assert len(found.tracks) == 2
     with pytest.raises(InputError, match="camera c2: expected a take with its video, found none"):
-        self_calibration.guess(NAMES, lenses, [filmed()], [[1.6, 1.8]])
+        self_calibration.guess(NAMES, lenses, [filmed()], HEIGHTS)
 
 
 @pytest.fixture
@@ -103,7 +104,7 @@ def calibrated():
             NAMES,
             lenses,
             lambda _: [("walk", views, dict.fromkeys(NAMES, Clock()) | {"c1": next(each)})],
-            [list(heights_m)],
+            {"walk": dict(zip(("p1", "p2"), heights_m, strict=True))},
             limits,
             known,
         )
@@ -164,4 +165,4 @@ def test_a_camera_that_filmed_in_two_sizes_is_named_with_the_take():
     takes = [(walk, views, clocks), ("later", [views[0], half], clocks)]
     message = r"take later: camera c1: expected pictures of .* as in .* found 960 x 540 px; name"
     with pytest.raises(InputError, match=message):
-        self_calibration.guess(NAMES, {}, takes, [[1.6, 1.8]] * 2)
+        self_calibration.guess(NAMES, {}, takes, HEIGHTS)

@@ -22,7 +22,7 @@ NAMES, SIZES = [one.name for one in TRUE], {one.name: one.size for one in TRUE}
 LIMITS = Limits(score=0.05, limit=0.05, fade=0.067)
 WALK = tracks_made.persons(40)
 LENSES = {camera.name: camera for camera in TRUE}
-HEIGHTS = [[unit.length(xyz) / unit.OF_HEIGHT for xyz in WALK]]
+HEIGHTS = {"walk": {f"p{at}": unit.length(xyz) / unit.OF_HEIGHT for at, xyz in enumerate(WALK)}}
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -87,7 +87,7 @@ def test_a_person_whom_one_camera_does_not_see_is_not_given_up():
 def test_a_person_who_stands_still_tells_nothing():
     take = tracks_made.take(TRUE, tracks_made.persons(still=True)[:1])
     with pytest.raises(InputError, match="expected a person who moves by"):
-        guessed(take, [[1.7]])
+        guessed(take, {"walk": {"p1": 1.7}})
 
 
 def test_cameras_that_agree_on_no_joint_are_told():
@@ -96,8 +96,8 @@ def test_cameras_that_agree_on_no_joint_are_told():
 
 
 def test_without_a_height_there_is_no_unit():
-    with pytest.raises(InputError, match="expected `height_m` of every subject"):
-        guessed(tracks_made.take(TRUE, WALK), [[1.7, None]], LENSES)
+    with pytest.raises(InputError, match="found take walk without the height of p2; state"):
+        guessed(tracks_made.take(TRUE, WALK), {"walk": {"p1": 1.7, "p2": None}}, LENSES)
 
 
 def test_a_camera_that_contradicts_the_others_is_named():

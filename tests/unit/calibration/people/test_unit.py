@@ -30,6 +30,14 @@ def body(height_m, frames=100, first=0.0, last=10.0, take=0, tracklets=()):
     return Body(take, length, frames, first, last, frozenset(tracklets))
 
 
+def named(heights):
+    """Return the heights of the persons of each take by names."""
+    return {
+        f"t{take}": {f"p{at}": height for at, height in enumerate(own, start=1)}
+        for take, own in enumerate(heights, start=1)
+    }
+
+
 def test_a_body_is_as_long_in_every_posture():
     one, other = (unit.length(xyz) for xyz in WALK)
     assert other / one == pytest.approx(tracks_made.SIZES[1] / tracks_made.SIZES[0], rel=0.01)
@@ -38,8 +46,8 @@ def test_a_body_is_as_long_in_every_posture():
 
 def test_heights_give_metres_the_tallest_to_the_longest():
     bodies, heights = [body(1.8), body(1.5), body(1.5, take=1)], [[1.5, 1.8], [1.5]]
-    found = unit.by_heights(bodies, heights)
-    alone = unit.by_heights(bodies[2:], [[None, 1.8], [1.5]])
+    found = unit.by_heights(bodies, named(heights))
+    alone = unit.by_heights(bodies[2:], named([[None, 1.8], [1.5]]))
     assert found.metres == pytest.approx(2.5) == alone.metres
     least = np.hypot(unit.NETWORK_SIGMA, unit.OF_HEIGHT_SIGMA / 2)  # four persons taught the share
     assert least < found.sigma < alone.sigma
@@ -56,23 +64,23 @@ def test_two_tracks_of_one_person_are_not_two_persons():
         body(1.60, 90, 0, 2),
         body(1.61, 80, 6, 9),
     ]
-    found = unit.by_heights(bodies, [[1.6, 1.8]])
+    found = unit.by_heights(bodies, named([[1.6, 1.8]]))
     assert found.metres == pytest.approx(2.5, rel=0.01)
     assert not found.warnings
 
 
 def test_somebody_else_beside_the_persons_has_no_height():
     bodies = [body(1.80, 300), body(1.65, 280), body(1.40, 100)]
-    assert unit.by_heights(bodies, [[1.65, 1.8]]).metres == pytest.approx(2.5, rel=0.01)
+    assert unit.by_heights(bodies, named([[1.65, 1.8]])).metres == pytest.approx(2.5, rel=0.01)
 
 
 def test_tracks_at_one_time_are_different_persons():
     """Apart in time, both would be of one person, and all would be 9 % longer."""
     tall = [body(1.8, 100, 0, 10), body(1.8, 100, 0, 10)]
-    assert unit.by_heights(tall, [[1.8, 1.8]]).metres == pytest.approx(2.5)
-    assert unit.by_heights(tall, [[1.65, 1.65]]).metres == pytest.approx(2.5 * 1.65 / 1.8)
+    assert unit.by_heights(tall, named([[1.8, 1.8]])).metres == pytest.approx(2.5)
+    assert unit.by_heights(tall, named([[1.65, 1.65]])).metres == pytest.approx(2.5 * 1.65 / 1.8)
     both = [body(1.70, 100, 0, 10), body(1.74, 100, 5, 10), body(1.72, 50, 0, 4)]
-    found = unit.by_heights(both, [[1.74, 1.70]])
+    found = unit.by_heights(both, named([[1.74, 1.70]]))
     assert found.metres == pytest.approx(2.5, rel=0.01)
 
 
@@ -80,7 +88,7 @@ def test_tracks_that_share_a_tracklet_may_be_one_person():
     """One camera exchanged two people: both tracks are of the tall one, the other is not seen."""
     alone = body(1.85, take=1)
     exchanged = [body(1.84, tracklets={(0, 1), (1, 0)}), body(1.86, tracklets={(0, 1), (1, 1)})]
-    found = unit.by_heights([*exchanged, alone], [[1.85, 1.65], [1.85]])
+    found = unit.by_heights([*exchanged, alone], named([[1.85, 1.65], [1.85]]))
     assert found.metres == pytest.approx(2.5, rel=0.005)
     (warning,) = found.warnings
     assert warning.startswith("only one person's height defines the scale")
@@ -89,13 +97,13 @@ def test_tracks_that_share_a_tracklet_may_be_one_person():
 def test_another_assignment_that_agrees_as_well_gives_a_warning():
     """Two bodies at different times and a third: the lower two or the upper two."""
     bodies = [body(1.6, 100, 0, 3), body(1.7, 100, 4, 7), body(1.8, 100, 8, 10)]
-    found = unit.by_heights(bodies, [[1.7, 1.7 * 1.7 / 1.6]])
+    found = unit.by_heights(bodies, named([[1.7, 1.7 * 1.7 / 1.6]]))
     (warning,) = found.warnings
     assert warning.startswith("stated heights: another assignment of heights to persons agrees")
 
 
 def test_heights_that_contradict_each_other_give_a_warning():
-    (warning,) = unit.by_heights([body(1.8), body(1.6)], [[1.8, 1.7]]).warnings
+    (warning,) = unit.by_heights([body(1.8), body(1.6)], named([[1.8, 1.7]])).warnings
     assert warning.startswith("stated heights disagree by 6.1 %: if 1.70 m is right, the person of")
     assert "1.80 m is 1.91 m tall" in warning
 
@@ -103,18 +111,30 @@ def test_heights_that_contradict_each_other_give_a_warning():
 def test_many_persons_are_ordered_by_length():
     heights = [1.5 + 0.05 * at for at in range(7)]
     bodies = [body(one) for one in heights[::-1]]
-    assert unit.by_heights(bodies, [heights]).metres == pytest.approx(2.5)
+    assert unit.by_heights(bodies, named([heights])).metres == pytest.approx(2.5)
 
 
-@pytest.mark.parametrize("heights", [[[None]], [[1.7, None]], [[1.7, 1.8]], [[]]])
-def test_a_take_of_somebody_without_height_tells_nothing(heights):
-    with pytest.raises(InputError, match="expected `height_m` of every subject"):
-        unit.by_heights([body(1.7)], heights)
+@pytest.mark.parametrize(
+    ("heights", "found"),
+    [
+        ([[None]], "take t1 without the height of p1"),
+        ([[1.7, None, None]], "take t1 without the height of p2, p3"),
+        ([[1.7, 1.8]], "take t1 with 1 of these tracks for p1, p2"),
+        ([[]], "take t1 with 1 of these tracks for nobody"),
+        (
+            [[None], [1.7]],
+            "take t1 without the height of p1; take t2 with 0 of these tracks for p1",
+        ),
+    ],
+)
+def test_a_take_that_tells_no_scale_is_named_with_its_persons(heights, found):
+    with pytest.raises(InputError, match=f"`height_m` of every person, .* found {found}; state"):
+        unit.by_heights([body(1.7)], named(heights))
 
 
 def test_tracks_without_legs_or_trunk_are_not_counted():
-    with pytest.raises(InputError, match=r"found heights \[\[1.7\]\] for \[0\] usable tracks"):
-        unit.by_heights([body(np.nan)], [[1.7]])
+    with pytest.raises(InputError, match="found take t1 with 0 of these tracks for p1;"):
+        unit.by_heights([body(np.nan)], named([[1.7]]))
 
 
 def clicked(noise_px=0.0, seed=0, length_m=2.0, cameras=(0, 1, 2, 3)):
@@ -198,7 +218,7 @@ def test_clicks_of_a_racket_at_several_places_err_together_as_stated(
 
 
 def test_a_racket_at_several_places_is_as_certain_as_its_own_length_and_the_bend_allow():
-    one, five = (unit.find(SMALL, (), [[None]], racket(0, 3.0, 0.0)[:n]) for n in (1, 5))
+    one, five = (unit.find(SMALL, (), named([[None]]), racket(0, 3.0, 0.0)[:n]) for n in (1, 5))
     common = np.hypot(unit.KNOWN_SIGMA_M / RACKET_M, unit.BEND_SIGMA)
     assert common < five.sigma < 0.7 * one.sigma
     assert five.by == "top0 to butt0 and 4 others"
@@ -227,20 +247,20 @@ def test_the_shape_of_cameras_makes_a_known_length_less_certain():
 
 def test_a_known_length_counts_more_than_heights_and_stands_for_them():
     bodies = [body(1.80), body(1.60)]
-    found = unit.find(SMALL, bodies, [[1.83, 1.63]], [clicked()])
+    found = unit.find(SMALL, bodies, named([[1.83, 1.63]]), [clicked()])
     assert found.metres == pytest.approx(2.5, rel=0.006)  # heights alone: 1.8 % off
     assert found.by == "left to right, stated heights"
     assert found.sigma < by_length(SMALL, clicked()).sigma
     assert not found.warnings
-    without = unit.find(SMALL, bodies, [[None, 1.6]], [clicked()])
+    without = unit.find(SMALL, bodies, named([[None, 1.6]]), [clicked()])
     assert (without.metres, without.by) == (pytest.approx(2.5), "left to right")
-    (warning,) = unit.find(SMALL, bodies, [[1.9, 1.69]], [clicked()]).warnings
+    (warning,) = unit.find(SMALL, bodies, named([[1.9, 1.69]]), [clicked()]).warnings
     assert warning.startswith("stated heights: expected a change of all lengths by 2.")
     assert "found +4.2 %; check them against left to right" in warning
 
 
 def test_heights_of_persons_who_are_not_seen_are_not_needed_beside_a_known_length():
-    found = unit.find(SMALL, [body(1.8)], [[1.8, 1.6]], [clicked()])
+    found = unit.find(SMALL, [body(1.8)], named([[1.8, 1.6]]), [clicked()])
     assert (found.metres, found.by) == (pytest.approx(2.5), "left to right")
 
 

@@ -234,7 +234,7 @@ def test_people_alone_place_cameras_with_their_heights_and_known_lenses(job, stu
     session = study.sessions["walk-4cams-tiny"]
     (one,) = calibration.placing(real)
     take = session.takes[one["take"]]
-    assert one["heights_m"] == [session.subjects[who].height_m for who in take.subjects]
+    assert one["heights_m"] == {who: session.subjects[who].height_m for who in take.subjects}
     assert [path.rpartition("/")[2] for path in one["pose2d"]] == [f"{c}.npz" for c in take.cameras]
     assert calibration.known_lenses(real) == []
     assert len(calibration.known_lenses(job(**PLAIN, calibration="people"))) == sum(

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from courtside.calibration.people import from_nothing, relative_poses
 from courtside.calibration.people.relative_poses import Take
-from courtside.calibration.people.unit import KnownLength
+from courtside.calibration.people.unit import Heights, KnownLength
 from courtside.calibration.people.views import Limits, Seen, joined
 from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
@@ -61,7 +61,7 @@ def calibrate(
     names: Sequence[str],
     lenses: Mapping[str, Camera],
     timed: Callable[[Mapping[str, Camera] | None], Sequence[Filmed]],
-    heights_m: Sequence[Sequence[float | None]],
+    heights_m: Heights,
     limits: Limits,
     known: Sequence[KnownLength] = (),
 ) -> from_nothing.Found:
@@ -99,7 +99,7 @@ def guess(
     names: Sequence[str],
     lenses: Mapping[str, Camera],
     takes: Sequence[Filmed],
-    heights_m: Sequence[Sequence[float | None]],
+    heights_m: Heights,
     known: Sequence[KnownLength] = (),
 ) -> from_nothing.Guess:
     """Return initial cameras; the arguments are as for `from_nothing.guess`."""

@@ -74,7 +74,7 @@ def guess(
     sizes: Mapping[str, tuple[int, int]],
     lenses: Mapping[str, Camera],
     takes: Sequence[Take],
-    heights_m: Sequence[Sequence[float | None]],
+    heights_m: unit.Heights,
     known: Sequence[unit.KnownLength] = (),
 ) -> Guess:
     """Return initial cameras from the tracks of people.
@@ -186,7 +186,7 @@ def adjust(
     lenses: Mapping[str, Camera],
     seen: Seen,
     tracks: Sequence[Track],
-    heights_m: Sequence[Sequence[float | None]],
+    heights_m: unit.Heights,
     limits: Limits,
     known: Sequence[unit.KnownLength] = (),
 ) -> Found:

@@ -4,7 +4,7 @@ Heights are stated for persons; which track shows which person is estimated with
 length lies between two points at rest that are clicked in two cameras or more.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
 from typing import Any
@@ -44,6 +44,9 @@ MOST_NAMED = 4  # lengths that a line names
 MOST_WAYS = 4096  # assignments of tracks to persons in one take; only the longest tracks are used
 MOST_PERSONS = 5  # of a take with assignments; with more, tracks are ordered by length
 ROUNDS = 4  # of assignment and unit, in turn
+
+# Stated heights, m, by take and person; None of a person of whom none is stated.
+Heights = Mapping[str, Mapping[str, float | None]]
 
 
 @dataclass(frozen=True)
@@ -134,7 +137,7 @@ def of_clicks(
 def find(
     cameras: Sequence[Camera],
     bodies: Sequence[Body],
-    heights_m: Sequence[Sequence[float | None]],
+    heights_m: Heights,
     known: Sequence[KnownLength] = (),
     shape: NDArray | None = None,
 ) -> Unit:
@@ -236,7 +239,7 @@ def _share(
     return own, variance, by_bias, by_column
 
 
-def by_heights(bodies: Sequence[Body], heights_m: Sequence[Sequence[float | None]]) -> Unit:
+def by_heights(bodies: Sequence[Body], heights_m: Heights) -> Unit:
     """Return the unit from the stated heights of each take's persons.
 
     Tracks are assigned to persons so that the lengths of all bodies agree best. Tracks with common
@@ -248,17 +251,16 @@ def by_heights(bodies: Sequence[Body], heights_m: Sequence[Sequence[float | None
     """
     takes = _takes(bodies, heights_m)
     if not takes:
-        usable = [one.take for one in bodies if np.isfinite(one.length)]
         raise InputError(
-            "people: expected `height_m` of every subject of a take whose legs and trunks are "
-            f"seen, found heights {[list(one) for one in heights_m]} for "
-            f"{[usable.count(take) for take in range(len(heights_m))]} usable tracks, by take; "
-            "state the heights, or `known_lengths`: nothing else defines the scale"
+            "people: expected a take with `height_m` of every person, and as many tracks that show "
+            f"legs and trunk, found {'; '.join(_lacking(bodies, heights_m))}; state the heights, "
+            "add such a take, or state `known_lengths`: nothing else defines the scale"
         )
     starts = np.unique(np.concatenate([take.ratio().ravel() for take in takes]).round(4))
     found = [_converged(takes, unit) for unit in starts[np.isfinite(starts)]]
     cost, unit, ratios = min(found, key=lambda one: one[0])
-    persons = sum(max(list(one).count(height) for one in heights_m) for height in ratios)
+    stated = [list(own.values()) for own in heights_m.values()]
+    persons = sum(max(own.count(height) for own in stated) for height in ratios)
     of_height = np.hypot(OF_HEIGHT_SIGMA, STATED_SIGMA_M / min(ratios))
     learned = OF_HEIGHT_SIGMA / np.sqrt(LEARNED_FROM)
     sigma = float(np.linalg.norm([of_height / np.sqrt(persons), learned, NETWORK_SIGMA]))
@@ -291,18 +293,28 @@ class _Assignments:
         return float(cost[at]), self.height_m[at], self.ratio()[at]
 
 
-def _takes(
-    bodies: Sequence[Body], heights_m: Sequence[Sequence[float | None]]
-) -> list[_Assignments]:
+def _takes(bodies: Sequence[Body], heights_m: Heights) -> list[_Assignments]:
     """Return the assignments of all takes that can be used."""
     each = (
-        _assignments([one for one in bodies if one.take == take], stated)
-        for take, stated in enumerate(heights_m)
+        _assignments([one for one in bodies if one.take == take], stated.values())
+        for take, stated in enumerate(heights_m.values())
     )
     return [found for found in each if found is not None]
 
 
-def _assignments(bodies: Sequence[Body], stated: Sequence[float | None]) -> _Assignments | None:
+def _lacking(bodies: Sequence[Body], heights_m: Heights) -> Iterator[str]:
+    """Yield why each take says nothing of the scale."""
+    for at, (take, stated) in enumerate(heights_m.items()):
+        unknown = [name for name, height_m in stated.items() if not height_m]
+        usable = sum(one.take == at and np.isfinite(one.length) for one in bodies)
+        if unknown:
+            yield f"take {take} without the height of {', '.join(unknown)}"
+        else:
+            shown = ", ".join(stated) or "nobody"
+            yield f"take {take} with {usable} of these tracks for {shown}"
+
+
+def _assignments(bodies: Sequence[Body], stated: Iterable[float | None]) -> _Assignments | None:
     """Return the assignments of one take; None without all heights, or with fewer tracks."""
     heights = np.array([one or np.nan for one in stated])
     known = sorted((one for one in bodies if np.isfinite(one.length)), key=lambda one: -one.frames)

@@ -95,7 +95,7 @@ def placing(job: Job) -> list[dict[str, Any]]:
         take = job.session.takes[name]
         one = Job(job.study, {**job.wildcards, "take": name, "model": model})
         timing = {"synchronised": take.synchronised, "stated": takes.clocks(one, take.cameras)}
-        heights_m = list(takes.stated(one, "height_m").values())
+        heights_m = takes.stated(one, "height_m")
         pose2d = takes.each_camera(one, paths.POSE2D)
         found.append({"take": name, "pose2d": pose2d, "heights_m": heights_m, "timing": timing})
     return found
