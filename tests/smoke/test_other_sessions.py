@@ -222,6 +222,8 @@ def test_a_fault_is_told_of_the_configuration_that_was_given(gym):
         said = snakemake("-n", "--configfile", *given, root=gym).stderr.splitlines()
         start = f"Error: {' or '.join(given)}: sessions: "
         assert sum(line.startswith(start) for line in said) == 1
+    said = snakemake("-n", "--config", "sessions=[unknown-hall]", root=gym).stderr.splitlines()
+    assert sum(line.startswith("Error: --config: sessions: ") for line in said) == 1
 
 
 def test_sessions_and_takes_of_similar_names_are_simulated_side_by_side(gym):

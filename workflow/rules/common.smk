@@ -51,9 +51,10 @@ configfile: str(REPOSITORY / "config" / "config.yaml")
 NAME = "[a-z0-9][a-z0-9_-]*"
 
 # Where faults are told to be, but those of the default file's values: the files of --configfile,
-# which come before it.
+# which come before it, and --config.
 OWN_FILES = [files.seen_from(path) for path in workflow.configfiles]
-OWN_FILES = " or ".join(OWN_FILES[:-1] or OWN_FILES)
+OWN_FILES = OWN_FILES[:-1] + ["--config"] * bool(workflow.config_settings.config) or OWN_FILES
+OWN_FILES = " or ".join(OWN_FILES)
 
 try:
     STUDY = configuration.load(config, OWN_FILES, folder=CONFIG, root=Path.cwd())

@@ -519,6 +519,27 @@ def test_a_fault_is_told_of_the_file_in_which_its_value_stands(folder):
     ]
 
 
+def test_the_file_of_a_session_given_as_a_study_is_told_with_the_right_one(folder):
+    """Both may have one name; the keys of a session must not be called wrong in its own file."""
+    (folder / "sessions" / "hall.yaml").write_text(yaml.safe_dump(SESSION))
+    config = yaml_files.read(folder / "config.yaml") | SESSION
+    start = "expected the file of a study, found that of a session; give"
+
+    def said(own):
+        with pytest.raises(InputError) as caught:
+            configuration.load(config, own, folder, root=folder.parent)
+        return caught.value.lines
+
+    own = "config/sessions/hall.yaml"
+    assert said(own) == [f"{own}: {start} a study that names this session among its `sessions`"]
+    (folder / "hall.yaml").write_text("sessions: [hall]\n")
+    assert said(own) == [f"{own}: {start} --configfile {folder}/hall.yaml"]
+    assert said(f"{own} or --config") == [
+        f"{own} or --config: {start} --configfile {folder}/hall.yaml"
+    ]
+    assert len(said(f"{folder}/hall.yaml")) > 1  # keys of a session in the study's own file
+
+
 def test_a_session_may_say_that_its_takes_are_not_measured(folder):
     study = load(folder, SESSION | {"override": {"take_calibrations": []}})
     assert study.sessions["hall"].take_calibrations() == []

@@ -22,6 +22,7 @@ from courtside.study.execution.artefacts import Artefact
 
 # Folders of results/ that are no session.
 RESERVED = ("external", "networks", "run", "figures", "virtual", "plans")
+OF_SESSION = {"description", "court", "cameras"}  # keys of every session, and of no study
 
 # Names of folders and files: none leaves its folder, is an option, or a device of Windows; and none
 # is read as a missing value where a table holds it.
@@ -38,11 +39,24 @@ def load(config: Content, config_file: str, folder: StrPath, root: StrPath = "."
     models, detectors and artefacts; relative paths in them start from `root`. An `InputError` has
     every fault of every file.
     """
+    _check_kind(config, config_file, Path(folder))
     try:
         return _study(config, config_file, Path(folder), root)
     except InputError as error:
         default = Path(folder) / sessions.DEFAULT
         raise InputError(*_placed(error.lines, config, config_file, default)) from None
+
+
+def _check_kind(config: Content, own: str, folder: Path) -> None:
+    """Raise an `InputError` if the file of a session was given in place of a study's."""
+    studies = [str(folder / name) for name in re.findall(r"[a-z0-9_-]+\.yaml", own)]
+    there = [study for study in studies if Path(study).is_file()]
+    if OF_SESSION.issubset(config) and own not in there:
+        right = "a study that names this session among its `sessions`"
+        right = f"--configfile {there[0]}" if there else right
+        raise InputError(
+            f"{own}: expected the file of a study, found that of a session; give {right}"
+        )
 
 
 def _placed(faults: Iterable[str], config: Content, own: str, default: Path) -> Iterator[str]:
