@@ -189,6 +189,21 @@ def test_files_of_devices_without_a_name_go_to_the_only_take():
     assert [take for take, *_ in found.devices] == [""]
 
 
+def test_hyphens_and_underscores_of_names_stay():
+    found = guess(
+        *(f"{take}_cam_{k}.mp4" for take in ("serve-1", "serve-2") for k in (0, 1)),
+        "cam_0_empty.mp4",
+        "cam_1_empty.mp4",
+        "walk_1.mp4",
+    )
+    assert found.cameras == ["cam_0", "cam_1"]
+    assert list(found.takes) == ["serve-1", "serve-2"]
+    assert paths(found.static) == {"cam_0": "cam_0_empty.mp4", "cam_1": "cam_1_empty.mp4"}
+    assert list(found.walks) == ["walk_1"]
+    folders = [f"cam-{k}/GX01003{k}.MP4" for k in (1, 2)]
+    assert guess(*folders).cameras == ["cam-1", "cam-2"]
+
+
 def test_qualisys_names_take_camera_and_serial_number():
     found = guess(
         *(f"{take}_Miqus_{n}_{23086 + n}.avi" for take in ("Serve 1", "Lob") for n in (1, 2)),

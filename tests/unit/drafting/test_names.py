@@ -32,6 +32,8 @@ def test_names_are_split_into_words(parts, expected):
     ("text", "expected"),
     [
         ("North Gym", "north_gym"),
+        ("our-walk", "our-walk"),
+        ("Our_walk - 2026-05-01", "our_walk_2026-05-01"),
         ("  --A.b--  ", "a_b"),
         ("Größe", "grosse"),
         ("コート", "koto"),
@@ -53,6 +55,26 @@ def test_names_are_such_as_a_configuration_accepts(text, expected):
     found = names.name(text, "session1")
     assert found == expected
     assert configuration.NAME.fullmatch(found)
+
+
+@pytest.mark.parametrize(
+    ("words", "texts", "expected"),
+    [
+        ("cam0", ["cam_0", "serve/Cam_0-b"], "cam_0"),
+        ("cam0", ["cam-0"], "cam-0"),
+        ("cam0", ["cam0", "cam0"], "cam0"),
+        ("cam0", ["cam_0", "cam0"], "cam0"),  # spelled in two ways
+        ("cam0", ["cam_0", "cam_00"], "cam0"),
+        ("cam1", ["mycam_1", "cam_12"], "cam1"),
+        ("cam1", ["Cam 1"], "cam1"),
+        ("front_left", ["front-left", "Front-Left 2"], "front-left"),
+        ("go_pro3", ["GoPro3"], "go_pro3"),
+        ("left_cam2", ["左カメラ2"], "left_cam2"),
+        ("take1", [], "take1"),
+    ],
+)
+def test_names_are_spelled_as_in_all_texts(words, texts, expected):
+    assert names.spelling(words, texts) == expected
 
 
 def test_distinct_appends_the_first_free_number():

@@ -129,7 +129,9 @@ def _name_there(guess: Guess, camera: str, calibrated: Mapping[str, tuple[int, i
     ways: tuple[Callable[[str], bool], ...] = (
         lambda there: there in (camera, guess.serials.get(camera)),
         lambda there: file_names.name(there, "") == camera,
-        lambda there: file_names.alike("_".join(file_names.words_of([there])), camera),
+        lambda there: file_names.alike(
+            *("_".join(file_names.words_of([n])) for n in (there, camera))
+        ),
     )
     return next((there for like in ways for there in calibrated if like(there)), None)
 

@@ -65,6 +65,13 @@ class Recording:
         said = self.device
         return words_of([*self.parts[:-1], said.before, said.camera, said.after])
 
+    @property
+    def written(self) -> str:
+        """Its name and folders as a user wrote them: without what a device says."""
+        said = self.device
+        name = self.parts[-1:] if said is None else (said.before, said.after)
+        return "/".join([*self.parts[:-1], *name])
+
 
 Take = dict[str, Recording]  # by camera
 # A recording, its camera, and its words that name neither camera nor counter
@@ -240,7 +247,7 @@ def _sort_pictures(
             rest.append((recording, camera, words))
         elif recording.kind == "photos" or _is_walk(recording, camera, cameras) or alone:
             counted = words or words_of(recording.parts[-1:])
-            wanted = names.name("_".join(counted), "walk")
+            wanted = _named("_".join(counted), [recording], "walk")
             wanted = wanted if wanted not in cameras else f"walk_{wanted}"
             found.walks[distinct(wanted, found.walks)] = recording
         else:
@@ -401,11 +408,17 @@ def _sort_others(found: Guess, recordings: Iterable[Recording], own: Words) -> N
             found.unused.append((recording, recording.note or "clicked racket ends"))
 
 
+def _named(words: str, recordings: Iterable[Recording], otherwise: str) -> str:
+    """Return the name of a camera, take or walk of such words, spelled as in its recordings'."""
+    return names.name(names.spelling(words, [r.written for r in recordings]), otherwise)
+
+
 def _rename(found: Guess) -> None:
     """Give cameras and takes names that a configuration accepts."""
     cameras: dict[str, str] = {}
     for at, camera in enumerate(found.cameras, start=1):
-        cameras[camera] = distinct(names.name(camera, f"cam{at}"), cameras.values())
+        shown = [*found.films(camera), *filter(None, [found.static.get(camera)])]
+        cameras[camera] = distinct(_named(camera, shown, f"cam{at}"), cameras.values())
     found.cameras = list(cameras.values())
     found.stand_ins = [cameras[camera] for camera in found.stand_ins]
     found.numbered = [cameras[camera] for camera in found.numbered if camera in cameras]
@@ -413,8 +426,8 @@ def _rename(found: Guess) -> None:
     found.boards = {cameras[c]: r for c, r in found.boards.items()}
     found.serials = {cameras[c]: serial for c, serial in found.serials.items()}
     takes: dict[str, str] = {}
-    for at, take in enumerate(found.takes, start=1):
-        takes[take] = distinct(names.name(take, f"take{at}"), takes.values())
+    for at, (take, films) in enumerate(found.takes.items(), start=1):
+        takes[take] = distinct(_named(take, films.values(), f"take{at}"), takes.values())
     found.takes, found.keypoints = (
         {takes[key]: {cameras[c]: r for c, r in take.items()} for key, take in kind.items()}
         for kind in (found.takes, found.keypoints)

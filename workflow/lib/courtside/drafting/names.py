@@ -13,6 +13,7 @@ from courtside.study.configuration import configuration
 
 LONGEST = 55  # of the 64 letters of a name; the others are for `walk_` and the number of `distinct`
 WORD = re.compile(r"[A-Za-z]+[0-9]*|[0-9]+|[^\W\d_]+")
+SIGNS = re.compile("[^a-z0-9]+")  # between the words of a name
 LETTERS = {"ß": "ss", "æ": "ae", "œ": "oe", "ø": "o", "đ": "d", "ł": "l", "þ": "th"}
 MEANINGS = {  # longer ones are looked for first
     "cam": "カメラ 카메라 相机 摄像机 攝影機 机位 камера",
@@ -65,17 +66,31 @@ def words_of(parts: Iterable[str]) -> tuple[str, ...]:
 
 
 def name(text: str, otherwise: str) -> str:
-    """Make a name that a configuration accepts: `a-z0-9_`, begun with a letter or digit.
+    """Make a name that a configuration accepts: `a-z0-9_-`, begun with a letter or digit.
 
-    `otherwise` is the name of a text without a letter or digit, of one with Chinese characters that
-    are not known, and of one that no name may be, such as `con`. Long texts are cut.
+    Hyphens and underscores stay, other signs become underscores. `otherwise` is the name of a text
+    without a letter or digit, of one with Chinese characters that are not known, and of one that no
+    name may be, such as `con`. Long texts are cut.
     """
     plain = _plain(text)
     if any(_script(letter) == "CJK" for letter in plain):
         return otherwise
     spelled = "".join(_spelled(letter) for letter in plain)
-    found = "_".join(re.findall("[a-z0-9]+", spelled.lower()))[:LONGEST].rstrip("_")
+    found = SIGNS.sub(lambda run: "_" if run[0].strip("-_") else run[0], spelled.lower())
+    found = found.strip("-_")[:LONGEST].rstrip("-_")
     return found if configuration.NAME.fullmatch(found) else otherwise
+
+
+def spelling(name: str, texts: Iterable[str]) -> str:
+    """Return the name of a camera or take as all texts spell it: `cam_0` where words are `cam0`.
+
+    Only hyphens and underscores may differ; a name that texts spell in two ways stays.
+    """
+    words = re.escape(name).replace("_", "[-_]")
+    words = re.sub("(?<=[a-z])(?=[0-9])", "[-_]?", words)
+    pattern = re.compile(f"(?<![a-z0-9]){words}(?![a-z0-9])")
+    found = {(pattern.search(text.lower()) or [name])[0] for text in texts}
+    return found.pop() if len(found) == 1 else name
 
 
 def distinct(wanted: str, taken: Collection[str]) -> str:
