@@ -38,7 +38,7 @@ def main(folder, name, court, sessions):
     study = shown(sessions.parent / f"{name}.yaml")
     filmed = [t for t, films in found.takes.items() if films and t not in draft.unfilmed(found)]
     said = [f"Wrote {shown(path)}.", draft.write_study(study, name, filmed)]
-    points = draft.court_points(found, written)
+    points = None if court == "none" else draft.court_points(found, written)
     return [*said, *draft.to_check(found, shown(path), points, study)]
 
 

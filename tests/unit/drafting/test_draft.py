@@ -260,6 +260,61 @@ def test_without_a_walk_takes_rest_on_the_clicked_points():
     assert "override" not in draft(*TAKE, court="none")[2]
 
 
+THREE = (*TAKE, recording("data/north/a_back.mp4"))
+
+
+def uncommented(text):
+    """Return a draft in which the line on people alone counts, in place of another `override`."""
+    lines = [line for line in text.splitlines() if not line.startswith("override:")]
+    return "\n".join(line.replace("# override:", "override:") for line in lines)
+
+
+@pytest.mark.parametrize("beside", [False, True])
+def test_three_cameras_without_a_court_may_be_calibrated_by_people_alone(tmp_path, beside):
+    names = ("left", "right", "back") if beside else ()
+    halpe = [folder(f"data/north/pose/{name}_json", (26, ("halpe26",))) for name in names]
+    guess, text, content = draft(*THREE, *halpe, court="none")
+    assert "calibrations" not in content.get("override", {})
+    assert text.count("# override: {") == 1
+    assert "remove the first #" in text and "state height_m of every person" in text
+    alone = yaml.safe_load(uncommented(text))
+    models = {"models": ["halpe26"]} if beside else {}
+    assert alone["override"] == {"calibrations": ["people"]} | models
+    alone["subjects"]["p1"]["height_m"] = 1.74
+    config = schemas.SCHEMAS.parents[1] / "config"
+    found = session_faults.find(config, tmp_path / "n.yaml", alone, None, tmp_path)
+    assert [line for line in found if "expected a file, found none" not in line] == []
+    parameters = yaml_files.read("config/config.yaml")
+    session = session_files.session("north", "config/sessions/north.yaml", alone, parameters)
+    assert session.take_calibrations() == ["people"]
+    said = "\n".join(session_draft.to_check(guess, "north.yaml", None, "config/north.yaml"))
+    assert "or use the draft's line for people alone" in said
+
+
+def test_no_page_for_clicks_is_promised_without_a_court():
+    guess, text, _ = draft(*TAKE, court="none")
+    assert "calibrations" not in text
+    said = "\n".join(session_draft.to_check(guess, "n.yaml", None, "s.yaml"))
+    assert "Cameras: nothing in the folder tells how they stand" in said
+    assert not any(part in said for part in ("Court points", "No walk", "people alone"))
+    walked = session_draft.to_check(draft(*THREE, WALK, court="none")[0], "n.yaml", None, "s.yaml")
+    assert not any(line.startswith(("Cameras", "Court points")) for line in walked)
+    for others in ((CALIBRATION,), (WALK,)):
+        assert "calibrations: [people]" not in draft(*THREE, *others, court="none")[1]
+    assert "calibrations: [people]" not in draft(*THREE)[1]
+
+
+def test_a_page_for_clicks_needs_a_static_recording_of_every_camera():
+    static = [recording(f"data/north/{name}_empty.mp4") for name in ("left", "right")]
+    for films, start in (
+        (static, "Court points: the first run makes a page"),
+        ((), "Court points: give every camera a `static` recording, and"),
+    ):
+        guess = draft(*TAKE, *films)[0]
+        said = session_draft.to_check(guess, "n.yaml", "c.csv", "s.yaml")
+        assert sum(line.startswith(start) and line.endswith("for c.csv.") for line in said) == 1
+
+
 def guessed(*recordings):
     return session_guess.guess(list(recordings))
 

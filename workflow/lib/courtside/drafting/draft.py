@@ -11,6 +11,7 @@ from courtside.drafting import names as file_names
 from courtside.drafting.guess import Guess, Recording, Take
 from courtside.geometry import picture_size
 from courtside.study.configuration import configuration, schemas, yaml_files
+from courtside.study.configuration.sessions import FEWEST_ALONE
 from courtside.study.errors import InputError, StrPath
 
 MARK = "# guess:"
@@ -47,8 +48,10 @@ def text(guess: Guess, *, title: str, folder: str, court: str = "badminton") -> 
     clicked = measured and court != "none"
     lines += [*_cameras(guess), *_walks(guess), *_places(guess, folder, clicked)]
     lines += [*_synchronised(guess), *_takes(guess)]
-    lines += [*_override(guess), *_unused(guess)]
-    return "\n".join(lines) + "\n"
+    lines += _override(guess)
+    if measured and court == "none" and not guess.walks:
+        lines += _people_alone(guess)
+    return "\n".join([*lines, *_unused(guess)]) + "\n"
 
 
 def write(path: Path, content: str) -> None:
@@ -242,15 +245,31 @@ def _devices(guess: Guess, take: str) -> list[str]:
 
 def _override(guess: Guess) -> list[str]:
     """Return the key of what differs from the study: few bridging images, imported keypoints."""
-    keys, remarks = _fewer_images(guess), []
-    remarks += ["the walks give no more bridging images"] * bool(keys)
-    filmed = [name for name, take in guess.takes.items() if take]
-    if guess.keypoints and set(guess.keypoints) == set(filmed):
-        found = [next(iter(t.values())).skeleton[1][0] for t in guess.keypoints.values()]
-        keys.append(f"models: [{', '.join(dict.fromkeys(found))}]")
+    keys, remarks = [*_fewer_images(guess), *_imported(guess)], []
+    remarks += ["the walks give no more bridging images"] * bool(_fewer_images(guess))
+    if _imported(guess):
         alone = "for there are no videos" if unfilmed(guess) else "remove it to use a network"
         remarks.append(f"keypoints of another program, {alone}")
     return [f"override: {{{', '.join(keys)}}}  {MARK} {'; '.join(remarks)}"] * bool(keys)
+
+
+def _imported(guess: Guess) -> list[str]:
+    """Return the key that measures with imported keypoints, where all takes have some."""
+    filmed = [name for name, take in guess.takes.items() if take]
+    if not guess.keypoints or set(guess.keypoints) != set(filmed):
+        return []
+    found = [next(iter(t.values())).skeleton[1][0] for t in guess.keypoints.values()]
+    return [f"models: [{', '.join(dict.fromkeys(found))}]"]
+
+
+def _people_alone(guess: Guess) -> list[str]:
+    """Return a line to be uncommented by which people tell how three cameras or more stand."""
+    if not any(guess.takes.values()) or len(guess.cameras) < FEWEST_ALONE:
+        return []
+    keys = ", ".join([*_imported(guess), "calibrations: [people]"])
+    how = "to calibrate by people alone, remove the first #"
+    how += " and the line above" * bool(_imported(guess))
+    return [f"# override: {{{keys}}}  {MARK} {how}, and state height_m of every person"]
 
 
 def _fewer_images(guess: Guess) -> list[str]:
@@ -348,11 +367,11 @@ def write_study(path: Path, session: str, takes: Iterable[str]) -> str:
     return f"Wrote {path}."
 
 
-def to_check(guess: Guess, path: StrPath, court_points: str, study: StrPath) -> list[str]:
+def to_check(guess: Guess, path: StrPath, court_points: str | None, study: StrPath) -> list[str]:
     """List what a user should check after drafting, in order.
 
-    `path` is the draft, `court_points` where clicked court points are expected, `study` the study
-    that names the session.
+    `path` is the draft, `court_points` where clicked court points are expected, None without a
+    court, `study` the study that names the session.
     """
     lines = [f"Look at {path}: every line with `{MARK}`, and everything under `not used`."]
     left_out = _left_out(guess)
@@ -370,19 +389,33 @@ def to_check(guess: Guess, path: StrPath, court_points: str, study: StrPath) -> 
         if guess.calibration is None:
             wanted += "; put the calibration file into the folder and name it as `calibration`"
         lines.append(f"Keypoints without videos: {wanted}.")
-    elif guess.calibration is None and guess.court_points is None and guess.cameras:
-        lines.append(
-            f"Court points: the first run makes a page to click them on, for {court_points}."
-        )
-    if guess.cameras and not (guess.walks or guess.calibration or unfilmed(guess)):
-        lines.append(
-            "No walk was found: the cameras will be calibrated from clicked court points alone."
-        )
+    elif guess.calibration is None and guess.cameras:
+        lines += _of_cameras(guess, court_points)
     lines.append(
         f"`snakemake -n -q rules --configfile {study}` checks it and counts what will be made."
     )
     lines.append(f"`snakemake --configfile {study}` makes it.")
     return lines
+
+
+def _of_cameras(guess: Guess, court_points: str | None) -> Iterator[str]:
+    """Yield how the cameras will be found, and what that takes."""
+    if court_points is None:
+        if not guess.walks:
+            alone = "; or use the draft's line for people alone" * bool(_people_alone(guess))
+            yield (
+                "Cameras: nothing in the folder tells how they stand, and without a court there is "
+                "no page for clicks: add a `calibration` file, `court_points` with your own "
+                f"coordinates, a `board` or a `wand` (config/README.md){alone}."
+            )
+        return
+    if guess.court_points is None:
+        page = "the first run makes a page to click them on"
+        if not set(guess.cameras) <= set(guess.static):
+            page = f"give every camera a `static` recording, and {page}"
+        yield f"Court points: {page}, for {court_points}."
+    if not guess.walks:
+        yield "No walk was found: the cameras will be calibrated from clicked court points alone."
 
 
 def _translated(guess: Guess) -> list[str]:
