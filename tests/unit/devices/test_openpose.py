@@ -209,6 +209,24 @@ def test_skeletons_are_found_by_their_points(tmp_path, name, count):
     assert (n_points, name in names, len(names)) == (count, True, 1 + (count == 25))
 
 
+def test_a_sample_shows_points_of_the_named_skeleton(tmp_path):
+    for at in range(100):
+        write(tmp_path / "j", f"{at}.json", keypoints(100.0 + at))
+    found = openpose.sample(tmp_path / "j", COCO)
+    assert found.shape == (34, 17, 3)
+    assert found[:, 0, 0].tolist() == list(range(100, 200, 3))
+    halpe = skeleton.read(SKELETONS / "halpe26.yaml")
+    with pytest.raises(InputError, match="expected 26 points of skeleton halpe26, found 17;"):
+        openpose.sample(tmp_path / "j", halpe)
+    body25 = np.zeros((25, 3))
+    body25[[8, 9, 12]] = [[50, 50, 0.9], [45, 50, 0.9], [55, 50, 0.9]]
+    body25[0] = [50, 0, 0.9]
+    write(tmp_path / "k", "0.json", body25.ravel().tolist())
+    assert len(openpose.sample(tmp_path / "k", skeleton.read(SKELETONS / "body25.yaml"))) == 1
+    with pytest.raises(InputError, match="expected the points of body25b, found what looks like"):
+        openpose.sample(tmp_path / "k", skeleton.read(SKELETONS / "body25b.yaml"))
+
+
 def test_points_of_no_skeleton_are_named(tmp_path):
     write(tmp_path / "j", "0.json", [1.0] * 21)
     with pytest.raises(InputError, match="expected people with 17, 25, 26, 133 points, found 7;"):

@@ -1,4 +1,8 @@
-"""Another program's keypoint files against the frames of videos, and without videos."""
+"""Another program's keypoint files against frames, skeletons and each other."""
+
+import json
+import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -6,6 +10,18 @@ import pytest
 from courtside.study.configuration.sessions import Take
 from courtside.validation import keypoint_folders
 from courtside.video.glance import Glance
+
+SKELETONS = Path("config") / "skeletons"
+
+
+def skeleton_file(name):
+    return SKELETONS / f"{name}.yaml"
+
+
+def write(path, *people):
+    """Write a file of one frame, as OpenPose does."""
+    content = {"people": [{"pose_keypoints_2d": list(person)} for person in people]}
+    path.write_text(json.dumps(content))
 
 
 @pytest.fixture
@@ -16,13 +32,13 @@ def said(tmp_path):
         for name, own in numbers.items():
             (tmp_path / name).mkdir()
             for number in own:
-                (tmp_path / name / f"{number}.json").touch()
+                write(tmp_path / name / f"{number}.json")
         folders = {name: str(tmp_path / name) for name in numbers}
         films = dict.fromkeys(videos or {}, "v.mp4")
         take = Take("t", films, ("p1",), trim_s=trim_s, pose2d={"coco17": folders})
         small = np.zeros((54, 96), np.uint8)
         looks = {name: Glance((64, 48), small, n, 10.0) for name, n in (videos or {}).items()}
-        return keypoint_folders.check(take, looks)
+        return keypoint_folders.check(take, looks, skeleton_file)
 
     return check
 
@@ -67,4 +83,64 @@ def test_without_videos_cameras_are_compared(said):
 
 def test_folders_that_are_not_there_are_told_elsewhere(tmp_path):
     take = Take("t", {}, ("p1",), pose2d={"coco17": {"a": str(tmp_path / "gone")}})
-    assert keypoint_folders.check(take, {}) == ([], [])
+    assert keypoint_folders.check(take, {}, skeleton_file) == ([], [])
+
+
+@pytest.fixture
+def filmed(tmp_path):
+    """Return a function: the faults of three cameras whose folders hold people of so many points.
+
+    `folders` are other ones of some cameras.
+    """
+    rng = np.random.default_rng(0)
+    for name in "abc":
+        (tmp_path / name).mkdir()
+        for number in range(100):
+            person = np.column_stack([rng.uniform(0, 500, (26, 2)), np.full(26, 0.9)])
+            write(tmp_path / name / f"{name}_{number:03}.json", person.ravel())
+
+    def faults(skeleton="halpe26", **folders):
+        named = {name: str(tmp_path / folders.get(name, name)) for name in "abc"}
+        take = Take("t", {}, ("p1",), pose2d={skeleton: named}, rate_hz=60)
+        return keypoint_folders.check(take, {}, skeleton_file)[0]
+
+    return faults
+
+
+def test_one_folder_for_two_cameras_is_told_also_as_a_copy(tmp_path, filmed):
+    assert filmed() == []
+    (line,) = filmed(c="b")
+    assert line == (
+        f"cameras b and c: expected two views, found the same points in {tmp_path}/b and "
+        f"{tmp_path}/b; name each camera's own folder"
+    )
+    (line,) = filmed(c="../" + f"{tmp_path.name}/b")
+    assert line.startswith("cameras b and c: expected two views")
+    shutil.copytree(tmp_path / "a", tmp_path / "copy")
+    (line,) = filmed(b="copy")
+    assert line.startswith("cameras a and b: expected two views")
+
+
+def test_folders_in_which_nobody_is_seen_are_no_copies(tmp_path, filmed):
+    for name in ("none", "nobody"):
+        (tmp_path / name).mkdir()
+        for number in range(100):
+            write(tmp_path / name / f"{number}.json")
+    assert filmed(a="none", b="nobody") == []
+    (line,) = filmed(a="none", b="none")
+    assert line.startswith("cameras a and b: expected two views")
+
+
+def test_points_of_another_skeleton_are_told_with_their_file(tmp_path, filmed):
+    lines = filmed("body25b")
+    assert [line.partition(": ")[0] for line in lines] == [
+        str(tmp_path / name / f"{name}_000.json") for name in "abc"
+    ]
+    assert all("expected 25 points of skeleton body25b, found 26; name" in line for line in lines)
+    assert "cameras b and c: expected two views" in filmed("body25b", c="b")[-1]
+
+
+def test_a_damaged_file_of_keypoints_is_told(tmp_path, filmed):
+    (tmp_path / "b" / "b_000.json").write_text("{")
+    (line,) = filmed()
+    assert line.startswith(f"{tmp_path}/b/b_000.json: expected OpenPose's JSON")

@@ -105,9 +105,7 @@ def skeletons(folder: StrPath) -> tuple[int, tuple[str, ...]]:
     The likeliest is first: of 25 points the ninth tells, where it is seen. An `InputError` if the
     files are no such files, nobody is in them, or no skeleton has so many points.
     """
-    files = [path for _, path in sorted(frame_numbers.numbered(folder).items())]
-    looked_at = files[:: max(1, len(files) // LOOKED_AT)]
-    people = [person.ravel() for path in looked_at for person in _rows(path)]
+    people = [person.ravel() for path in _looked_at(folder) for person in _rows(path)]
     counts = {row.size for row in people}
     n_points, rest = divmod(counts.pop(), 3) if len(counts) == 1 else (0, 0)
     known = () if rest else SKELETONS.get(n_points, ())
@@ -119,6 +117,23 @@ def skeletons(folder: StrPath) -> tuple[int, tuple[str, ...]]:
         )
     likely = _likely(_seen(np.stack(people).reshape(-1, n_points, 3))) if len(known) > 1 else ""
     return n_points, tuple(sorted(known, key=lambda name: name != likely))
+
+
+def sample(folder: StrPath, skeleton: Skeleton) -> NDArray:
+    """Return the persons (K, J, 3) in some files of a folder, NaN where a point is unseen.
+
+    An `InputError` if their points are not those of the `skeleton`, or a file is damaged.
+    """
+    n_joints = len(skeleton.joints)
+    people = [_people(path, n_joints, skeleton.name) for path in _looked_at(folder)]
+    _check_order(folder, skeleton.name, people)
+    return np.concatenate(people)
+
+
+def _looked_at(folder: StrPath) -> list[Path]:
+    """Return some files of a folder, from all of its frames."""
+    files = [path for _, path in sorted(frame_numbers.numbered(folder).items())]
+    return files[:: max(1, len(files) // LOOKED_AT)]
 
 
 def is_one(path: StrPath) -> bool:

@@ -3,7 +3,7 @@
 Recordings that jobs make or fetch are checked once they are there.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 from courtside.records.devices.clocks import are_stated
@@ -25,7 +25,7 @@ def check(study: Study, remembered: Remembered) -> list[str]:
     remarks: list[str] = []
     for session in study.sessions.values():
         if not session.virtual:
-            found = _Session(session, remembered)
+            found = _Session(session, remembered, study.skeleton_file)
             faults += found.faults()
             remarks += found.remarks()
     remembered.save()
@@ -37,7 +37,9 @@ def check(study: Study, remembered: Remembered) -> list[str]:
 class _Session:
     """A session and a look at each of its recordings that is there."""
 
-    def __init__(self, session: Session, remembered: Remembered) -> None:
+    def __init__(
+        self, session: Session, remembered: Remembered, skeleton_file: Callable[[str], Path]
+    ) -> None:
         self._session, self._remembered = session, remembered
         self._unreadable: list[str] = []
         self._static = {
@@ -54,7 +56,7 @@ class _Session:
             for name, take in session.takes.items()
         }
         self._keypoints = {
-            name: keypoint_folders.check(take, self._takes[name])
+            name: keypoint_folders.check(take, self._takes[name], skeleton_file)
             for name, take in session.takes.items()
         }
         others = [*session.walks.values(), *_filmed_by_devices(session)]

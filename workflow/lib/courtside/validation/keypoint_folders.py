@@ -1,25 +1,35 @@
-"""Folders of 2D keypoints of another program: their files against the frames of the videos."""
+"""Folders of 2D keypoints of another program: their frames, their points, whose they are."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from itertools import combinations
 from pathlib import Path
 
-from courtside.devices import frame_numbers
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.devices import frame_numbers, openpose
+from courtside.records.keypoints import skeleton
+from courtside.records.keypoints.skeleton import Skeleton
 from courtside.study.configuration.session_files import is_there
 from courtside.study.configuration.sessions import Take
 from courtside.study.errors import InputError
 from courtside.video.glance import Glance
 
 
-def check(take: Take, looks: Mapping[str, Glance]) -> tuple[list[str], list[str]]:
+def check(
+    take: Take, looks: Mapping[str, Glance], skeleton_file: Callable[[str], Path]
+) -> tuple[list[str], list[str]]:
     """Return faults of the folders of a take, and remarks on how their files are matched.
 
-    `looks` are those at its videos, by camera; folders that are not there are told elsewhere.
+    `looks` are those at its videos, by camera; `skeleton_file` returns the file of a skeleton.
+    Folders that are not there are told elsewhere.
     """
     faults: list[str] = []
     remarks: list[str] = []
-    for folders in take.pose2d.values():
-        there = {name: path for name, path in folders.items() if is_there(Path(path))}
+    for name, folders in take.pose2d.items():
+        there = {camera: path for camera, path in folders.items() if is_there(Path(path))}
+        faults += _point_faults(there, skeleton.read(skeleton_file(name)))
         try:
             if take.videos:
                 remarks += _against_videos(take, there, looks)
@@ -27,7 +37,24 @@ def check(take: Take, looks: Mapping[str, Glance]) -> tuple[list[str], list[str]
                 remarks += _against_each_other(there)
         except InputError as error:
             faults += error.lines
-    return faults, remarks
+    return list(dict.fromkeys(faults)), remarks
+
+
+def _point_faults(folders: Mapping[str, str], named: Skeleton) -> Iterator[str]:
+    """Yield the folders with points of another skeleton, and those of the same points."""
+    seen: dict[str, NDArray] = dict.fromkeys(folders, np.empty(0))
+    for camera, folder in folders.items():
+        try:
+            seen[camera] = openpose.sample(folder, named)
+        except InputError as error:
+            yield from error.lines
+    for one, other in combinations(folders, 2):
+        same = len(seen[one]) and np.array_equal(seen[one], seen[other], equal_nan=True)
+        if same or Path(folders[one]).resolve() == Path(folders[other]).resolve():
+            yield (
+                f"cameras {one} and {other}: expected two views, found the same points in "
+                f"{folders[one]} and {folders[other]}; name each camera's own folder"
+            )
 
 
 def _against_videos(
