@@ -389,6 +389,19 @@ def test_other_files_are_refused(tmp_path, content):
         file_formats.read(tmp_path / "other")
 
 
+@pytest.mark.parametrize(
+    ("content", "found"),
+    [
+        (b"\0\0\0 ftypisom\xd8\0\xd8", "no text, as in a video or a picture; give the calibration"),
+        ("[cam] # Größe".encode("latin-1"), "text of another encoding; save it as UTF-8"),
+    ],
+)
+def test_files_that_are_no_text_are_told_so(tmp_path, content, found):
+    (tmp_path / "cam01.mp4").write_bytes(content)
+    with pytest.raises(InputError, match=f"cam01.mp4: expected Qualisys .*, found {found}"):
+        file_formats.read(tmp_path / "cam01.mp4")
+
+
 def test_missing_empty_and_huge_are_refused(tmp_path):
     for path in (tmp_path / "none.toml", tmp_path):
         with pytest.raises(InputError, match=re.escape(str(path))):

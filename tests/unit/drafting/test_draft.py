@@ -191,7 +191,7 @@ def test_files_that_are_not_used_are_told_at_once():
     said = session_draft.to_check(draft(*TAKE, bad)[0], "n.yaml", "c.csv", "s.yaml")
     assert said[1] == "Not used: data/north/a_back.mp4: expected a video, found none"
     said = session_draft.to_check(draft(*TAKE, bad, *more)[0], "n.yaml", "c.csv", "s.yaml")
-    assert said[6] == "Not used: 2 more files"
+    assert said[6] == "Not used: 2 more"
     said = session_draft.to_check(draft(*TAKE)[0], "n.yaml", "c.csv", "s.yaml")
     assert not any("Not used" in line for line in said)
 
@@ -236,9 +236,16 @@ def test_nothing_is_written_over(tmp_path):
     assert path.read_text() == "mine"
 
 
-@pytest.mark.parametrize("name", ["North", "external", "a b", ".yaml", "nan"])
-def test_a_session_needs_a_name_that_it_may_have(tmp_path, name):
-    with pytest.raises(InputError, match="--name"):
+@pytest.mark.parametrize(
+    ("name", "found"),
+    [
+        ("North_Gym", "capital letters; give --name north_gym"),
+        *((name, "another; give one by --name") for name in ("external", "External", "a b", "nan")),
+        (".yaml", "another; give one by --name"),
+    ],
+)
+def test_a_session_needs_a_name_that_it_may_have(tmp_path, name, found):
+    with pytest.raises(InputError, match=f", found {found}$"):
         session_draft.write(tmp_path / f"{name}.yaml", draft(*TAKE)[1])
     assert list(tmp_path.iterdir()) == []
 

@@ -45,5 +45,5 @@ def test_no_court_and_no_step(found):
     contacts, steps, events = found
     made = drawing.draw(contacts, steps[:0], events[:0], None)
     made.draw_without_rendering()
-    assert "0 landings" in made.subfigs[0].axes[0].get_title()
+    assert "landings: 0" in made.subfigs[0].axes[0].get_title()
     assert drawing.table(steps).columns.tolist()[:2] == ["person", "foot"]

@@ -36,7 +36,7 @@ def test_the_file_furthest_ahead_is_named_and_the_advice_mends_it(tmp_path):
     dated(tmp_path / "data" / "near.mp4", time.time() + DAY_S)
     dated(tmp_path / "data" / "far.mp4", time.time() + 400 * DAY_S)
     with pytest.raises(
-        InputError, match=r"far\.mp4: expected a date in the past.*as in 1 more file"
+        InputError, match=r"far\.mp4: expected a date in the past.*as in 1 more;"
     ) as e:
         future_dates.check([tmp_path / "data"])
     assert "\n" not in str(e.value)

@@ -186,9 +186,15 @@ def _bytes(path: Path) -> bytes:
 def _text(path: Path) -> str:
     data = _bytes(path)
     wide = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) or data[1:2] == b"\0"
-    with reading(path, f"a text file, {forms.FORMS}", "check it"):
+    try:
         # Motive writes .mcal in UTF-16, with or without its mark.
         return data.decode("utf-16" if wide else "utf-8-sig")
+    except UnicodeDecodeError:
+        if b"\0" in data:
+            found = "no text, as in a video or a picture", "give the calibration file"
+        else:
+            found = "text of another encoding", "save it as UTF-8"
+        raise forms.refused(path, *found) from None
 
 
 def _found(path: Path) -> Found:

@@ -59,11 +59,15 @@ def write(path: Path, content: str) -> None:
 
     An `InputError` if the file exists, or its name is not allowed for a session.
     """
-    if not configuration.NAME.fullmatch(path.stem) or path.stem in configuration.RESERVED:
+    if not _is_free(path.stem):
+        small = path.stem.lower()
+        found = "another; give one by --name"
+        if _is_free(small):
+            found = f"capital letters; give --name {small}"
         raise InputError(
             f"{path.stem}: expected a session's name of at most 64 of a-z, 0-9, _ and -, no "
             "device of Windows such as con, and none of na, nan, none, null, "
-            f"{', '.join(configuration.RESERVED)}, found another; give one by --name"
+            f"{', '.join(configuration.RESERVED)}, found {found}"
         )
     try:
         with path.open("x", encoding="utf-8") as stream:
@@ -76,6 +80,11 @@ def write(path: Path, content: str) -> None:
     if faults:
         path.unlink()
         raise ValueError(f"the draft does not hold its own schema: {faults[0]}")
+
+
+def _is_free(name: str) -> bool:
+    """Say whether a session may have a name."""
+    return bool(configuration.NAME.fullmatch(name)) and name not in configuration.RESERVED
 
 
 def _cameras(guess: Guess) -> list[str]:
@@ -376,7 +385,7 @@ def to_check(guess: Guess, path: StrPath, court_points: str | None, study: StrPa
     lines = [f"Look at {path}: every line with `{MARK}`, and everything under `not used`."]
     left_out = _left_out(guess)
     lines += [f"Not used: {file}: {why}" for file, why in left_out[:SHOWN]]
-    lines += [f"Not used: {len(left_out) - SHOWN} more files"] * (len(left_out) > SHOWN)
+    lines += [f"Not used: {len(left_out) - SHOWN} more"] * (len(left_out) > SHOWN)
     lines += [f"Odd: {line}" for line in _odd(guess)]
     lines += _translated(guess)
     if _synchronised(guess):

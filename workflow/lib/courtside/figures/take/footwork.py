@@ -52,7 +52,7 @@ def _draw_places(axis: Axes, own: pd.DataFrame, court: Court | None, person: str
             for foot in FEET:
                 mine = at[at.foot == foot]
                 axis.plot(mine.x_m, mine.y_m, mark, color=COLOURS[foot], **look)
-    axis.set_title(f"{person}: feet from above\n{int(own.onset_s.notna().sum())} landings")
+    axis.set_title(f"{person}: feet from above\nlandings: {own.onset_s.notna().sum()}")
     axis.set(xlabel="x (m)", ylabel="y (m)")
     axis.set_aspect("equal", adjustable="box" if court else "datalim")
     if len(own):

@@ -29,7 +29,7 @@ def check(named: Iterable[StrPath]) -> None:
     when_s, path = max(late)
     raise InputError(
         f"{path}: expected a date in the past, found {_in_words(when_s)} (now: "
-        f"{_in_words(time.time())}), as in {len(late) - 1} more files; set this computer's clock "
+        f"{_in_words(time.time())}), as in {len(late) - 1} more; set this computer's clock "
         f"if it is wrong, otherwise give them today's date: {_advice(there)}"
     )
 

@@ -99,7 +99,7 @@ def _places(paths: list[str]) -> str:
     folders = list(dict.fromkeys(str(Path(path).parent) for path in paths))
     rest = len(folders) - N_NAMED
     named = ", ".join(f"{folder}/" for folder in folders[:N_NAMED])
-    return f"{named} and {rest} more folders" if rest > 0 else named
+    return f"{named} and {rest} more" if rest > 0 else named
 
 
 def _last_fault(log: StrPath) -> str:
