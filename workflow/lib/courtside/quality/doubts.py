@@ -28,7 +28,7 @@ class Doubts:
 
 
 def read(quality_json: StrPath, check_json: StrPath = "", court_json: StrPath = "") -> Doubts:
-    """Read the warnings of a calibration, and what checks of its file say; empty without a check."""
+    """Read the warnings of a calibration, and what checks of its file say, if there are any."""
     shared = list(read_json(quality_json).get("warnings", ()))
     check = read_json(check_json) if check_json else {}
     court = read_json(court_json) if court_json else {}
