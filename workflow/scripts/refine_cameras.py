@@ -43,9 +43,10 @@ def main(
     except InputError as error:
         found = refinement.unchanged(base, known, str(error))
     covariance = known if found.taken == "base" else found.covariance
-    kept = found.taken == "base"  # with what is wrong in it; otherwise that is put right
-    report |= {"line": found.line, "warnings": [*(found.wrong if kept else []), *lost]}
-    report["remarks"] = [found.line, *([] if kept else found.wrong), *knocks.lines(rows)]
+    wrong, is_kept = found.wrong, found.taken == "base"
+    report |= {"line": found.line, "warnings": [*(wrong if is_kept else []), *lost]}
+    mended = [] if is_kept else [f"put right here, by people alone: {line}" for line in wrong]
+    report["remarks"] = [found.line, *mended, *knocks.lines(rows)]
     for line in report["warnings"] + report["remarks"]:
         log.logger.info("%s", line)
     report |= {"taken": found.taken, "verdicts": found.verdicts, "wrong": found.wrong}

@@ -43,7 +43,8 @@ def test_of_cameras_refined_by_people_both_qualities_and_the_verdict_are_said(tm
     refined = {"calibration": "sfm-n40-people", "taken": "refined", "expected_before_cm": 0.7}
     refined["wrong"] = ["f_px of camera c1: <odd>"]
     refined |= {"line": "cameras refined by people were taken", "warnings": ["c2 is lost"]}
-    refined["remarks"] = [refined["line"], *refined["wrong"], "camera c1: moved at 3 s"]
+    refined["remarks"] = [refined["line"], f"put right here: {refined['wrong'][0]}"]
+    refined["remarks"].append("camera c1: moved at 3 s")
     (tmp_path / "refined.json").write_text(json.dumps(refined | {"expected_volume_rms_cm": 0.43}))
     session = study["sessions"][0] | {"id": "quality-hall", "calibration": "sfm-n40-people"}
     session["files"]["quality"]["sfm-n40-people"] = str(tmp_path / "refined.json")
@@ -55,7 +56,7 @@ def test_of_cameras_refined_by_people_both_qualities_and_the_verdict_are_said(tm
     assert "Refined from <b>sfm-n40</b> (calibrated by one bundle" in html
     assert "expected error there: 0.70 cm; the map of expected errors shows both." in html
     assert html.count("Cameras refined by people were taken.") == 1
-    assert "<p>C2 is lost.</p>" in html
+    assert "<p>C2 is lost.</p>" in html and "ut right here" not in html
     assert "Contradicted by people: f_px of camera c1: &lt;odd&gt;." in html
     assert "<p>Camera c1: moved at 3 s.</p>" in html
     unknown = facts["quality"]["sfm-n40-people"] | {"expected_before_cm": None}

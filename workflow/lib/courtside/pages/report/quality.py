@@ -79,7 +79,7 @@ def _used(name: str | None, known: dict[str, dict]) -> dict | None:
         line, wrong = content["line"], content["wrong"]
         found |= {"line": line, "wrong": wrong, "before_cm": content.get("expected_before_cm")}
         told = [*content["warnings"], *content["remarks"]]
-        found["others"] = [one for one in told if one not in (line, *wrong)]
+        found["others"] = [one for one in told if not one.endswith((line, *wrong))]
         found |= {"of_base": methods.CALIBRATED[Calibration.parse(way.base).kind]}
     return found
 
