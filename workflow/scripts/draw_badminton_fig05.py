@@ -4,6 +4,7 @@ import pandas as pd
 
 from courtside.figures.badminton import fig05
 from courtside.figures.style import picture_crops, style
+from courtside.pose import privacy
 from courtside.records import tables
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution.script import run
@@ -21,8 +22,9 @@ def main(paths, pdf, png, csv, *, layouts, sources, blur_faces):
         pose2d, film = files[example["session"], example["take"], example["camera"]]
         view, at = keypoints.read_2d(pose2d), example["frame_idx"]
         persons = [view.xy[:, at]]
+        near = privacy.around(view.time_s, view.xy, at)
         image = picture_crops.read(
-            film, view.time_s[at], persons, joints, others=(), hidden=blur_faces
+            film, view.time_s[at], persons, joints, others=near, hidden=blur_faces
         )
         images.append(image)
     shares = fig05.table(rows, layouts)

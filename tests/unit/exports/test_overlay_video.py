@@ -127,6 +127,25 @@ def test_faces_are_hidden_also_while_nobody_sees_them(take):
             np.testing.assert_array_equal(shown[at][part], noise[part])
 
 
+def test_a_face_that_jumps_away_for_a_frame_stays_hidden(take):
+    camera, view, points = take
+    xy = view.xy.copy()
+    others = [at for at in range(walker.N_JOINTS) if at not in FACE]
+    xy[:, :, others] = np.nan
+    xy[:, 6, FACE] += [400.0, 0.0]
+    lost = replace(points, xyz=np.full_like(points.xyz, np.nan))
+    track = tracked((camera, view, lost), xy=xy)
+    rng = np.random.default_rng(0)
+    noise = rng.integers(0, 255, (camera.size[1], camera.size[0], 3), dtype=np.uint8)
+    frames = [(float(view.time_s[6]), noise)]
+    pictures = overlay_video.pictures(
+        frames, track, colours=COLOURS, hide_faces=True, keep_background=True
+    )
+    x, y = np.round(view.xy[0, 6, FACE].mean(axis=0)).astype(int)
+    part = (slice(y - 20, y + 20), slice(x - 20, x + 20))
+    assert detail(next(pictures)[part]) < 0.5 * detail(noise[part])
+
+
 def detail(image):
     return np.abs(np.diff(image.astype(float), axis=1)).mean()
 
@@ -137,7 +156,7 @@ def test_nobody_in_the_background_can_be_recognised(take):
     noise = rng.integers(0, 255, (1080, 1920, 3), dtype=np.uint8)
     frames = [(float(track.own_s[0]), noise)]
     hidden = drawn(take, track, True, frames)[0]
-    x, y = np.round(track.detected[0, 0, WRIST]).astype(int)
+    x, y = np.round(track.detected[0, 0, walker.SKELETON.index("left_ankle")]).astype(int)
     away = np.ones((1080, 1920), dtype=bool)
     for at in np.concatenate([track.detected[0, 0], track.reprojected[0, 0]])[::4]:
         away &= np.hypot(np.arange(1920) - at[0], np.arange(1080)[:, None] - at[1]) > 250

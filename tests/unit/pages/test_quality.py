@@ -65,7 +65,7 @@ def test_a_picture_hides_face_and_surroundings_and_shows_the_joints(tmp_path):
     yellow, blueish = red - blue > 80, blue - red > 80
     assert detail[:, 200:].mean() < 12  # surroundings
     assert detail[y - 26 : y - 21, x - 8 : x + 8].mean() < 15  # the face
-    assert detail[y - 8 : y + 4, x - 4 : x + 4].mean() > 30  # the body
+    assert detail[y - 4 : y + 4, x - 12 : x - 4].mean() > 30  # the body
     assert yellow[y - 24 : y + 24, x - 10 : x + 10].sum() > 20
     assert blueish[y - 24 : y + 24, other - 10 : other + 10].sum() > 20
     assert yellow[:, other - 20 :].sum() == 0

@@ -33,8 +33,7 @@ class Track:
     reprojected: NDArray  # (P, T, J, 2): px; NaN where missing
     used: NDArray  # (P, T, J) bool: whether the 3D point rests on this camera's keypoint
     everybody: NDArray  # (F, T, J, 2): all whose faces may be in the picture, px, gaps bridged
-    face: tuple[int, ...]  # indices of its joints
-    bones: tuple[tuple[int, int], ...]
+    body: privacy.Body
 
 
 def track(seen: Footage, points: Keypoints3D, skeleton: Skeleton) -> Track:
@@ -65,8 +64,7 @@ def track(seen: Footage, points: Keypoints3D, skeleton: Skeleton) -> Track:
         reprojected,
         points.accepted[..., column][:, at],
         np.array([bridged(view.time_s, one) for one in everybody]).reshape(everybody.shape),
-        tuple(skeleton.index(joint) for joint in skeleton.groups["face"]),
-        tuple(skeleton.bone_indices()),
+        privacy.Body.of(skeleton),
     )
 
 
@@ -129,12 +127,12 @@ def pictures(
                 f"camera {track.camera}: expected 2D keypoints for the frame at {time_s:.4f} s, "
                 f"found the nearest at {track.own_s[at]:.4f} s; detect the pose in this video again"
             )
-        if hide_faces and keep_background:
-            image = privacy.hide_faces(image, track.everybody[:, at], track.face)
-        elif hide_faces:
-            persons = np.concatenate([track.detected[:, at], track.reprojected[:, at]])
-            everybody = track.everybody[:, at]
-            image = privacy.hide(image, persons, track.bones, everybody, track.face)
+        if hide_faces:
+            if not keep_background:
+                persons = np.concatenate([track.detected[:, at], track.reprojected[:, at]])
+                image = privacy.only_persons(image, persons, track.body)
+            everybody = privacy.around(track.own_s, track.everybody, at)
+            image = privacy.hide_faces(image, everybody, track.body)
         yield _drawn(image, track, at, colours)
 
 
@@ -146,8 +144,9 @@ def _drawn(
     image = cv2.copyMakeBorder(image, 0, odd[0], 0, odd[1], cv2.BORDER_REPLICATE)
     thick = max(1, round(height * LINE))
     detected, reprojected = track.detected[:, at], track.reprojected[:, at]
-    stick_drawing.draw(image, reprojected, track.bones, colours[1], round(UNDER * thick), 3 * thick)
-    stick_drawing.draw(image, detected, track.bones, colours[0], thick, 2 * thick)
+    bones, under = track.body.bones, round(UNDER * thick)
+    stick_drawing.draw(image, reprojected, bones, colours[1], under, 3 * thick)
+    stick_drawing.draw(image, detected, bones, colours[0], thick, 2 * thick)
     drawn = stick_drawing.drawable(detected) & stick_drawing.drawable(reprojected)
     apart = drawn & ~track.used[:, at]
     for start, stop in zip(detected[apart], reprojected[apart], strict=True):

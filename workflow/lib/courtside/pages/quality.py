@@ -69,8 +69,8 @@ def thumbnail(view: Keypoints2D, people: People, video: StrPath, skeleton: Skele
     frame, bones = shown_frame(own), skeleton.bone_indices()
     ((_, image),) = reader.read_frames(video, view.time_s[[frame]])
     persons, everybody = own.xy[:, frame], view.xy[:, frame]
-    face = [skeleton.index(joint) for joint in skeleton.groups["face"]]
-    hidden = privacy.hide(image, persons, bones, everybody, face)
+    near = privacy.around(view.time_s, view.xy, frame)
+    hidden = privacy.hide(image, persons, near, privacy.Body.of(skeleton))
     scale = min(most / length for most, length in zip(BOX_PX, image.shape[1::-1], strict=True))
     small = cv2.resize(hidden, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
     for some, colour in ((everybody, OTHERS), (persons, PERSONS)):

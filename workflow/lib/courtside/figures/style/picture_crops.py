@@ -48,18 +48,17 @@ def read(
 
     `persons` are the joints (P, J, 2) px of the same persons by one or more methods, such as
     detected and reprojected: where one of them does not know a face, another may. `others` are the
-    joints (J, 2) px of all further people, whose faces may lie before a person's body.
+    joints (J, 2) px of all whose faces may lie before a person's body.
     """
     _, image = reader.read_frame(video, time_s)
     if not hidden:
         return image
+    body = privacy.Body.of(skeleton)
+    image = privacy.only_persons(image, np.concatenate(persons), body)
     # The joints of all methods side by side: one face of each person.
-    everybody, bones = np.concatenate(persons, axis=1), skeleton.bone_indices()
-    starts = range(0, everybody.shape[1], len(skeleton.joints))
-    own = [skeleton.index(name) for name in skeleton.groups["face"]]
-    face = [start + at for start in starts for at in own]
-    image = privacy.hide(image, np.concatenate(persons), bones, everybody, face)
-    return privacy.hide_faces(image, others, own)
+    everybody = np.concatenate(persons, axis=1)
+    image = privacy.hide_faces(image, everybody, privacy.Body.of(skeleton, len(persons)))
+    return privacy.hide_faces(image, others, body)
 
 
 def at_frame(
@@ -73,7 +72,7 @@ def at_frame(
     both = one.view.xy[:, at], one.reprojected(points, at)
     if one.video is None:
         raise ValueError(f"expected a video of camera {one.camera.name}, found none")
-    others = one.tracklets.xy[:, at]
+    others = privacy.around(one.tracklets.time_s, one.tracklets.xy, at)
     image = read(one.video, one.view.time_s[at], both, skeleton, others=others, hidden=hidden)
     return image, *both
 

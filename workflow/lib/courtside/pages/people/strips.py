@@ -68,8 +68,7 @@ def pictures(
     joints has no picture.
     """
     view, index = one.tracklets, people.index[one.camera.name]
-    face = [skeleton.index(joint) for joint in skeleton.groups["face"]]
-    bones = skeleton.bone_indices()
+    body = privacy.Body.of(skeleton)
     wanted: dict[int, list[tuple[int, int]]] = {}
     for person, at in columns.items():
         for column, frame in enumerate(frames_at(one, people.time_s[at]).tolist()):
@@ -82,7 +81,8 @@ def pictures(
     ):
         for person, column in wanted[frame]:
             xy = view.xy[index[person, frame], frame]
-            hidden = privacy.hide(image, xy[None], bones, view.xy[:, frame], face)
+            near = privacy.around(view.time_s, view.xy, frame)
+            hidden = privacy.hide(image, xy[None], near, body)
             known = xy[np.isfinite(xy).all(axis=1)]
             middle = np.median(known, axis=0)
             yield Shot(
