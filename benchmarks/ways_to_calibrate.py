@@ -33,6 +33,7 @@ sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration import file_formats
 from courtside.calibration.boards import adjustment as board_adjustment
 from courtside.calibration.boards import corners
+from courtside.calibration.boards import quality as board_quality
 from courtside.calibration.boards.board import Board
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court import joint_adjustment, points_alone
@@ -305,7 +306,7 @@ def charuco_rows(folder):
     seen = corners.of_table(table, names, board)
     lenses, sizes = {c.name: c for c in theirs}, {c.name: c.size for c in theirs}
     found = board_adjustment.calibrate(board, seen, sizes, lenses=lenses)
-    mean, spread, n = board_adjustment.neighbours_mm(found, seen, board)
+    mean, spread, n = board_quality.neighbours_mm(found, seen, board)
     ours, others = (np.array([c.centre_in_world for c in one]) for one in (found.cameras, theirs))
     turned = ours @ similarity.umeyama(ours, others).rotation.T  # the scale is not fitted
     off = turned - turned.mean(axis=0) - (others - others.mean(axis=0))

@@ -3,7 +3,7 @@
 import cv2
 
 from courtside.calibration import file_formats
-from courtside.calibration.boards import adjustment, corners
+from courtside.calibration.boards import adjustment, corners, quality
 from courtside.calibration.boards.board import Board
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.geometry import camera as cameras
@@ -26,7 +26,8 @@ def main(paths, cameras_toml, covariance_npz, quality_json, *, given, names):
         cameras.check_size(lens, sizes[name], f"board of camera {name}")
     floor = None if given.get("floor") is None else str(given["floor"])
     found = adjustment.calibrate(board, seen, sizes, lenses=lenses or None, floor=floor)
-    report = adjustment.summary(found, seen, board, stated=floor is not None)
+    stated, known = floor is not None, bool(lenses)
+    report = quality.summary(found, seen, board, stated=stated, known=known)
     for warning in report["warnings"]:
         log.logger.warning("%s", warning)
     cameras.write_toml(cameras_toml, found.cameras, source=f"board, {len(seen.pictures)} places")

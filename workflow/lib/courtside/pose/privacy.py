@@ -102,8 +102,8 @@ def _hide_above(image: NDArray, trunk: NDArray, extent_px: float) -> None:
         return
     both = known & stick_drawing.drawable(hips)
     along = (shoulders - hips)[both].mean(axis=0) if both.any() else UP
-    length_px = np.linalg.norm(along)
-    apart_px = np.linalg.norm(shoulders[0] - shoulders[1]) if known.all() else 0.0
+    length_px = float(np.linalg.norm(along))
+    apart_px = float(np.linalg.norm(shoulders[0] - shoulders[1])) if known.all() else 0.0
     metre_px = max(apart_px / SHOULDERS_M, length_px / SIDE_M)
     if not both.all():  # of these two, one at least is seen in almost its full length
         metre_px = max(metre_px, extent_px / EXTENT_M)

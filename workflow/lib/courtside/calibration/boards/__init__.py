@@ -4,4 +4,5 @@ board: `Board`: a ChArUco board, chessboard or grid of tags: its corners, found 
 corners: `Corners`, `of_pictures`, `of_videos`, `of_table`: where cameras see a board's corners
 start: `lens`, `poses`: lenses, cameras and boards before they are adjusted
 adjustment: `calibrate`: all cameras and boards together, with covariance
+quality: `summary`, `neighbours_mm`: how well the corners fit, and what is wrong with clocks, lenses
 """

@@ -8,19 +8,17 @@ only length: its error is added to the covariance.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration import point_covariance
 from courtside.calibration.boards import start
 from courtside.calibration.boards.board import Board
 from courtside.calibration.boards.corners import Corners
 from courtside.calibration.bundle import problem, selection
-from courtside.calibration.bundle.problem import IMAGE, LENS, POSE, Network
+from courtside.calibration.bundle.problem import IMAGE, POSE, Network
 from courtside.geometry import camera as cameras
-from courtside.geometry import rotations, triangulation
+from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError
 
@@ -36,10 +34,6 @@ LEAST_SIGMA_PX = 0.01  # no corner is found better
 FAR_PX = 5.0  # ASSUME: a corner so far off is another, or its camera filmed at another time
 LEAST_NEAR = 0.7  # ASSUME: share of the corners, in pictures that two cameras see, that is nearer
 
-# ASSUME: one camera is told whose corners fit worse by this factor, and by more than a pixel.
-MUCH_WORSE, WORSE_PX = 3.0, 1.0
-OUT_OF_STEP = 2.0  # ASSUME: more excess scatter of whole pictures is told; at rest it is 1
-
 
 @dataclass(frozen=True, eq=False)
 class Found:
@@ -51,6 +45,10 @@ class Found:
     sigma_px: float  # of a corner, along each axis, by the bulk of the residuals
     factor: float  # by which the scatter of whole pictures widens the covariance
     error_px: NDArray  # (M, 2): of each corner; NaN of pictures that tell no pose
+    # (C,), in steps from picture to picture: by how much each camera films later than the others,
+    # and the standard deviation of that; NaN if pictures are in no order
+    late: NDArray
+    late_sigma: NDArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +111,8 @@ def calibrate(
             for camera, one in zip(known, solved, strict=True)
         ]
     name = seen.pictures[posed.world]
-    return Found(solved, covariance, name, sigma_px, factor, error_px)
+    late = _delays(state, fixed, sigma_px, seen)
+    return Found(solved, covariance, name, sigma_px, factor, error_px, *late)
 
 
 def _check_rigid(seen: Corners, error_px: NDArray) -> None:
@@ -230,16 +229,23 @@ def _cost(state: _State, weight: NDArray, sigma_px: float) -> float:
 class _Normal:
     """Normal equations of the cameras, boards eliminated, and what boards need to follow."""
 
-    information: NDArray  # (A, A)
+    information: NDArray  # (A, A): of the active columns, then of those added
     gradient: NDArray  # (A,)
     boards: dict[int, tuple[NDArray, NDArray, NDArray]]  # inverse (6, 6), gradient, coupling (A, 6)
     scores: NDArray  # (P, A): part of each picture in the gradient
 
 
 def _normal(
-    state: _State, fixed: _Problem, weight: NDArray, sigma_px: float, damping: float
+    state: _State,
+    fixed: _Problem,
+    weight: NDArray,
+    sigma_px: float,
+    damping: float,
+    added: NDArray | None = None,
 ) -> _Normal:
+    """Return the normal equations; `added` (M, 2, K) are derivatives by further unknowns."""
     network = state.network
+    added = np.zeros((len(weight), 2, 0)) if added is None else added
     off, by_camera, by_point = problem.linearised(network)
     rows_of = np.sqrt(weight)[:, None] / sigma_px
     off = np.where(weight[:, None] > 0, off, 0.0) * rows_of
@@ -247,18 +253,13 @@ def _normal(
     by_point = np.where(weight[:, None, None] > 0, by_point, 0.0) * rows_of[:, :, None]
     arm = network.xyz - state.boards[fixed.picture][:, :, 3]
     by_board = np.concatenate([np.cross(arm[:, None, :], by_point), by_point], axis=2)
-    columns, size = network.columns(), network.n_columns
-    information, gradient = _prior(network)
-    boards, scores = {}, np.zeros((len(state.boards), int(fixed.active.sum())))
-    information = information[np.ix_(fixed.active, fixed.active)]
-    gradient = gradient[fixed.active]
+    sides = network.over_columns(by_camera)[:, :, fixed.active]
+    sides = np.concatenate([sides, added * rows_of[:, :, None]], axis=2)
+    information, gradient = _prior(network, fixed.active, added.shape[2])
+    boards, scores = {}, np.zeros((len(state.boards), len(gradient)))
     for picture in np.unique(fixed.picture):
         rows = np.flatnonzero(fixed.picture == picture)
-        side = np.zeros((len(rows), 2, size))
-        np.put_along_axis(
-            side, np.repeat(columns[rows][:, None], 2, axis=1), by_camera[rows], axis=2
-        )
-        side = side.reshape(-1, size)[:, fixed.active]
+        side = sides[rows].reshape(-1, len(gradient))
         right = off[rows].ravel()
         information = information + side.T @ side
         score = side.T @ right
@@ -275,14 +276,19 @@ def _normal(
     return _Normal(information, gradient, boards, scores)
 
 
-def _prior(network: Network) -> tuple[NDArray, NDArray]:
-    """Return information and gradient of what is known of the lenses, of all columns."""
+def _prior(network: Network, active: NDArray, n_added: int) -> tuple[NDArray, NDArray]:
+    """Return information and gradient of what is known of the lenses.
+
+    Their columns are the active ones of the network, then `n_added` of which nothing is known.
+    """
     first = IMAGE * len(network.cam_from_world)
     inverse = (1 / network.lens_sigma**2).ravel()
     information, gradient = np.zeros(network.n_columns), np.zeros(network.n_columns)
     information[first:] = inverse
     gradient[first:] = inverse * (network.lens - network.lens_mean).ravel()
-    return np.diag(information), gradient
+    nothing = np.zeros(n_added)
+    information = np.concatenate([information[active], nothing])
+    return np.diag(information), np.concatenate([gradient[active], nothing])
 
 
 def _moved(
@@ -331,76 +337,40 @@ def _of_size(board: Board, network: Network) -> NDArray:
     return (board.square_sigma_m / board.square_m) ** 2 * np.outer(scaled, scaled)
 
 
-def summary(found: Found, seen: Corners, board: Board, *, stated: bool) -> dict[str, Any]:
-    """Return for a JSON file how well the corners fit.
+def _delays(
+    state: _State, fixed: _Problem, sigma_px: float, seen: Corners
+) -> tuple[NDArray, NDArray]:
+    """Return by how many steps each camera (C,) films later than the others, and the sigma.
 
-    By camera: corners, pictures, `rms_px` per axis, standard deviations of the place (mm) and of
-    the focal length. `neighbour_mm`: error of the distance between neighbouring corners,
-    triangulated from two cameras or more, mean and standard deviation. `stated` says whether the
-    session names the picture on the floor.
+    It is a step of the adjustment with this delay as a further unknown, each camera's for itself:
+    a board that moves evenly is nearly explained by another pose of the camera. Its sigma is that
+    of whole pictures. Pictures without neighbours count as if the board rested.
     """
-    warnings, remarks = [], []
-    if not stated:
-        remarks.append(
-            f"board: the world is the board of picture {found.world}, z = 0 its plane; name the "
-            "picture in which it lies on the floor as `floor`"
-        )
-    if found.factor > OUT_OF_STEP:
-        warnings.append(
-            f"board: whole pictures scatter {found.factor:.1f} times as much as their corners: the "
-            "board moved while the cameras did not film at one time, or pictures are blurred; let "
-            "it rest, and give `lenses`"
-        )
-    report: dict[str, Any] = {"warnings": warnings, "remarks": remarks}
-    report["world_of_picture"] = found.world
-    own = [seen.camera == c for c in range(len(found.cameras))]
-    rms_px = [float(np.sqrt(np.nanmean(found.error_px[rows] ** 2))) for rows in own]
-    warnings += _worse_cameras(found, rms_px)
-    report |= {"sigma_px": found.sigma_px, "covariance_factor": found.factor}
-    first = IMAGE * len(found.cameras)
-    for c, camera in enumerate(found.cameras):
-        at, lens = IMAGE * c + np.arange(len(POSE)), first + len(LENS) * c
-        used = own[c] & np.isfinite(found.error_px[:, 0])
-        one = {
-            "n_corners": int(used.sum()),
-            "n_pictures": len(np.unique(seen.picture[used])),
-            "rms_px": rms_px[c],
-            "place_sigma_mm": 1000
-            * point_covariance.centre_sigma(camera, found.covariance[np.ix_(at, at)]),
-            "f_px": float(camera.K[1, 1]),
-            "f_sigma_px": float(np.sqrt(found.covariance[lens, lens])),
-        }
-        for key, value in one.items():
-            report.setdefault(key, {})[camera.name] = value
-    mean, spread, count = neighbours_mm(found, seen, board)
-    report["neighbour_mm"] = {"mean": mean, "standard_deviation": spread, "n": count}
-    return report
+    n_cameras = len(seen.cameras)
+    late, sigma = np.full((2, n_cameras), np.nan)
+    if seen.step is None:
+        return late, sigma
+    per_step = _per_step(state, fixed, seen.step)
+    weight = _weight(problem.residuals(state.network), sigma_px)
+    own = state.network.image_idx[:, None] == np.arange(n_cameras)
+    normal = _normal(state, fixed, weight, sigma_px, 0.0, per_step[:, :, None] * own[:, None])
+    first = len(normal.gradient) - n_cameras
+    for c in np.flatnonzero(((per_step != 0) & own.T[:, :, None]).any(axis=(1, 2))):
+        columns = np.append(np.arange(first), first + c)
+        inverse = np.linalg.pinv(normal.information[np.ix_(columns, columns)], hermitian=True)
+        late[c] = -(inverse @ normal.gradient[columns])[-1]
+        sigma[c] = np.linalg.norm(normal.scores[:, columns] @ inverse[-1])
+    return late, sigma
 
 
-def _worse_cameras(found: Found, rms_px: Sequence[float]) -> list[str]:
-    """Return a line for each camera whose corners fit far worse than those of the others."""
-    lines = []
-    for c, camera in enumerate(found.cameras):
-        others = float(np.median([*rms_px[:c], *rms_px[c + 1 :]])) if len(rms_px) > 2 else np.inf
-        if rms_px[c] > max(MUCH_WORSE * others, WORSE_PX):
-            lines.append(
-                f"camera {camera.name}: its corners fit by {rms_px[c]:.1f} px, those of the other "
-                f"cameras by {others:.1f} px: its lens is probably wrong by more than stated; give "
-                "`lenses`, or film the board nearer to this camera, tilted and at rest"
-            )
-    return lines
+def _per_step(state: _State, fixed: _Problem, step: NDArray) -> NDArray:
+    """Return how corners move in their pictures by the board's own path, (M, 2) px per step.
 
-
-def neighbours_mm(found: Found, seen: Corners, board: Board) -> tuple[float, float, int]:
-    """Return by how much neighbouring corners are too far apart, mm: mean, deviation, number."""
-    shape = len(seen.pictures), len(board.corners)
-    xy = np.full((len(seen.cameras), *shape, 2), np.nan)
-    xy[seen.camera, seen.picture, seen.corner] = seen.xy
-    xyz = triangulation.triangulate_all(found.cameras, xy.reshape(len(xy), -1, 2)).reshape(
-        *shape, 3
-    )
-    pairs = board.neighbours
-    side = board.side_m
-    apart = np.linalg.norm(xyz[:, pairs[:, 0]] - xyz[:, pairs[:, 1]], axis=-1)
-    off = 1000 * (apart[np.isfinite(apart)] - side)
-    return (float(off.mean()), float(off.std()), len(off)) if len(off) else (np.nan, np.nan, 0)
+    0 where the picture before or after it tells no board.
+    """
+    at = {int(number): picture for picture, number in enumerate(step)}
+    beside = np.array([[at.get(int(number) + d, -1) for d in (-1, 1)] for number in step])
+    moved = [_placed(replace(state, boards=state.boards[both]), fixed).network for both in beside.T]
+    per_step = (problem.residuals(moved[1]) - problem.residuals(moved[0])) / 2
+    at_ends: NDArray = (beside < 0).any(axis=1)
+    return np.where(at_ends[fixed.picture, None], 0.0, np.nan_to_num(per_step))

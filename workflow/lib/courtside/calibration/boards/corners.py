@@ -38,6 +38,8 @@ class Corners:
     picture: NDArray  # (M,) int: index of the picture
     corner: NDArray  # (M,) int: number of the corner
     xy: NDArray  # (M, 2) px
+    step: NDArray | None = None  # (P,) int: of each picture in time; None: in no order
+    every_s: float | None = None  # from step to step, where it is known
 
 
 def of_pictures(folders: Mapping[str, StrPath], board: Board) -> Corners:
@@ -74,7 +76,7 @@ def of_videos(paths: Mapping[str, StrPath], board: Board, *, every_s: float) -> 
             for _, time_s, image in reader.extract_frames(path, every_s)
         )
         found[name] = _seen(path, name, grey, board)
-    return _together(found, sizes)
+    return replace(_in_time(_together(found, sizes)), every_s=every_s)
 
 
 def of_table(path: StrPath, cameras: Mapping[str, str], board: Board) -> Corners:
@@ -98,7 +100,7 @@ def of_table(path: StrPath, cameras: Mapping[str, str], board: Board) -> Corners
             f"{path}: expected corners of one board, found object_id {', '.join(boards)[:80]}; "
             "delete the rows of the others"
         )
-    return _together(_of_rows(path, rows, names, cameras, board), {})
+    return _in_time(_together(_of_rows(path, rows, names, cameras, board), {}))
 
 
 def _of_rows(path: StrPath, rows, names, cameras: Mapping[str, str], board: Board) -> dict:
@@ -206,6 +208,12 @@ def _forms(board: Board) -> dict[str, Board]:
     for squares in counts.get(board.kind, []):  # exchanged; inner corners in place of squares
         forms[f"squares: {list(squares)}"] = replace(board, squares=squares)
     return forms
+
+
+def _in_time(seen: Corners) -> Corners:
+    """Return the corners of pictures that follow each other, if all are numbered."""
+    numbered = all(name.isdecimal() for name in seen.pictures)
+    return replace(seen, step=np.array([int(name) for name in seen.pictures]) if numbered else None)
 
 
 def _together(found: Mapping[str, list], sizes: dict[str, tuple[int, int]]) -> Corners:
