@@ -148,8 +148,61 @@ def test_exchanged_cameras_are_told_by_their_sizes(hall):
 def test_a_file_of_another_camera_in_another_take_is_told(hall):
     hall.content["takes"]["lob"]["videos"]["back"] = str(hall.video("left"))
     faults, _ = hall.said()
-    named = "takes.lob.videos.back: expected a video of this camera"
+    named = "takes.lob.videos.back: expected a recording of this camera"
     assert any(named in line and "left's of take serve" in line for line in faults)
+
+
+def filmed_board(hall):
+    """Return the videos of a board, those of the first take, in the session."""
+    videos = dict(hall.content["takes"]["serve"]["videos"])
+    board = {"kind": "tags", "squares": [4, 5], "square_m": 0.1, "dictionary": "DICT_4X4_50"}
+    hall.content["board"] = board | {"videos": videos}
+    return videos
+
+
+def test_the_videos_of_a_board_may_be_those_of_a_take(hall):
+    filmed_board(hall)
+    assert schemas.faults(hall.content, "session", "hall.yaml") == []
+    assert hall.said() == ([], [])
+
+
+def test_videos_of_a_board_that_are_exchanged_against_those_of_a_take_are_told(hall):
+    videos = filmed_board(hall)
+    videos["left"], videos["back"] = videos["back"], videos["left"]
+    faults, _ = hall.said()
+    assert len(faults) == 2
+    for camera, other, line in zip(("left", "back"), ("back", "left"), faults, strict=True):
+        assert f"board.videos.{camera}: expected a recording of this camera, found " in line
+        assert f"which is {other}'s of take serve (takes.serve.videos.{other}); correct" in line
+
+
+def test_other_videos_of_a_board_are_compared_by_what_they_show(hall):
+    videos = filmed_board(hall)
+    for camera, of in (("left", "right"), ("right", "left")):
+        path = hall.root / f"board_{camera}.mp4"
+        shutil.copy(hall.video(of, "lob"), path)
+        videos[camera] = str(path)
+    said = hall.fault()
+    assert "board: cameras left and right: expected each camera's own video" in said
+    assert "shows in take serve; they seem to be exchanged" in said
+    shutil.copy(hall.root / "board_left.mp4", hall.root / "board_right.mp4")
+    assert "board: cameras left and right: expected two views, found one" in hall.fault()
+
+
+def test_one_file_of_a_board_or_of_the_empty_court_for_two_cameras_is_told(hall):
+    videos = filmed_board(hall)
+    videos["left"] = videos["right"] = str(shutil.copy(hall.video("left"), hall.root / "b.mp4"))
+    assert "board.videos.right: expected a recording of this camera, found " in hall.fault()
+    assert "b.mp4, which is left's of the board (board.videos.left)" in hall.fault()
+    del hall.content["board"]["videos"]
+    hall.content["board"]["images"] = {"left": "a", "right": "a", "back": "c"}
+    assert "board.images.right: expected a recording of this camera" in hall.fault()
+    del hall.content["board"]
+    cv2.imwrite(str(hall.root / "empty.png"), rooms_filmed.background(1))
+    for camera in ("left", "right"):
+        hall.content["cameras"][camera] = {"static": str(hall.root / "empty.png")}
+    faults, _ = hall.said()
+    assert any("cameras.right.static: expected a recording of this" in line for line in faults)
 
 
 def test_one_file_may_be_two_takes_of_its_camera(hall):

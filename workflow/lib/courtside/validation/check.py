@@ -55,6 +55,11 @@ class _Session:
             }
             for name, take in session.takes.items()
         }
+        self._board = {
+            camera: look
+            for camera, path in _of_board(session, "videos").items()
+            for look in self._look(path, film=True)
+        }
         self._keypoints = {
             name: keypoint_folders.check(take, self._takes[name], skeleton_file)
             for name, take in session.takes.items()
@@ -91,7 +96,8 @@ class _Session:
         for name, take in self._session.takes.items():
             for line in (*self._take_faults(name, take), *self._keypoints[name][0]):
                 yield f"{file}: takes.{name}: {line}"
-        yield from (f"{file}: {line}" for line in self._shared_files())
+        shared = [*self._shared_files()]
+        yield from (f"{file}: {line}" for line in shared or self._board_faults())
         yield from (f"{file}: {line}" for line in self._few_pictures())
 
     def remarks(self) -> Iterator[str]:
@@ -127,17 +133,23 @@ class _Session:
                 return smalls, f"take {other}"
         return {}, ""
 
+    def _board_faults(self) -> Iterator[str]:
+        """Yield what is wrong with the views of the cameras in videos of a board."""
+        smalls = {camera: look.small for camera, look in self._board.items()}
+        known, what = self._known_views("")
+        for line in views.faults(_of_board(self._session, "videos"), smalls, known, what):
+            yield f"board: {line}"
+
     def _shared_files(self) -> Iterator[str]:
-        """Yield the files that are given for two cameras in different takes."""
-        owner: dict[str, tuple[str, str]] = {}
-        for name, take in self._session.takes.items():
-            for camera, path in take.videos.items():
-                first = owner.setdefault(path, (name, camera))
-                if first[1] != camera and first[0] != name:
-                    yield (
-                        f"takes.{name}.videos.{camera}: expected a video of this camera, found "
-                        f"{path}, which is {first[1]}'s of take {first[0]}; correct one path"
-                    )
+        """Yield the files that are given for two cameras, in takes of different names."""
+        owner: dict[str, tuple[str, str, str]] = {}
+        for what, key, camera, path in _by_camera(self._session):
+            first = owner.setdefault(path, (camera, what, key))
+            if first[0] != camera and (first[1] != what or not what.startswith("take ")):
+                yield (
+                    f"{key}: expected a recording of this camera, found {path}, which is "
+                    f"{first[0]}'s of {first[1]} ({first[2]}); correct one path"
+                )
 
     def _few_pictures(self) -> Iterator[str]:
         """Yield whether walks give fewer pictures than are asked for, where that is known."""
@@ -167,6 +179,24 @@ class _Session:
     def _paths(self) -> Iterable[str]:
         given = self._session.calibration_file
         return [*(path for files in self._sizes().values() for path in files), given or "\0"]
+
+
+def _of_board(session: Session, key: str) -> dict[str, str]:
+    """Return the videos, or the folders of pictures, in which each camera sees a board."""
+    return (session.board or {}).get(key, {})
+
+
+def _by_camera(session: Session) -> Iterator[tuple[str, str, str, str]]:
+    """Yield what each recording of a fixed camera shows, its key, the camera and the path."""
+    for name, take in session.takes.items():
+        for camera, path in take.videos.items():
+            yield f"take {name}", f"takes.{name}.videos.{camera}", camera, path
+    for camera, one in session.cameras.items():
+        if one.static:
+            yield "the empty court", f"cameras.{camera}.static", camera, one.static
+    for key in ("videos", "images"):
+        for camera, path in _of_board(session, key).items():
+            yield "the board", f"board.{key}.{camera}", camera, path
 
 
 def _filmed_by_devices(session: Session) -> list[str]:
