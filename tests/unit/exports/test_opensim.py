@@ -9,7 +9,6 @@ import pytest
 from courtside.body_model import take
 from courtside.exports import markers, opensim
 from courtside.records.keypoints import skeleton
-from courtside.study.errors import InputError
 from fixtures.people import moving_model
 
 SKELETONS = Path(__file__).parents[3] / "config" / "skeletons"
@@ -92,8 +91,10 @@ def test_a_motion_file_has_opensims_header_and_coordinates(tmp_path):
     assert 10 < column["pelvis_rotation"][-1] - column["pelvis_rotation"][0] < 40
 
 
-def test_a_person_without_fitted_frames_has_no_motion_file(tmp_path):
-    found = motion()
-    found.root[:] = np.nan
-    with pytest.raises(InputError, match="fitted frames"):
-        opensim.write_motion(tmp_path / "a.mot", found, 0)
+def test_the_motion_file_of_a_person_without_fitted_frames_has_no_rows(tmp_path):
+    found = take.motion(moving_model.points(moving_model.moving(30)), {})
+    opensim.write_motion(tmp_path / "a.mot", found, 0)
+    head, rows = (tmp_path / "a.mot").read_text().split("endheader\n")
+    assert "nRows=0\n" in head
+    names, *lines = rows.splitlines()
+    assert (names.split("\t")[0], lines) == ("time", [])

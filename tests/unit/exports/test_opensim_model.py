@@ -149,6 +149,16 @@ def test_the_model_is_whole_as_opensim_4_reads_it(tmp_path, walking):
     assert "femur_l to tibia_l 0.4" in model.findtext("credits")
 
 
+def test_the_model_of_a_person_without_fitted_frames_has_no_bodies(tmp_path):
+    nobody = take.motion(moving_model.points(moving_model.moving(30)), {})
+    opensim_model.write(tmp_path / "a.osim", nobody, 0)
+    text = (tmp_path / "a.osim").read_text()
+    assert "nan" not in text
+    assert "No frame was fitted" in text
+    for kind in ("Body", "CustomJoint", "Marker"):
+        assert not list(ElementTree.parse(tmp_path / "a.osim").iter(kind))
+
+
 def weights(path):
     root = ElementTree.parse(path).getroot()
     return {one.get("name"): one for one in root.iter("Body")}

@@ -9,7 +9,7 @@ import numpy as np
 from courtside.exports import markers, opensim_model
 from courtside.records.devices import hierarchy
 from courtside.records.keypoints.skeletal_motion import SkeletalMotion
-from courtside.study.errors import InputError, StrPath
+from courtside.study.errors import StrPath
 from courtside.study.execution import log
 from courtside.study.execution.files import atomic
 
@@ -100,15 +100,9 @@ def write_motion(path: StrPath, motion: SkeletalMotion, person: int) -> None:
 
     They are those of the person's own model (`opensim_model`), of the model of Rajagopal et al.
     2016 and of Pose2Sim's models, whose arms hang on the trunk; these share most names. A program
-    leaves out those that its model lacks. An `InputError` if no frame was fitted.
+    leaves out those that its model lacks. Without a fitted frame the file has no rows.
     """
-    posed, fitted = motion.posed(person)
-    if not fitted.any():
-        raise InputError(
-            f"{path}: expected a person with fitted frames, found none of "
-            f"{motion.person_id[person]}; leave the person out of the take, or pose3d_ik out of "
-            "export_stages"
-        )
+    posed, _ = motion.posed(person)
     columns = {"time": posed.time_s} | opensim_model.coordinates(motion, person)
     columns |= {name: columns[own] for name, own in SAME.items()}
     _, turned = hierarchy.forward(posed)

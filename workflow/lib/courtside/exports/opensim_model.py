@@ -50,6 +50,7 @@ LOWER_TRUNK = {"m": 11.17, "f": 12.47}  # percent of the body's mass: the pelvis
 CLAVICLE = 0.5  # ASSUME: percent of the body's mass on each, which the thorax has less
 DENSITY = 1050.0  # ASSUME: kg/m3 of every segment; Winter 2009, table 4.1 has 1040 to 1190
 BODY_MASS_INDEX = 22.0  # ASSUME: kg/m2 of a subject whose mass is not stated
+UNFITTED = "No frame was fitted: no length is known"
 LEG = 0.491  # length of thigh and shank, share of the height (Winter 2009, fig. 4.1)
 
 
@@ -125,13 +126,12 @@ def write(
     Markers are named as in the TRC files, coordinates as in `coordinates`; all lengths are those of
     the fit, their standard deviations are in the credits. Shares of mass are those of de Leva
     (1996); each body is a cylinder along Y, from joint to joint where the segment has a next one,
-    else as wide as long.
+    else as wide as long. Without a fitted frame no length is known, and the model has no bodies.
     """
-    places = _places(motion, person)
-    masses = _masses(motion, person, mass_kg, sex)
+    fitted = bool(np.isfinite(motion.root[person]).all(axis=1).any())
     root = Element("OpenSimDocument", Version=VERSION)
     model = SubElement(root, "Model", name=str(motion.person_id[person]))
-    _text(model, "credits", _credits(motion, person))
+    _text(model, "credits", _credits(motion, person) if fitted else UNFITTED)
     _text(model, "length_units", "meters")
     _text(model, "force_units", "N")
     _text(model, "gravity", (0, -9.80665, 0))
@@ -140,19 +140,31 @@ def write(
         SubElement(SubElement(model, kind, name=kind.lower()), "objects")
         for kind in ("BodySet", "JointSet", "MarkerSet")
     )
+    if fitted:
+        _add_bodies(bodies, joints, motion, person, _masses(motion, person, mass_kg, sex))
+        _add_markers(markers, motion, person)
+    ElementTree.indent(root)
+    with atomic(path) as temporary:
+        ElementTree.ElementTree(root).write(temporary, encoding="UTF-8", xml_declaration=True)
+
+
+def _add_bodies(
+    bodies: Element, joints: Element, motion: SkeletalMotion, person: int, masses: NDArray
+) -> None:
     for at, segment in enumerate(motion.segments.tolist()):
         _add_body(bodies, body(segment), masses[at], *_cylinder(motion, person, at, masses[at]))
         parent = motion.parents[at]
         above = "/ground" if parent < 0 else f"/bodyset/{body(motion.segments[parent])}"
         _add_joint(joints, segment, above, motion.offsets[person, at] + _origin(parent))
+
+
+def _add_markers(markers: Element, motion: SkeletalMotion, person: int) -> None:
+    places = _places(motion, person)
     for joint, at, place in zip(motion.joints, motion.segment_of, places, strict=True):
         entry = SubElement(markers, "Marker", name=str(joint))
         _text(entry, "socket_parent_frame", f"/bodyset/{body(motion.segments[at])}")
         _text(entry, "location", place)
         _text(entry, "fixed", "true")
-    ElementTree.indent(root)
-    with atomic(path) as temporary:
-        ElementTree.ElementTree(root).write(temporary, encoding="UTF-8", xml_declaration=True)
 
 
 def _origin(segment: int) -> NDArray:
