@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.records.user_tables import known, number, table
+from courtside.records.user_tables import number, table
 from courtside.study.errors import InputError, StrPath
 
 PLACE, PIXEL = ("x_m", "y_m", "z_m"), ("x_px", "y_px")
@@ -22,6 +22,7 @@ class PlacedPoints:
     points: tuple[str, ...]  # P names; a point without one is named by its place
     xyz: NDArray  # (P, 3): m, z up
     clicks: dict[str, NDArray]  # (P, 2) px by camera; NaN where not clicked
+    left_out: tuple[str, ...] = ()  # cameras of the file that were not asked for
 
     def of(self, camera: str) -> NDArray:
         """Return the indices of the points that a camera sees, (n,) int."""
@@ -33,15 +34,19 @@ def read(path: StrPath, cameras: Sequence[str]) -> PlacedPoints:
 
     The CSV has the columns camera, x_px, y_px (px of the video's size, first pixel's centre at
     (0, 0)), x_m, y_m, z_m (right-handed, z up) and perhaps point, a name. Rows with one place, to a
-    millimetre, are one point. An `InputError` if the file is no such table, a row names an unknown
-    camera, a number is none, one camera has a point twice, or a name has two places.
+    millimetre, are one point. Rows of other cameras than `cameras` are left out. An `InputError` if
+    the file is no such table, a number is none, one camera has a point twice, or a name has two
+    places.
     """
     names: list[str] = []
     places: list[list[float]] = []
+    left_out: dict[str, None] = {}
     seen: dict[tuple[str, str], tuple[int, list[float]]] = {}
     for line, row in table(path, COLUMNS, (NAMED,)):
-        where = f"{path}: line {line}"
-        camera = known(where, "camera", row["camera"], cameras)
+        where, camera = f"{path}: line {line}", row["camera"]
+        if camera not in cameras:
+            left_out[camera] = None
+            continue
         place = [number(where, key, row[key]) for key in PLACE]
         name = row.get(NAMED) or _name(place)
         if name not in names:
@@ -62,7 +67,8 @@ def read(path: StrPath, cameras: Sequence[str]) -> PlacedPoints:
     found = {camera: np.full((len(names), 2), np.nan) for camera in cameras}
     for (camera, name), (_, xy) in seen.items():
         found[camera][names.index(name)] = xy
-    return PlacedPoints(tuple(names), np.array(places).reshape(-1, 3), found)
+    xyz = np.array(places).reshape(-1, 3)
+    return PlacedPoints(tuple(names), xyz, found, tuple(left_out))
 
 
 def _name(place: Sequence[float]) -> str:
