@@ -11,6 +11,7 @@ from courtside.calibration.people import adjustment as clicked
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.wand import calibration, points, quality
 from courtside.geometry import camera as cameras
+from courtside.study.errors import about
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json
 from courtside.study.execution.script import run
@@ -36,6 +37,9 @@ def main(paths, cameras_toml, covariance_npz, quality_json, *, given, names, pla
     floor = calibration.Floor.of(given)
     found = calibration.calibrate(wand, seen, sizes, lenses=lenses, floor=floor, clicks=clicks)
     report = quality.summary(found, wand, seen, set(lenses))
+    if court is not None:
+        with about(paths.clicks_csv):
+            report["warnings"] += place_checks.check_cameras(court, found.cameras, marked)
     for warning in report["warnings"]:
         log.logger.warning("%s", warning)
     covariance = camera_covariance.of_network(list(seen.cameras), found.covariance)

@@ -7,6 +7,7 @@ and quality.
 from courtside.calibration.court import place_checks, points_alone, quality
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.geometry import camera as camera_models
+from courtside.study.errors import about
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json
 from courtside.study.execution.script import run
@@ -28,7 +29,8 @@ def main(
 ):
     court, marked = place_checks.read(clicks_csv, court_yaml, cameras, placed)
     sizes = {name: reader.picture_size(path) for name, path in zip(cameras, pictures, strict=True)}
-    found = points_alone.calibrate(court, marked, sizes, **step)
+    with about(clicks_csv):
+        found = points_alone.calibrate(court, marked, sizes, **step)
     for warning in found.warnings:
         log.logger.warning("%s", warning)
     covariance = camera_covariance.of_network(cameras, found.solution.covariance)

@@ -109,3 +109,11 @@ def test_content_of_another_type_is_damage():
     for read in (lambda: errors.require_type([1], dict), lambda: errors.require_scalar(None)):
         with pytest.raises(InputError, match=r"found: \w+ in place of "), errors.reading("a", "b"):
             read()
+
+
+def test_lines_begin_with_the_file_that_they_are_about():
+    with pytest.raises(InputError) as caught, errors.about("a.csv"):
+        raise InputError("one", "two")
+    assert caught.value.lines == ["a.csv: one", "a.csv: two"]
+    with pytest.raises(KeyError), errors.about("a.csv"):
+        raise KeyError("three")

@@ -1,11 +1,16 @@
 """Places that are wrong for a whole camera are named; other cameras' places tell."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from courtside.calibration.court import court as court_files
 from courtside.calibration.court import place_checks
+from courtside.geometry.camera import Camera
 from courtside.records.cameras.placed_points import PlacedPoints
 from courtside.study.errors import InputError
+from fixtures.cameras.scene import look_at
 
 # Corners and crossings of a hall with two courts.
 PLACES = np.array(
@@ -35,21 +40,35 @@ def placed(moved, cameras=("a", "b", "c"), chosen=lambda at: slice(None)):
     return PlacedPoints(tuple(names), np.array(xyz), clicks)
 
 
-def test_points_with_coordinates_are_read_as_a_court_unless_a_camera_s_are_shifted(tmp_path):
-    def read(moved):
-        rows = ["camera,x_px,y_px,x_m,y_m,z_m"]
-        for camera in "abc":
-            places = PLACES + np.asarray(moved.get(camera, 0.0))
-            rows += [f"{camera},{at},2,{x},{y},{z}" for at, (x, y, z) in enumerate(places)]
-        path = tmp_path / "points.csv"
-        path.write_text("\n".join([*rows, ""]))
-        return place_checks.read(path, None, ["a", "b", "c"], placed=True)
+def read(tmp_path, moved, times=1.0):
+    """Read points from a file, those of cameras in `moved` at other places."""
+    rows = ["camera,x_px,y_px,x_m,y_m,z_m"]
+    for camera in "abc":
+        places = times * (PLACES + np.asarray(moved.get(camera, 0.0)))
+        rows += [f"{camera},{at},2,{x},{y},{z}" for at, (x, y, z) in enumerate(places)]
+    path = tmp_path / "points.csv"
+    path.write_text("\n".join([*rows, ""]))
+    return place_checks.read(path, None, ["a", "b", "c"], placed=True)
 
-    court, clicks = read({})
+
+def test_points_with_coordinates_are_read_as_a_court_unless_a_camera_s_are_shifted(tmp_path):
+    court, clicks = read(tmp_path, {})
+    assert court.placed
     np.testing.assert_allclose(court.xyz, PLACES)
     assert clicks["b"][3].tolist() == [3, 2]
     with pytest.raises(InputError, match=r"points.csv: camera b: expected its 20 points"):
-        read({"b": (0, -0.5, 0)})
+        read(tmp_path, {"b": (0, -0.5, 0)})
+
+
+@pytest.mark.parametrize(
+    ("unit", "times", "by"), [("mm", 1000, "0.001"), ("cm", 100, "0.01"), ("in", 39.37, "0.0254")]
+)
+def test_places_in_another_unit_are_told_with_the_way_to_metres(tmp_path, unit, times, by):
+    with pytest.raises(InputError, match=r"points.csv: camera a: expected points in m") as caught:
+        read(tmp_path, {"b": (0, -0.5, 0)}, times)
+    line = f"found {31.8 * times:.0f}"[:8], f"likely in {unit}: multiply them by {by}"
+    assert all(part in str(caught.value) for part in line), str(caught.value)
+    assert "\n" not in str(caught.value)
 
 
 def test_right_places_are_left_alone():
@@ -92,3 +111,77 @@ def test_of_two_cameras_both_are_named():
     found = place_checks.shifts(placed({"b": (0, -0.5, 0)}, cameras=("a", "b")))
     assert [one.camera for one in found] == ["a", "b"]
     np.testing.assert_allclose(found[0].by_m, -found[1].by_m)
+
+
+def rig(height_m, turned=False, aim_m=0.0):
+    """Return two cameras, perhaps upside down, that look at places on a floor or a ceiling."""
+    found = []
+    for name, at in (("a", (20, 3, height_m)), ("b", (-18, -9, height_m + 1))):
+        pose = np.diag([-1.0, -1.0, 1.0] if turned else [1.0] * 3) @ look_at(at, (0, 0, aim_m))
+        matrix = np.array([[1000.0, 0, 960], [0, 1000, 540], [0, 0, 1]])
+        found.append(Camera(name, (1920, 1080), matrix, np.zeros(5), pose))
+    return found
+
+
+def checked(cameras, z, names=("a", "b")):
+    """Check cameras that see all points, which have heights `z`."""
+    xyz = PLACES + np.stack([0 * PLACES[:, 0], 0 * PLACES[:, 0], np.broadcast_to(z, 20)], axis=1)
+    court = court_files.of_places("points", [str(k) for k in range(20)], xyz)
+    seen = {c.name: np.full((20, 2), 5.0 if c.name in names else np.nan) for c in cameras}
+    return place_checks.check_cameras(court, cameras, seen)
+
+
+SPREAD = np.linspace(2, 5, 20)
+
+
+@pytest.mark.parametrize(
+    ("height_m", "turned", "z"),
+    [
+        (6, False, 0),  # on stands, points on the floor
+        (6, True, 0),  # hung upside down
+        (0.1, False, 0),  # on the floor: the error of its height may be larger
+        (-0.1, False, 0),
+        (1.5, False, SPREAD),  # on a tripod, points on a wall
+        (1.5, True, SPREAD),
+        (106, False, 100),  # survey coordinates
+    ],
+)
+def test_cameras_that_can_stand_where_they_are_pass(height_m, turned, z):
+    assert checked(rig(height_m, turned, np.median(z)), z) == []
+
+
+def test_points_at_one_height_above_the_floor_may_be_seen_from_below():
+    (line,) = checked(rig(1.5, aim_m=6), 6)
+    assert "cameras a, b: 3.5 to 4.5 m below all of their points" in line
+    assert "right if these are on a gallery or a ceiling" in line and "right-handed" in line
+
+
+@pytest.mark.parametrize("z", [0, 100, np.r_[np.zeros(17), 1, 1, 3]])
+def test_cameras_below_the_floor_that_they_see_mean_left_handed_places(z):
+    floor_m = np.median(z)
+    with pytest.raises(InputError) as caught:
+        checked(rig(floor_m - 6, turned=True, aim_m=floor_m), z)
+    said = str(caught.value)
+    assert "cameras a, b: expected them above the floor points" in said and "5.0 to 6.0 m" in said
+    assert "right-handed with z up: change the sign of y_m in all rows" in said
+    assert "\n" not in said
+
+
+def test_only_cameras_that_see_points_are_named():
+    with pytest.raises(InputError, match="cameras b: expected them above the floor"):
+        checked(rig(-6, turned=True), 0, names=("b",))
+
+
+def test_pictures_tell_why_points_seem_to_be_seen_from_below():
+    with pytest.raises(InputError, match="y_px must be counted from the top"):
+        checked(rig(-6), 0)
+    lying = np.array([[0.0, 1, 0], [-1, 0, 0], [0, 0, 1]])
+    cameras = [replace(one, cam_from_world=lying @ one.cam_from_world) for one in rig(-6)]
+    with pytest.raises(InputError, match="x_px and y_px seem to be exchanged"):
+        checked(cameras, 0)
+
+
+def test_cameras_too_high_for_a_hall_ask_for_the_unit():
+    (line,) = checked(rig(600), 0)
+    assert "cameras a, b: expected them at most 60 m above their points, found 600.0" in line
+    assert "check the unit of the places, which is m" in line

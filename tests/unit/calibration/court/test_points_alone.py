@@ -113,6 +113,48 @@ def test_a_camera_whose_points_fit_badly_is_named():
                calibrate(clicks).warnings)  # fmt: skip
 
 
+def on_floor(places, clicks):
+    """Return places of a floor without names, and the clicks on it."""
+    low = HALL.xyz[:, 2] == 0
+    court_there = court.of_places("points", np.array(HALL.points)[low], places[low])
+    return court_there, {name: xy[low] for name, xy in clicks.items()}
+
+
+def of_floor(times, change=lambda xy: xy):
+    cameras = [camera for camera in true_cameras() if camera.name in ("east", "south")]
+    changed = {name: change(xy) for name, xy in clicked(cameras).items()}
+    where, clicks = on_floor(HALL.xyz * times, changed)
+    return points_alone.calibrate(where, clicks, dict.fromkeys(clicks, SIZE), **WEIGHTS)
+
+
+@pytest.mark.parametrize(
+    ("times", "change", "advice"),
+    [
+        ([1, -1, 1], lambda xy: xy, "right-handed with z up: change the sign of y_m in all rows"),
+        ([-1, 1, 1], lambda xy: xy, "right-handed with z up: change the sign of y_m in all rows"),
+        ([1, 1, 1], lambda xy: [0, 1079] + xy * [1, -1], "y_px must be counted from the top"),
+    ],
+)
+def test_mirrored_floor_points_are_refused(times, change, advice):
+    assert of_floor([1, 1, 1]).warnings == []
+    with pytest.raises(InputError) as caught:
+        of_floor(times, change)
+    said = str(caught.value)
+    assert "cameras east, south: expected them above the floor points that they see" in said
+    assert advice in said and "\n" not in said
+
+
+def test_left_and_right_exchanged_on_the_floor_of_a_court_are_refused():
+    low = HALL.xyz[:, 2] == 0
+    clicks = {name: xy[low] for name, xy in clicked(true_cameras()).items()}
+    points = tuple(np.array(HALL.points)[low])
+    edges = tuple(np.array(HALL.edges)[low])
+    mirrored = HALL.xyz[low] * [-1, 1, 1] + [HALL.size_m[0], 0, 0]
+    other = replace(HALL, xyz=mirrored, points=points, edges=edges, sigma_m=HALL.sigma_m[low])
+    with pytest.raises(InputError, match="exchange the names of the left and right points in all"):
+        points_alone.calibrate(other, clicks, dict.fromkeys(clicks, SIZE), **WEIGHTS)
+
+
 def test_too_few_points_name_the_camera():
     clicks = clicked(true_cameras())
     seen = np.flatnonzero(np.isfinite(clicks["east"][:, 0]))

@@ -8,6 +8,7 @@ import pytest
 
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
+from courtside.calibration.court import place_checks
 from courtside.calibration.wand import adjustment, calibration, start
 from courtside.calibration.wand.calibration import Floor
 from courtside.geometry import camera as cameras
@@ -165,6 +166,20 @@ def test_clicks_have_the_variances_of_the_cameras_where_they_stand():
     calibrate(seen(swung()), clicks=clicks)
     true = [camera.centre_in_world for camera in RIG]
     assert np.linalg.norm(np.subtract(centres[-1], true), axis=1).max() < 0.1
+
+
+def test_left_handed_floor_points_put_the_cameras_below_the_floor():
+    points = floor_points()
+    court, marked = points.args
+    mirrored = replace(court, xyz=court.xyz * [1, -1, 1])
+    for there, wrong in (court, False), (mirrored, True):
+        clicks = partial(points.func, there, marked, **WEIGHTS)
+        cameras_found = calibrate(seen(swung()), lenses=LENSES, clicks=clicks).cameras
+        if wrong:
+            with pytest.raises(InputError, match="m below: points or clicks are mirrored; x_m, y"):
+                place_checks.check_cameras(there, cameras_found, marked)
+        else:
+            assert place_checks.check_cameras(there, cameras_found, marked) == []
 
 
 def test_clicks_have_the_loss_that_is_stated_for_them():

@@ -99,6 +99,15 @@ def reading(
         raise InputError(f"{path}: expected {what}, found: {found}; {advice}") from error
 
 
+@contextlib.contextmanager
+def about(path: StrPath) -> Iterator[None]:
+    """Begin the lines of an `InputError` within the block with the file that they are about."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(*(f"{path}: {line}" for line in error.lines)) from None
+
+
 def _raised_by_library(error: BaseException) -> bool:
     """Return whether Python code of a library raised an exception, not ours."""
     innermost = error.__traceback__

@@ -47,6 +47,11 @@ class Court:
         """Which points lie on the floor, (P,) bool."""
         return ~is_raised(self.xyz)
 
+    @property
+    def placed(self) -> bool:
+        """Whether its points have places of their own, and no edges of lines (`of_places`)."""
+        return not any(self.edges)
+
     def other_end(self) -> NDArray:
         """Return the index of the point to which half a turn brings each one (P,); -1: none."""
         turned = np.array([*self.size_m, 0.0]) + self.xyz * [-1, -1, 1]

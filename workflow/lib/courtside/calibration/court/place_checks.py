@@ -1,17 +1,20 @@
-"""The clicked points of a session, and a check of their positions camera by camera.
+"""The clicked points of a session, and checks of their places: shifts, the unit, mirrored places.
 
 All points of a camera may be wrong by one shift. The picture of this camera cannot show this,
 because shifted points only shift the camera. Points of other cameras at the same places show it.
+Points in one plane, such as a floor, fit their mirror image too: cameras below the floor show it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration.court import court as court_files
-from courtside.calibration.court.court import ClickedPoints, Court
+from courtside.calibration.court.court import RAISED_M, ClickedPoints, Court
+from courtside.geometry.camera import Camera
+from courtside.geometry.camera_fields import METRES
 from courtside.records.cameras import clicks, placed_points
 from courtside.records.cameras.placed_points import PlacedPoints
 from courtside.study.errors import InputError, StrPath
@@ -20,6 +23,23 @@ NEAR_M = 0.1  # ASSUME: places meant to be one differ by less, rounding of one o
 MOVED = 0.8  # ASSUME: of a camera's points: so many must meet others once they are moved
 LEFT = 1 / 3  # ASSUME: and no more than so many as they are
 FEWEST = 4  # ASSUME: points that meet others after one shift; fewer may do so by chance
+# ASSUME: points that one camera sees are nearer to each other, even in a stadium; the extent of
+# points that a unit is guessed by is that of a hall.
+LARGEST_M, USUAL_M = 500.0, 20.0
+# ASSUME: cameras that film people stand higher above the floor, and lower than roofs of halls and
+# stands of stadiums.
+LOWEST_M, HIGHEST_M = 0.3, 60.0
+UPRIGHT = 0.5  # ASSUME: up in pictures that are tilted and rolled by less than 60 degrees, along z
+# What to do about mirrored places or clicks.
+LEFT_HANDED = (
+    "x_m, y_m and z_m must be right-handed with z up: change the sign of y_m in all rows, or undo "
+    "the flip of the videos"
+)
+OTHER_SIDE = (
+    "exchange the names of the left and right points in all cameras, or undo the flip of the videos"
+)
+FROM_BELOW = "y_px must be counted from the top: subtract it from the picture's height minus 1"
+RENAME = "exchange the names of these two columns"
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,12 +115,105 @@ def read(
 ) -> tuple[Court, ClickedPoints]:
     """Return the court and the clicks of a session; `placed` points are returned as a court.
 
-    Raises `InputError` if a file is invalid, or if all points of a camera are shifted.
+    Raises `InputError` if a file is invalid, if all points of a camera are shifted, or if places
+    cannot be in metres.
     """
     if not placed:
         court = court_files.read(court_yaml)
         return court, clicks.read(clicks_csv, cameras, list(court.points))
     points = placed_points.read(clicks_csv, cameras)
-    if wrong := shifts(points):
+    if wrong := [*_in_other_units(points)] or shifts(points):
         raise InputError(*(f"{clicks_csv}: {one}" for one in wrong))
     return court_files.of_places("points", points.points, points.xyz), points.clicks
+
+
+def _in_other_units(placed: PlacedPoints) -> Iterator[str]:
+    """Yield whether the points of a camera are too far apart for metres: those farthest apart."""
+    extent = {
+        name: float(np.linalg.norm(np.ptp(placed.xyz[at], axis=0)))
+        for name in placed.clicks
+        if len(at := placed.of(name))
+    }
+    camera = max(extent, key=lambda name: extent[name], default=None)
+    if camera is not None and extent[camera] > LARGEST_M:
+        yield (
+            f"camera {camera}: expected points in m, less than {LARGEST_M:.0f} m apart, found "
+            f"{extent[camera]:.0f} m between them; {_conversion(extent[camera])}"
+        )
+
+
+def _conversion(extent: float) -> str:
+    """Return how places of such an extent, in another unit, become m."""
+    apart = {unit: abs(np.log(extent * metres / USUAL_M)) for unit, metres in METRES.items()}
+    unit = min(apart, key=lambda name: apart[name])
+    return f"x_m, y_m and z_m are likely in {unit}: multiply them by {METRES[unit]:g}"
+
+
+def check_cameras(court: Court, cameras: Sequence[Camera], clicked: ClickedPoints) -> list[str]:
+    """Check that cameras can stand where their points put them; return warnings, one line each.
+
+    Raises `InputError` if cameras lie below the floor points that they see: their places or clicks
+    are mirrored. Points at one height above the floor, of a gallery or a ceiling, can be seen from
+    below; points at several heights fit no mirror image.
+    """
+    high, below, level = {}, {}, {}
+    for camera in cameras:
+        z = court.xyz[np.isfinite(clicked[camera.name]).all(axis=1), 2]
+        if not len(z):
+            continue
+        above_m = float(camera.centre_in_world[2] - np.median(z))
+        if above_m > HIGHEST_M:
+            high[camera.name] = above_m
+        elif above_m < -LOWEST_M:
+            on_floor, flat = np.median(np.abs(z)) <= RAISED_M, np.ptp(z) <= RAISED_M
+            upside_down = up(camera) < -UPRIGHT
+            if on_floor or (flat and upside_down):
+                below[camera.name] = -above_m
+            elif flat:
+                level[camera.name] = -above_m
+    if below:
+        towards_z = float(np.mean([up(camera) for camera in cameras if camera.name in below]))
+        raise InputError(
+            f"cameras {', '.join(below)}: expected them above the floor points that they see, "
+            f"found them {_range(below)} m below: points or clicks are mirrored; "
+            f"{_mend(towards_z, court.placed)}"
+        )
+    return [*_level(level), *_too_high(high)]
+
+
+def _level(below_m: Mapping[str, float]) -> Iterator[str]:
+    """Yield a warning of cameras below points that are all at one height, by camera."""
+    if below_m:
+        yield (
+            f"cameras {', '.join(below_m)}: {_range(below_m)} m below all of their points, which "
+            "are at one height: right if these are on a gallery or a ceiling; if not, "
+            f"{LEFT_HANDED}; points at several heights decide it"
+        )
+
+
+def _too_high(above_m: Mapping[str, float]) -> Iterator[str]:
+    """Yield a warning of cameras too high above their points, by camera."""
+    if above_m:
+        yield (
+            f"cameras {', '.join(above_m)}: expected them at most {HIGHEST_M:.0f} m above their "
+            f"points, found {_range(above_m)} m; check the unit of the places, which is m"
+        )
+
+
+def up(camera: Camera) -> float:
+    """Return how far the upward direction of a picture is along z, -1 to 1."""
+    return -float(camera.cam_from_world[1, 2])
+
+
+def _mend(towards_z: float, placed: bool) -> str:
+    """Return what to do about points that cameras see from below, by their mean `up`."""
+    if towards_z > UPRIGHT:
+        return FROM_BELOW
+    if towards_z > -UPRIGHT:
+        return f"x_px and y_px seem to be exchanged: {RENAME}"
+    return LEFT_HANDED if placed else OTHER_SIDE
+
+
+def _range(lengths_m: Mapping[str, float]) -> str:
+    low, high = (f"{value:.1f}" for value in (min(lengths_m.values()), max(lengths_m.values())))
+    return low if low == high else f"{low} to {high}"

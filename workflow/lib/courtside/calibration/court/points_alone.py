@@ -14,7 +14,13 @@ from numpy.typing import NDArray
 
 from courtside.calibration.bundle import selection, solver, variance_components
 from courtside.calibration.bundle.problem import IMAGE, LENS
-from courtside.calibration.court import click_checks, joint_adjustment, line_edges, resection
+from courtside.calibration.court import (
+    click_checks,
+    joint_adjustment,
+    line_edges,
+    place_checks,
+    resection,
+)
 from courtside.calibration.court.court import ClickedPoints, Court
 from courtside.calibration.court.joint_adjustment import Solution, Ties
 from courtside.geometry.camera import Camera, project
@@ -51,7 +57,7 @@ def calibrate(
     """Calibrate cameras, whose pictures have the given sizes (px), from their clicks.
 
     The weights are those of `joint_adjustment.solve`. Raises `InputError` if the points do not
-    determine a camera: each needs eight, not on one line.
+    determine a camera: each needs eight, not on one line; or if they are mirrored.
     """
     weights = {
         "click_sigma_px": click_sigma_px,
@@ -72,6 +78,7 @@ def calibrate(
         )
         starts.append(found.camera)
     solved = _solved(_lenses(starts), clicks, court, weights)
+    doubts = place_checks.check_cameras(court, solved.cameras, clicks)
     projected = np.stack([project(camera, court.xyz) for camera in solved.cameras])
     clicked = np.stack([np.asarray(clicks[name], float) for name in sizes])
     crossing = np.stack([click_checks.crossings(c, court.xyz) for c in solved.cameras])
@@ -81,7 +88,7 @@ def calibrate(
     )
     sigma_px = joint_adjustment.largest_click_sigma(click_sigma_px, solved.cameras)
     wrong = click_checks.find_wrong_clicks(table, sigma_px=sigma_px)
-    warnings = [str(one) for one in wrong] + _scattered(solved, click_sigma_px)
+    warnings = [*map(str, wrong), *_scattered(solved, click_sigma_px), *doubts]
     return Found(solved, dict(zip(sizes, table.error_px, strict=True)), wrong, warnings)
 
 
