@@ -133,7 +133,9 @@ def test_clicks_of_another_court_are_said_with_how_far_they_are_off():
         known_points.calibrate(way, tennis, clicks_of(made), {"back": SIZE}, {}, click_sigma_px=0.9)
     message = str(caught.value)
     assert message.startswith("camera back: expected 8 clicks or more that fit one camera, found")
-    assert "check the names of the clicked points, and the court" in message and "\n" not in message
+    assert (
+        "check the names of the points, their places (the court)" in message and "\n" not in message
+    )
 
 
 def test_mirrored_points_are_named_or_put_the_camera_below_the_floor():

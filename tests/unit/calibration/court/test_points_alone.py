@@ -113,6 +113,14 @@ def test_a_camera_whose_points_fit_badly_is_named():
                calibrate(clicks).warnings)  # fmt: skip
 
 
+def test_cameras_whose_points_all_fit_badly_are_named():
+    """As those of a copy of the picture: no camera is better than another."""
+    clicks = clicked(true_cameras(), noise_px=9)
+    found = [line for line in calibrate(clicks).warnings if "expected its points to fit" in line]
+    assert len(found) >= 3
+    assert all("as clicks do, to 1.2 px" in line and "own 1920 x 1080" in line for line in found)
+
+
 def on_floor(places, clicks):
     """Return places of a floor without names, and the clicks on it."""
     low = HALL.xyz[:, 2] == 0

@@ -2,11 +2,10 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from numpy.typing import NDArray
 
-from courtside.calibration.court import joint_adjustment, line_edges, resection
+from courtside.calibration.court import joint_adjustment, line_edges, misfits, resection
 from courtside.calibration.court.court import ClickedPoints, Court
 from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError
@@ -66,7 +65,7 @@ def calibrate(
             found[name] = resection.dlt(xyz, xy, size=size, name=name)
             continue
         known = {"K": lenses[name].K, "dist": lenses[name].dist} if way.board else {}
-        found[name] = _fitted(
+        found[name] = misfits.fitted(
             xyz,
             xy,
             size,
@@ -77,24 +76,6 @@ def calibrate(
             **known,
         )
     return found
-
-
-def _fitted(xyz: NDArray, *clicks: Any, name: str, **options: Any) -> resection.Fitted:
-    """Fit a camera by least squares; if this fails, the error names mirrored points."""
-    try:
-        return resection.nonlinear(xyz, *clicks, name=name, **options)
-    except InputError as fault:
-        try:
-            mirrored = resection.nonlinear(xyz * [-1, 1, 1], *clicks, name=name, **options)
-        except InputError:
-            raise fault from None
-        if mirrored.camera.centre_in_world[2] < 0:
-            raise
-        raise InputError(
-            f"camera {name}: expected clicks that fit the court, found that they fit its mirror "
-            "image: the points are mirrored; exchange the names of the left and right points in "
-            "all cameras, or undo the flip of the videos"
-        ) from None
 
 
 def cameras(found: Mapping[str, Found]) -> list[Camera]:

@@ -1,8 +1,8 @@
 """All fixed cameras from points at known places alone, weighted together, with their covariance.
 
-First each camera is calibrated alone (`resection`). Then all are adjusted together: the position of
-a point is one unknown for all cameras that see it, and the scatter of clicks is estimated from all
-residuals. Clicks that contradict their camera lose weight and are named.
+First each camera is calibrated alone (`misfits`, `resection`). Then all are adjusted together: the
+position of a point is one unknown for all cameras that see it, and the scatter of clicks is
+estimated from all residuals. Clicks that contradict their camera lose weight and are named.
 """
 
 from collections.abc import Mapping, Sequence
@@ -18,8 +18,8 @@ from courtside.calibration.court import (
     click_checks,
     joint_adjustment,
     line_edges,
+    misfits,
     place_checks,
-    resection,
 )
 from courtside.calibration.court.court import ClickedPoints, Court
 from courtside.calibration.court.joint_adjustment import Solution, Ties
@@ -32,7 +32,9 @@ CENTRE_SHARE = 0.01  # of the picture's width
 SPREAD = {"aspect": 1e-3, "k1": 0.3, "k2": 0.2, "p1": 5e-4, "p2": 5e-4}
 MAX_ITERATIONS = 200
 ROUNDS, SETTLED = 8, 0.05  # of the variance factors: see `joint_adjustment`
-SCATTERED = 3.0  # ASSUME: a camera whose clicks scatter so much more than the others' is named
+# ASSUME: a camera whose clicks scatter so much more than the others', or than stated, is named. In
+# a real hall, points with errors of some centimetres scatter 2.4 times as much as stated at most.
+SCATTERED, LARGEST = 3.0, 6.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +69,7 @@ def calibrate(
     starts = []
     for name, size in sizes.items():
         sigma_px = joint_adjustment.click_sigma(click_sigma_px, size)
-        found = resection.nonlinear(
+        found = misfits.fitted(
             court.xyz,
             clicks[name],
             size,
@@ -75,6 +77,7 @@ def calibrate(
             xyz_sigma=court.sigma_m,
             edges=line_edges.on_lines(court),
             name=name,
+            placed=court.placed,
         )
         starts.append(found.camera)
     solved = _solved(_lenses(starts), clicks, court, weights)
@@ -156,16 +159,25 @@ def _solved(lenses: Ties, clicks: ClickedPoints, court: Court, weights: dict) ->
 
 
 def _scattered(solved: Solution, click_sigma_px: float) -> list[str]:
-    """Return a warning for each camera whose clicks scatter far more than those of the others."""
+    """Return a warning for each camera whose clicks scatter far more than those of the others.
+
+    Or far more than clicks do: all may be of pictures of another size.
+    """
     share = np.sqrt(solved.factors.clicks.mean(axis=1))
     found = []
     for at, camera in enumerate(solved.cameras):
         others = np.delete(share, at)
-        if len(others) and share[at] > SCATTERED * max(1.0, np.median(others)):
+        usual = max(1.0, float(np.median(others))) if len(others) else np.inf
+        if share[at] > min(SCATTERED * usual, LARGEST):
             stated = joint_adjustment.click_sigma(click_sigma_px, camera.size)
+            expected = (
+                f"as those of the other cameras do, to {stated * np.median(others):.1f} px"
+                if share[at] > SCATTERED * usual
+                else f"as clicks do, to {stated:.1f} px"
+            )
             found.append(
-                f"camera {camera.name}: expected its points to fit as those of the other cameras "
-                f"do, to {stated * np.median(others):.1f} px, found {stated * share[at]:.1f} px; "
-                "check the names and places of its points"
+                f"camera {camera.name}: expected its points to fit {expected}, found "
+                f"{stated * share[at]:.1f} px; check the names and places of its points, and that "
+                f"its clicks are px of the picture's own {camera.size[0]} x {camera.size[1]}"
             )
     return found

@@ -217,8 +217,7 @@ def nonlinear(
     state = one_camera.start(clicks, size, K, dist)
     if state is None:
         raise InputError(
-            f"camera {name}: expected clicks that fit a camera, found none; check the names of the "
-            "points"
+            f"camera {name}: expected clicks that fit a camera, found none; {_advice(size)}"
         )
     state, agree, by_step = _fit(state, clicks, size, name)
     if edges is not None and np.any(edges):
@@ -270,8 +269,15 @@ def _check_agreement(clicks, agree, off_px, size, name) -> None:
         found = f"{agree.sum()} of {len(agree)}" if few else f"half of all {off_px:.1f} px off"
         raise InputError(
             f"camera {name}: expected {least} clicks or more that fit one camera, found {found}; "
-            "check the names of the clicked points, and the court"
+            f"{_advice(size)}"
         )
+
+
+def _advice(size: tuple[int, int]) -> str:
+    return (
+        "check the names of the points, their places (the court), and that clicks are px of the "
+        f"picture's own {size[0]} x {size[1]}"
+    )
 
 
 def _check_near(xyz: NDArray, camera: Camera) -> None:
@@ -281,8 +287,8 @@ def _check_near(xyz: NDArray, camera: Camera) -> None:
     if away_m > limit_m:
         raise InputError(
             f"camera {camera.name}: expected clicks that fit a camera near the court, found that "
-            f"they fit best from more than {limit_m:.0f} m away; check the names of the clicked "
-            "points, and the court, or click points above the floor too"
+            f"they fit best from more than {limit_m:.0f} m away; check the names of the points and "
+            "their places (the court), or click points above the floor too"
         )
 
 
