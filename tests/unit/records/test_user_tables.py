@@ -29,6 +29,12 @@ def test_other_columns_are_refused_with_those_that_may_be_there(tmp_path, header
         user_tables.table(written(tmp_path, f"{header}\n"), ("a", "b"), ("c",))
 
 
+@pytest.mark.parametrize("header", ["a;b", "a\tb", "b;a;c"])
+def test_other_characters_between_the_cells_are_told(tmp_path, header):
+    with pytest.raises(InputError, match="save it with commas between the cells, and points in"):
+        user_tables.table(written(tmp_path, f"{header}\n1;2,5\n"), ("a", "b"), ("c",))
+
+
 def test_a_short_line_is_refused(tmp_path):
     with pytest.raises(InputError, match="line 2: expected 2 cells, found 1; correct it"):
         user_tables.table(written(tmp_path, "a,b\n1\n"), ("a", "b"))

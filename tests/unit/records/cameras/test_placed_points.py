@@ -33,6 +33,13 @@ def test_survey_coordinates_keep_their_millimetres(tmp_path):
     assert found.of("right").tolist() == [0]
 
 
+def test_rows_of_other_cameras_are_left_out(tmp_path):
+    text = HEADER + "middle,1,2,7,8,0\nleft,1,2,3,4,0\nmiddle,,,3,4,\nend,1,2,3,4,0\n"
+    found = read(tmp_path, text)
+    assert found.points == ("(3, 4, 0)",) and found.left_out == ("middle", "end")
+    assert set(found.clicks) == set(CAMERAS) and read(tmp_path, HEADER).left_out == ()
+
+
 def test_points_may_have_names(tmp_path):
     text = "point,x_m,y_m,z_m,camera,x_px,y_px\npost,1,2,1.5,left,7,8\n"
     found = read(tmp_path, text)
@@ -44,7 +51,6 @@ def test_points_may_have_names(tmp_path):
     [
         ("camera,x_px,y_px,x_m,y_m\nleft,1,2,3,4\n", ["expected the columns", "z_m"]),
         ("", ["expected the columns", "an empty file"]),
-        (HEADER + "middle,1,2,3,4,0\n", ["line 2", "a camera of left, right, found 'middle'"]),
         (HEADER + "left,1,2,3,four,0\n", ["line 2", "y_m as a finite number, found 'four'"]),
         (HEADER + "left,1,2,3,4,0\nleft,5,6,3,4,0\n", ["line 3", "one click for point (3, 4, 0)"]),
         (

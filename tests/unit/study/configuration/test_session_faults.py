@@ -145,7 +145,11 @@ def test_good_sessions_have_no_fault(root, content):
         ),
         (
             RECORDED | {"court": "none"},
-            ["court_points: expected none without a court", "the columns x_m, y_m and z_m"],
+            ["court_points: expected the columns x_m, y_m and z_m", "found none in p.csv; add"],
+        ),
+        (
+            ALONE | {"court_points": "placed.csv"},
+            ["court: expected 'none' beside points with their own places", "found 'badminton'"],
         ),
         (
             RECORDED | {"court_points": "placed.csv"},
@@ -569,6 +573,25 @@ def test_of_devices_alone_the_clock_of_the_first_is_the_reference(root, files, n
     found = find(root, content | {"takes": {"t": take | {"clocks": {named: {"offset_s": 1.0}}}}})
     message = f"takes.t.clocks.{named}: expected no offset or drift of the first device"
     assert [message in line for line in found] == [True] * n_faults
+
+
+@pytest.mark.parametrize("static", [{"a": {"static": "a.mp4"}, "b": {"static": "b.mp4"}}, {}])
+def test_missing_points_without_a_court_are_told_once_and_no_page_is_promised(root, static):
+    content = ALONE | {"court": "none", "court_points": "q.csv"}
+    content |= {"cameras": ALONE["cameras"] | {"c": None}, "takes": {"t": {"videos": AB}}}
+    content |= {"cameras": static} if static else {}
+    found = [line for line in find(root, content) if "court_points" in line]
+    assert found == [
+        f"{FILE}: court_points: expected a file, found none at q.csv; correct the path or put it "
+        "there"
+    ]
+
+
+@pytest.mark.parametrize("header", ["camera;x_px;y_px;x_m;y_m;z_m", '"x_m"\t"y_m"\t"camera"'])
+def test_places_between_other_characters_than_commas_are_places(root, header):
+    """What is wrong with them is told where they are read."""
+    (root / "placed.csv").write_text(f"{header}\n")
+    assert find(root, ALONE | {"court": "none", "court_points": "placed.csv"}) == []
 
 
 def test_files_of_artefacts_must_be_members(root):

@@ -2,6 +2,7 @@
 
 import csv
 import math
+import re
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
@@ -34,9 +35,12 @@ def table(
     known = {*columns, *more}
     if len(set(header)) < len(header) or not set(columns) <= set(header) <= known:
         perhaps = f" and perhaps {','.join(more)}" if more else ""
+        mend = "correct the first line"
+        if len(header) == 1 and columns[0] in re.split(r"[;\t]", header[0]):
+            mend = "save it with commas between the cells, and points in numbers"
         raise InputError(
             f"{path}: expected the columns {','.join(columns)}{perhaps} with commas between, found "
-            f"{','.join(header)[:80] or 'an empty file'}; correct the first line"
+            f"{','.join(header)[:80] or 'an empty file'}; {mend}"
         )
     for line, row in rows[1:]:
         if len(row) != len(header):

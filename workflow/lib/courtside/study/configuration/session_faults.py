@@ -58,7 +58,8 @@ def find(
             paths |= dict(_take_paths(f"takes.{name}", take))
     yield from take_faults.of_other_programs(folder, file, content)
     for where, path in paths.items():
-        yield from _path_faults(f"{file}: {where}", path, known, root)
+        advice = BY_CLICKS if where == "court_points" and court != "none" else ""
+        yield from _path_faults(f"{file}: {where}", path, known, root, advice)
 
 
 def _name_faults(file: Path, content: Content) -> Iterator[str]:
@@ -206,8 +207,9 @@ def _paths(content: Content) -> Iterator[tuple[str, str]]:
             yield f"walks.{name}.{key}", path
     still = [camera for camera in content["cameras"].values() if "static" in camera]
     clicks = content.get("court_points", "")
-    clickable = len(still) == len(content["cameras"]) and not clicks.startswith(EXTERNAL)
-    if clicks and not clickable:  # else the study makes a page to click them on
+    clickable = len(still) == len(content["cameras"]) and content["court"] != "none"
+    # Else the study makes a page to click them on.
+    if clicks and (clicks.startswith(EXTERNAL) or not clickable):
         yield "court_points", clicks
 
 
@@ -330,24 +332,31 @@ def _wand_faults(file: Path, content: Content) -> Iterator[str]:
 
 def _point_faults(file: Path, content: Content, root: Path) -> Iterator[str]:
     """Yield the faults of court points, or points with your own coordinates."""
-    cameras, walks = content["cameras"], content.get("walks", {})
+    cameras, walks, court = content["cameras"], content.get("walks", {}), content["court"]
     clicked = "court_points" in content
     placed = clicked and has_places(root / content["court_points"])
-    if content["court"] == "none" and clicked and not placed:
+    there = clicked and is_there(root / content["court_points"])
+    fetched = content.get("court_points", "").startswith(EXTERNAL)
+    if court == "none" and not placed and (there or fetched):
         yield (
-            f"{file}: court_points: expected none without a court, found some; name their court, "
-            "or add the columns x_m, y_m and z_m with their places"
+            f"{file}: court_points: expected the columns x_m, y_m and z_m with the places of the "
+            f"points, as there is no court, found none in {content['court_points']}; add them, or "
+            "name the court of the points"
+        )
+    if court != "none" and placed and not walks:
+        yield (
+            f"{file}: court: expected 'none' beside points with their own places x_m, y_m, z_m, "
+            f"found {court!r}; set court: none, or remove these columns and name the points"
         )
     if placed and walks:
         yield (
             f"{file}: court_points: expected points of the court by their names beside `walks`, "
             "found places x_m, y_m, z_m; name the points, or remove the walks"
         )
-    there = clicked and is_there(root / content["court_points"])
     known = "known" in content.get("override", {}).get("calibrations", [])
     if there and not walks and (known or "calibration" not in content):
         yield from _unsized(file, content)
-    if content["court"] != "none" and walks and cameras and not clicked:
+    if court != "none" and walks and cameras and not clicked:
         yield (
             f"{file}: expected `court_points` for a session with a court, found none; say where "
             "they are to be saved, and the study makes a page to click them on, or set court: none"
@@ -442,7 +451,7 @@ def conditions(config_file: str, config: Content, found: dict[str, tuple]) -> li
 
 
 def _path_faults(
-    where: str, path: str, known: dict[str, Artefact] | None, root: Path
+    where: str, path: str, known: dict[str, Artefact] | None, root: Path, advice: str
 ) -> Iterator[str]:
     if path.startswith(SIMULATED) or re.fullmatch(CALIBRATED, path):
         return
@@ -450,7 +459,7 @@ def _path_faults(
         if not is_there(root / path):
             yield (
                 f"{where}: expected a file, found none at {path}; correct the path or put it there"
-                + BY_CLICKS * where.endswith(": court_points")
+                + advice
             )
         return
     if known is None:

@@ -1,6 +1,6 @@
 """Building sessions from their files, and variations of virtual ones from a condition."""
 
-import csv
+import re
 from collections.abc import Iterable
 from dataclasses import replace
 from itertools import product
@@ -11,7 +11,7 @@ from courtside.study import paths
 from courtside.study.configuration import consent, schemas
 from courtside.study.configuration.sessions import Device, FixedCamera, Session, Subject, Take
 from courtside.study.configuration.yaml_files import Content
-from courtside.study.errors import InputError, StrPath
+from courtside.study.errors import LONGEST, InputError, StrPath
 
 KINDS = {  # of devices, by the ending of their recording; a folder is one of a depth camera
     ".bvh": "inertial",
@@ -46,11 +46,14 @@ def is_there(path: Path) -> bool:
 
 
 def has_places(path: Path) -> bool:
-    """Tell whether a table of clicked points states their places, m; False if it is no table."""
+    """Tell whether a table of clicked points states their places, m; False if it is no table.
+
+    Also one with other characters than commas between the cells, which is refused later.
+    """
     try:
-        with path.open(encoding="utf-8-sig", newline="") as stream:
-            return "x_m" in [cell.strip() for cell in next(csv.reader(stream), [])]
-    except (OSError, ValueError, csv.Error):
+        with path.open(encoding="utf-8-sig") as stream:
+            return "x_m" in re.split(r"[\s,;\"']+", stream.readline(LONGEST))
+    except (OSError, ValueError):
         return False
 
 
