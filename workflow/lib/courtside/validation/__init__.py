@@ -5,6 +5,7 @@ bodies: `remarks`: a mass that does not go with the height
 calibrated: `faults`: cameras and sizes against the calibration file, sizes of a camera's recordings
 views: `faults`: one view given for two cameras, exchanged cameras
 lengths: `faults`, `remarks`: numbers of frames and rates of the cameras of a take
+points: `check`: clicked points: their file, their pictures, their number
 keypoint_folders: `check`: another program's 2D keypoints: their frames, skeletons and cameras
 stated_times: `faults`, `remarks`: times that a session states, against its videos
 providers: `check`: execution providers of pose networks that the installed onnxruntime lacks

@@ -3,7 +3,7 @@
 Recordings that jobs make or fetch are checked once they are there.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from courtside.records.devices.clocks import are_stated
@@ -11,7 +11,15 @@ from courtside.study.configuration.session_files import is_there
 from courtside.study.configuration.sessions import Session, Study, Take
 from courtside.study.errors import InputError
 from courtside.study.methods import Calibration, fewer_images
-from courtside.validation import bodies, calibrated, keypoint_folders, lengths, stated_times, views
+from courtside.validation import (
+    bodies,
+    calibrated,
+    keypoint_folders,
+    lengths,
+    points,
+    stated_times,
+    views,
+)
 from courtside.validation.remembered import Remembered
 from courtside.video.glance import Glance
 
@@ -25,7 +33,7 @@ def check(study: Study, remembered: Remembered) -> list[str]:
     remarks: list[str] = []
     for session in study.sessions.values():
         if not session.virtual:
-            found = _Session(session, remembered, study.skeleton_file)
+            found = _Session(session, study, remembered)
             faults += found.faults()
             remarks += found.remarks()
     remembered.save()
@@ -37,9 +45,7 @@ def check(study: Study, remembered: Remembered) -> list[str]:
 class _Session:
     """A session and a look at each of its recordings that is there."""
 
-    def __init__(
-        self, session: Session, remembered: Remembered, skeleton_file: Callable[[str], Path]
-    ) -> None:
+    def __init__(self, session: Session, study: Study, remembered: Remembered) -> None:
         self._session, self._remembered = session, remembered
         self._unreadable: list[str] = []
         self._static = {
@@ -61,9 +67,11 @@ class _Session:
             for look in self._look(path, film=True)
         }
         self._keypoints = {
-            name: keypoint_folders.check(take, self._takes[name], skeleton_file)
+            name: keypoint_folders.check(take, self._takes[name], study.skeleton_file)
             for name, take in session.takes.items()
         }
+        sizes = {name: next(iter(found.values())) for name, found in self._sizes().items()}
+        self._points = points.check(session, study.court_file(session), sizes)
         others = [*session.walks.values(), *_filmed_by_devices(session)]
         for path in others:
             self._look(path)
@@ -96,6 +104,7 @@ class _Session:
         for name, take in self._session.takes.items():
             for line in (*self._take_faults(name, take), *self._keypoints[name][0]):
                 yield f"{file}: takes.{name}: {line}"
+        yield from self._points[0]
         shared = [*self._shared_files()]
         yield from (f"{file}: {line}" for line in shared or self._board_faults())
         yield from (f"{file}: {line}" for line in self._few_pictures())
@@ -104,6 +113,7 @@ class _Session:
         """Yield what is worth a look."""
         for line in bodies.remarks(self._session.subjects):
             yield f"{self._session.file}: {line}"
+        yield from self._points[1]
         for name, take in self._session.takes.items():
             said = lengths.remarks(self._takes[name], synchronised=take.synchronised)
             times = stated_times.remarks(take, self._takes[name])

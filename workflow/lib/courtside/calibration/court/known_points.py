@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from numpy.typing import NDArray
 
@@ -64,7 +65,9 @@ def calibrate(
         if way.linear:
             found[name] = resection.dlt(xyz, xy, size=size, name=name)
             continue
-        known = {"K": lenses[name].K, "dist": lenses[name].dist} if way.board else {}
+        known: dict[str, Any] = {}
+        if way.board:
+            known = {"K": lenses[name].K, "dist": lenses[name].dist}
         found[name] = misfits.fitted(
             xyz,
             xy,
