@@ -36,10 +36,9 @@ def main(
         wide, lost = resection.widened(known, base, again.which), again.lines
         read = {take["take"]: clocks.read(take["sync"])[1] for take in takes}
         seen, rows = knocks.in_all(again.cameras or base, wide, again.parts, read, limits)
-        told = seen, limits, points(paths, base, weights)
         theirs = in_file(paths.calibration, names, override, unit)
         kept = {"calibrated": theirs, "found_again": again.cameras}
-        found = refinement.refine(base, wide, *told, **kept)
+        found = refinement.refine(base, wide, seen, limits, points(paths, base, weights), **kept)
     except InputError as error:
         found = refinement.unchanged(base, known, str(error))
     covariance = known if found.taken == "base" else found.covariance

@@ -5,6 +5,7 @@ picture_size: `relation`, `scaled_size`, `advice`: a video's size against the ca
 camera_fields: checked numbers of calibration files (`numbers`, `pose`, `five_coefficients`)
 rotations: `rotation_from_rodrigues`, `rodrigues_from_rotation`, `interpolate`, `invert`, `composed`
 similarity: `Sim3`, `umeyama`, `rigid`, `fit_many`, `kabsch`
+robust_similarity: `fit`, `triples`: the similarity on which most points agree
 interpolation: `linear`, `between`, `nearest`, `shares`
 boxes: `usual_side`
 epipolar: `straight_px`, `relative_pose`, `fundamental`, `lines`, `distance_px`, `ray_sines`

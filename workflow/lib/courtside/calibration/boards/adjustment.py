@@ -372,5 +372,5 @@ def _per_step(state: _State, fixed: _Problem, step: NDArray) -> NDArray:
     beside = np.array([[at.get(int(number) + d, -1) for d in (-1, 1)] for number in step])
     moved = [_placed(replace(state, boards=state.boards[both]), fixed).network for both in beside.T]
     per_step = (problem.residuals(moved[1]) - problem.residuals(moved[0])) / 2
-    at_ends: NDArray = (beside < 0).any(axis=1)
+    at_ends = np.asarray((beside < 0).any(axis=1))
     return np.where(at_ends[fixed.picture, None], 0.0, np.nan_to_num(per_step))

@@ -86,9 +86,8 @@ def calibrate(
     clicked = np.stack([np.asarray(clicks[name], float) for name in sizes])
     crossing = np.stack([click_checks.crossings(c, court.xyz) for c in solved.cameras])
     unplaced = np.full_like(court.xyz, np.nan)
-    table = click_checks.ClickErrors(
-        court.points, tuple(sizes), unplaced, projected, clicked, crossing
-    )
+    seen = unplaced, projected, clicked, crossing
+    table = click_checks.ClickErrors(court.points, tuple(sizes), *seen)
     sigma_px = joint_adjustment.largest_click_sigma(click_sigma_px, solved.cameras)
     wrong = click_checks.find_wrong_clicks(table, sigma_px=sigma_px)
     warnings = [*map(str, wrong), *_scattered(solved, click_sigma_px), *doubts]

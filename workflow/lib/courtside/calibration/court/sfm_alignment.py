@@ -10,9 +10,8 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration.court import robust_similarity
 from courtside.calibration.court.court import ClickedPoints, Court
-from courtside.geometry import triangulation
+from courtside.geometry import robust_similarity, triangulation
 from courtside.geometry.camera import Camera
 from courtside.geometry.similarity import Sim3
 from courtside.study.errors import InputError

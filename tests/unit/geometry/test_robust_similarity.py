@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from courtside.calibration.court import robust_similarity
-from courtside.geometry import similarity
+from courtside.geometry import robust_similarity, similarity
 from courtside.study.errors import InputError
 from fixtures.cameras.scene import points
 
