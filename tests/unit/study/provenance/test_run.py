@@ -161,7 +161,7 @@ def test_warnings_about_cameras_of_recorded_takes_are_told(study, tmp_path, monk
     said = run.warnings(study)
     where = f"results/north/calibration/{ways[0]}/quality.json"
     assert said[0] == f"Warning: north: camera left moved; see {where}"
-    assert said[3:] == [f"Warning: north: 2 more warnings in {where}"]
+    assert said[3:] == [f"Warning: north: 2 more, see {where}"]
     quality.write_text(json.dumps({"warnings": [], "remarks": ["cameras refined by people"]}))
     assert run.warnings(study) == [f"north: cameras refined by people; see {where}"]
     virtual = {"north": replace(recorded, name="north", virtual={"seed": 1})}

@@ -155,7 +155,7 @@ def warnings(study: Study) -> list[str]:
             told = content.get("warnings", [])
             found += [f"Warning: {name}: {line}; see {path}" for line in told[:N_WARNINGS]]
             more = len(told) - N_WARNINGS
-            found += [f"Warning: {name}: {more} more warnings in {path}"] * (more > 0)
+            found += [f"Warning: {name}: {more} more, see {path}"] * (more > 0)
             found += [f"{name}: {line}; see {path}" for line in content.get("remarks", ())]
     return found
 
