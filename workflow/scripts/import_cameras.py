@@ -9,7 +9,8 @@ from courtside.study.execution.script import run
 def main(
     calibration_path, cameras_toml, quality_json, *, names, crops_px, scales, override, unit=None
 ):
-    theirs = file_formats.rename(file_formats.read(calibration_path, unit), names)
+    in_file = file_formats.read(calibration_path, unit)
+    theirs = file_formats.rename(calibration_path, in_file, names)
     file_formats.check_apart(calibration_path, theirs)
     points_px = override.get("principal_point_px", {})
     found = file_formats.with_principal_points(theirs, points_px)
@@ -25,8 +26,8 @@ def main(
         "covariance": "unknown: the file gives none",
     }
     if points_px:
-        in_file = {c.name: c.K[:2, 2].tolist() for c in theirs if c.name in points_px}
-        quality["override"] = {**override, "principal_point_px_in_file": in_file}
+        replaced = {c.name: c.K[:2, 2].tolist() for c in theirs if c.name in points_px}
+        quality["override"] = {**override, "principal_point_px_in_file": replaced}
     write_json(quality_json, quality)
 
 

@@ -427,6 +427,16 @@ def test_known_lenses_are_those_of_the_file_otherwise_of_the_study(tmp_path):
     assert list(file_formats.known_lenses(None, {}, tomls)) == ["left"]
 
 
+def test_lenses_of_other_cameras_are_told_with_their_file_and_key(tmp_path):
+    path = tmp_path / "lenses.toml"
+    cameras.write_toml(path, [cameras.plain("port0", (1920, 1080), 1.0)], source="test")
+    with pytest.raises(InputError) as caught:
+        file_formats.known_lenses(path, {"a": "a"}, [])
+    assert str(caught.value).startswith(
+        f"lenses: {path}: camera a: expected 'a' in the calibration, found port0; "
+    )
+
+
 def test_lenses_do_not_depend_on_where_their_cameras_stood(tmp_path):
     pose = np.column_stack([np.eye(3), [0.0, 0.0, 5000.0]])
     far = replace(cameras.plain("left", (1920, 1080), 1.0), cam_from_world=pose)
@@ -452,7 +462,9 @@ def test_a_calibration_without_cameras_is_refused(tmp_path, lenses):
 
 
 def test_renaming_picks_and_orders():
-    picked = file_formats.rename(named("Cam 1", "Cam 2", "Cam 3"), {"left": "Cam 3", "c": "Cam 1"})
+    picked = file_formats.rename(
+        "x.toml", named("Cam 1", "Cam 2", "Cam 3"), {"left": "Cam 3", "c": "Cam 1"}
+    )
     assert [camera.name for camera in picked] == ["left", "c"]
     np.testing.assert_array_equal(picked[0].K, K)
 
@@ -460,13 +472,19 @@ def test_renaming_picks_and_orders():
 @pytest.mark.parametrize(
     ("names", "message"),
     [
-        ({"left": "Cam 4"}, "camera left: expected 'Cam 4' in the calibration, found Cam 1, Cam 2"),
-        ({"left": "Cam 1", "right": "Cam 1"}, "camera left: expected a camera of its own"),
+        (
+            {"left": "Cam 4"},
+            r"^x.toml: camera left: expected 'Cam 4' in the calibration, found Cam 1, Cam 2; ",
+        ),
+        (
+            {"left": "Cam 1", "right": "Cam 1"},
+            r"^x.toml: camera left: expected a camera",
+        ),
     ],
 )
 def test_renaming_to_nothing_is_refused(names, message):
     with pytest.raises(InputError, match=message):
-        file_formats.rename(named("Cam 1", "Cam 2"), names)
+        file_formats.rename("x.toml", named("Cam 1", "Cam 2"), names)
 
 
 @pytest.mark.parametrize(

@@ -125,8 +125,14 @@ def test_cameras_that_share_no_picture_are_named():
 def test_other_faults_are_one_line():
     places = boards_made.places(12, 5)
     seen = boards_made.seen(BOARD, RIG, places, 0.2, 1)
-    with pytest.raises(InputError, match=r"board.floor: expected a picture .* found 'kitchen'"):
+    listed = r"board.floor: expected a picture .* found 'kitchen'; name one .*: {}$"
+    names = ", ".join(seen.pictures)
+    with pytest.raises(InputError, match=listed.format(names)):
         adjustment.calibrate(BOARD, seen, SIZES, floor="kitchen", lenses={c.name: c for c in RIG})
+    many = boards_made.seen(BOARD, RIG, boards_made.places(26, 5), 0.2, 1)
+    names = ", ".join(many.pictures[:20])
+    with pytest.raises(InputError, match=listed.format(f"{names} and 6 more")):
+        adjustment.calibrate(BOARD, many, SIZES, floor="kitchen", lenses={c.name: c for c in RIG})
     few = seen.picture < 3
     rows = {key: getattr(seen, key)[few] for key in ("camera", "picture", "corner", "xy")}
     with pytest.raises(InputError, match=r"camera c0: expected 4 pictures or more .*give `lenses`"):

@@ -87,6 +87,21 @@ def test_a_fault_of_a_person_states_the_unit(key, value, said):
     assert f"s.yaml: subjects.p1.{key}: {said}" in found
 
 
+@pytest.mark.parametrize(
+    ("target", "key", "value", "limit"),
+    [
+        ("board", "square_m", 54, 1),
+        ("board", "marker_m", 40.5, 1),
+        ("wand", "length_m", 800, 10),
+        ("wand", "middle_m", 200, 10),
+    ],
+)
+def test_a_length_of_a_target_states_the_unit(target, key, value, limit):
+    found = schemas.faults({target: {key: value}}, "session", Path("s.yaml"))
+    said = f"s.yaml: {target}.{key}: expected at most {limit} (metres), found {value}"
+    assert said in found
+
+
 def test_names_and_kinds_of_values_are_described_in_words():
     session = {"court": "Badminton", "cameras": {}, "takes": {"Take 1": None, "t": {"trim_s": 1}}}
     found = schemas.faults(session, "session", Path("s.yaml"))

@@ -23,7 +23,7 @@ from courtside.calibration.foreign import (
 from courtside.geometry import camera as camera_files
 from courtside.geometry import camera_fields
 from courtside.geometry.camera import Camera
-from courtside.study.errors import InputError, StrPath, reading
+from courtside.study.errors import InputError, StrPath, about, reading
 
 LARGEST_BYTES = 1 << 24  # ASSUME: far above any calibration: a larger file is another one
 APART_M = (0.1, 150.0)  # ASSUME: of the two cameras of a hall that are farthest apart
@@ -102,24 +102,24 @@ def check_apart(path: StrPath, cameras: Sequence[Camera]) -> None:
         )
 
 
-def rename(found: Iterable[Camera], names: Mapping[str, str]) -> list[Camera]:
+def rename(path: StrPath, found: Iterable[Camera], names: Mapping[str, str]) -> list[Camera]:
     """Pick the cameras of a session from a calibration, under the session's names, in their order.
 
-    `names` maps the name in the session to the name in the calibration. Raises `InputError` if the
-    calibration has no such camera, or two cameras of the session are the same one.
+    `names` maps the name in the session to the name in the calibration at `path`. Raises
+    `InputError` if it has no such camera, or two cameras of the session are the same one.
     """
     by_name = {camera.name: camera for camera in found}
     for ours, theirs in names.items():
         if theirs not in by_name:
             raise InputError(
-                f"camera {ours}: expected {theirs!r} in the calibration, found "
+                f"{path}: camera {ours}: expected {theirs!r} in the calibration, found "
                 f"{', '.join(by_name)}; give the camera its `name_in_calibration` in the session "
                 "file"
             )
         if list(names.values()).count(theirs) > 1:
             raise InputError(
-                f"camera {ours}: expected a camera of its own in the calibration, found {theirs!r} "
-                "given to another as well; correct the session file"
+                f"{path}: camera {ours}: expected a camera of its own in the calibration, found "
+                f"{theirs!r} given to another as well; correct the session file"
             )
     return [replace(by_name[theirs], name=ours) for ours, theirs in names.items()]
 
@@ -133,7 +133,8 @@ def known_lenses(
     """
     if path is not None:
         found = camera_fields.check_distinct(path, _found(Path(path))[0])
-        return {lens.name: lens for lens in rename(found, names)}
+        with about("lenses"):
+            return {lens.name: lens for lens in rename(path, found, names)}
     return {lens.name: lens for toml in tomls for lens in camera_files.read_toml(toml)}
 
 
@@ -144,7 +145,7 @@ def read_session(
 
     `names` are as of `rename`; `override` may hold `principal_point_px`.
     """
-    found = rename(read(path, unit), names)
+    found = rename(path, read(path, unit), names)
     return with_principal_points(found, override.get("principal_point_px", {}))
 
 

@@ -100,12 +100,12 @@ def reading(
 
 
 @contextlib.contextmanager
-def about(path: StrPath) -> Iterator[None]:
-    """Begin the lines of an `InputError` within the block with the file that they are about."""
+def about(what: StrPath) -> Iterator[None]:
+    """Begin the lines of an `InputError` within the block with the file or key they are about."""
     try:
         yield
     except InputError as error:
-        raise InputError(*(f"{path}: {line}" for line in error.lines)) from None
+        raise InputError(*(f"{what}: {line}" for line in error.lines)) from None
 
 
 def _raised_by_library(error: BaseException) -> bool:

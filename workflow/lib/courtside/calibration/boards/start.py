@@ -14,6 +14,7 @@ from courtside.geometry.camera import Camera, plain
 from courtside.study.errors import InputError
 
 FEWEST_CORNERS = 6  # ASSUME: of a view that is to tell a pose by itself
+SHOWN = 20  # pictures of a list in a message
 FEWEST_VIEWS = 4  # as of `chessboard`
 MISREAD, LEAST_OFF_PX = 0.1, 3.0  # ASSUME: of a square, and px: farther off is another corner
 FLAT_SHARE = 0.5  # ASSUME: of the corners of the right board
@@ -191,9 +192,11 @@ def _world(seen: Corners, views: dict[tuple[int, int], View], wanted: str | None
         return score.index(max(score))
     names = [name for name in seen.pictures if _same(name, wanted)]
     if not names or seen.pictures.index(names[0]) not in posed:
+        there = [seen.pictures[at] for at in sorted(posed)]
+        more = f" and {len(there) - SHOWN} more" if len(there) > SHOWN else ""
         raise InputError(
             f"board.floor: expected a picture that shows {FEWEST_CORNERS} corners of the board or "
-            f"more, found {wanted!r}; name one of those that do"
+            f"more, found {wanted!r}; name one of those that do: {', '.join(there[:SHOWN])}{more}"
         )
     return seen.pictures.index(names[0])
 
