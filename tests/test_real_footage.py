@@ -328,7 +328,7 @@ def skeletons(folder, filmed, limits):
     clocks = {"synchronised": True, "stated": {}}
     run_script("synchronise_cameras", None, used["cameras"], used["pose2d"], used["sync"], **clocks)
     found = Inputs(**used | {"people": None})
-    run_script("associate_people", found, used["people"], several=False)
+    run_script("associate_people", found, used["people"], several=False, calibration="file")
     fused = {"fusion": {"used": NAMES, "rule": "robust"}, "sex_of": {"p1": None}, **limits}
     fused["recorded"] = True
     names = {"persons": ["p1"], "stated": [("p1", SEEN)], "take": "walk/t", "page": [], "file": "w"}

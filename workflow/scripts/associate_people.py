@@ -8,10 +8,10 @@ from courtside.study.execution import log
 from courtside.study.execution.script import run
 
 
-def main(paths, people_npz, *, several):
+def main(paths, people_npz, *, several, calibration):
     seen = footage.read(paths.cameras, paths.pose2d, None, paths.sync, sure_clocks=several)
     lines = court.read(paths.court) if paths.get("court") else None
-    found, line = everybody.find(seen, skeleton.read(paths.skeleton), lines)
+    found, line = everybody.find(seen, skeleton.read(paths.skeleton), lines, calibration)
     log.logger.info("%s", line)
     people.write(people_npz, found)
 

@@ -42,7 +42,9 @@ def test_where_nobody_is_placed_the_line_tells_whether_bodies_are_hidden(score, 
         wrong.append(replace(view, xy=xy, score=np.full(xy.shape[:3], score), **more))
     seen = [Footage(c, v, Clock()) for c, v in zip(CAMERAS, wrong, strict=True)]
     with pytest.raises(InputError, match="expected people whom two views see") as caught:
-        everybody.find(seen, walker.SKELETON, None)
+        everybody.find(seen, walker.SKELETON, None, "board")
+    assert "; the cameras stand up to " in str(caught.value)
+    assert str(caught.value).endswith(" m apart: if that is wrong, correct `square_m` of the board")
     assert ("0% in c0" in str(caught.value)) == hidden
     assert ("film whole bodies" in str(caught.value)) == hidden
 

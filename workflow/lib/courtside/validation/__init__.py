@@ -2,6 +2,7 @@
 
 check: `check`: all sessions of a study; every fault in one `InputError`
 bodies: `remarks`: a mass that does not go with the height
+boards: `remarks`: a board of an impossible size
 calibrated: `faults`: cameras and sizes against the calibration file, sizes of a camera's recordings
 views: `faults`: one view given for two cameras, exchanged cameras
 lengths: `faults`, `remarks`: numbers of frames and rates of the cameras of a take

@@ -12,6 +12,7 @@ from courtside.study.configuration.sessions import Session, Study, Take
 from courtside.study.errors import InputError
 from courtside.study.methods import Calibration, fewer_images
 from courtside.validation import (
+    boards,
     bodies,
     calibrated,
     keypoint_folders,
@@ -111,7 +112,8 @@ class _Session:
 
     def remarks(self) -> Iterator[str]:
         """Yield what is worth a look."""
-        for line in bodies.remarks(self._session.subjects):
+        board = boards.remarks(self._session.board)
+        for line in (*bodies.remarks(self._session.subjects), *board):
             yield f"{self._session.file}: {line}"
         yield from self._points[1]
         for name, take in self._session.takes.items():

@@ -17,9 +17,15 @@ from courtside.study.errors import InputError
 SURE = 0.5  # ASSUME: score of a joint that a network sees, not guesses
 
 
-def find(seen: Sequence[Footage], joints: Skeleton, court: Court | None) -> tuple[People, str]:
+def find(
+    seen: Sequence[Footage],
+    joints: Skeleton,
+    court: Court | None,
+    calibration: str | None = None,
+) -> tuple[People, str]:
     """Associate the tracklets of all cameras of a take; also return what the log says.
 
+    `calibration` is the name of that by which the cameras were found, for messages.
     Raises `InputError` where cameras share no time, people have not the size of people, or nobody
     can be placed.
     """
@@ -35,14 +41,15 @@ def find(seen: Sequence[Footage], joints: Skeleton, court: Court | None) -> tupl
         )
     xy = [resampling.resample(v, time_s, c)[0] for v, c in zip(limbs, clocks, strict=True)]
     trunk = [at for at, name in enumerate(names) if name.endswith(("hip", "shoulder"))]
-    scale.check([one.camera for one in seen], xy, names)
+    cameras = [one.camera for one in seen]
+    scale.check(cameras, xy, names, calibration)
     mirror = [chosen.index(joints.mirror()[joint]) for joint in chosen]
     worn = [
         v.clothing[:, resampling.nearest(v, time_s, c)] for v, c in zip(views, clocks, strict=True)
     ]
     try:
         found = associate.associate(
-            [one.camera for one in seen],
+            cameras,
             xy,
             time_s,
             trunk=trunk,
@@ -52,7 +59,8 @@ def find(seen: Sequence[Footage], joints: Skeleton, court: Court | None) -> tupl
             clothing=worn,
         )
     except InputError as error:
-        raise InputError(f"{error}{_hidden(limbs)}") from None
+        size = scale.apart(cameras, calibration)
+        raise InputError(f"{error}{_hidden(limbs)}; {size}") from None
     frames_s = [c.to_reference(v.time_s) for c, v in zip(clocks, views, strict=True)]
     index = {
         view.camera: associate.on_frames(rows, time_s, frame_s)

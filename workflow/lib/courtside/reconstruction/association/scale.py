@@ -14,6 +14,7 @@ from courtside.geometry.camera_fields import METRES
 from courtside.geometry.triangulation import triangulate_all
 from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
+from courtside.study.methods import ALONE, Calibration
 
 # ASSUME: lengths of trunks of people from children on, and the one that a unit is guessed by; a
 # median over many views is nearer to the true one than the limits are.
@@ -21,6 +22,14 @@ TRUNK_M = (0.25, 0.9)
 USUAL_M = 0.5
 MOST_INSTANTS = 60
 AGREE = 0.05  # ASSUME: views of one person meet within this share of the trunk in the picture
+# What defines the scale, by the kind of a calibration; of others the court does.
+LENGTHS = {
+    "board": "`square_m` of the board",
+    "dlt": "the places of the points in the court's file",
+    "known": "the places of the points (x_m, y_m and z_m, or those of the court's file)",
+    "wand": "`length_m` of the wand",
+    ALONE: "`height_m` of the subjects, or `known_lengths`",
+}
 LEAST_FOUND = 10  # ASSUME: pairs of views; fewer say nothing
 
 
@@ -51,22 +60,51 @@ def _ends(joints: NDArray, ends: Sequence[int]) -> NDArray:
     return joints[:, list(ends)].reshape(len(joints), 2, 2, 2).mean(axis=2)
 
 
-def check(cameras: Sequence[Camera], xy: Sequence[NDArray], names: Sequence[str]) -> None:
-    """Raise `InputError` if the people of a take are too small or too large; as for `trunks`."""
+def check(
+    cameras: Sequence[Camera], xy: Sequence[NDArray], names: Sequence[str], calibration: str | None
+) -> None:
+    """Raise `InputError` if the people of a take are too small or too large; as for `trunks`.
+
+    `calibration` is the name of that by which the cameras were found, if it is to be mended.
+    """
     found = trunks(cameras, xy, names)
     middle = float(np.median(found)) if len(found) >= LEAST_FOUND else USUAL_M
     if TRUNK_M[0] <= middle <= TRUNK_M[1]:
         return
-    fits = {unit: middle * metres for unit, metres in METRES.items()}
-    unit, size_m = min(fits.items(), key=lambda pair: abs(np.log(pair[1] / USUAL_M)))
-    mend = "calibrate again with a known length"
-    if TRUNK_M[0] <= size_m <= TRUNK_M[1]:
-        mend = (
-            f"its lengths are likely in {unit} ({size_m:.2f} m): write `unit: {unit}` under "
-            "calibration in the session file"
-        )
     raise InputError(
         f"cameras {', '.join(camera.name for camera in cameras)}: expected people with trunks of "
         f"{TRUNK_M[0]:g} to {TRUNK_M[1]:g} m, found {middle:.3g} m, the median of {len(found)} "
-        f"pairs of views; the scale of the calibration is wrong: {mend}"
+        f"pairs of views; the scale of the calibration is wrong: {_mend(middle, calibration)}"
     )
+
+
+def apart(cameras: Sequence[Camera], calibration: str | None) -> str:
+    """Return how far apart cameras stand, and what to check where that is wrong."""
+    centres = np.array([camera.centre_in_world for camera in cameras])
+    apart_m = np.linalg.norm(centres[:, None] - centres, axis=-1).max()
+    lengths = _lengths(calibration) or "their unit"
+    return f"the cameras stand up to {apart_m:.3g} m apart: if that is wrong, correct {lengths}"
+
+
+def _mend(trunk: float, calibration: str | None) -> str:
+    """Return what to do about trunks of such a length, in the cameras' unit."""
+    fits = {unit: trunk * metres for unit, metres in METRES.items()}
+    unit, size_m = min(fits.items(), key=lambda pair: abs(np.log(pair[1] / USUAL_M)))
+    in_unit = TRUNK_M[0] <= size_m <= TRUNK_M[1]
+    if lengths := _lengths(calibration):
+        times = trunk / USUAL_M
+        size = f"{times:.2g} times too large" if times > 1 else f"{1 / times:.2g} times too small"
+        return f"correct {lengths}, about {size}{f', as if in {unit}' * in_unit}"
+    if in_unit and calibration is not None:
+        return (
+            f"its lengths are likely in {unit} ({size_m:.2f} m): write `unit: {unit}` under "
+            "calibration in the session file"
+        )
+    return "calibrate again with a known length"
+
+
+def _lengths(calibration: str | None) -> str:
+    """Return the lengths that a calibration takes its scale from; empty for those of a file."""
+    way = None if calibration is None else Calibration.parse(calibration)
+    way = Calibration.parse(way.base) if way and way.base else way
+    return "" if way is None or way.kind == "file" else LENGTHS.get(way.kind, LENGTHS["dlt"])
