@@ -63,7 +63,6 @@ rule associate_people:
     params:
         code=code("associate_people.py"),
         several=lambda w: len(take_of(w).subjects) > 1,
-        calibration="{calibration}",
     script:
         "../scripts/associate_people.py"
 

@@ -1,4 +1,4 @@
-"""Checks of sessions before any job: sizes, rates, copies, exchanged cameras, stated bodies.
+"""Checks of sessions before any job: sizes, rates, copies, exchanged cameras, clicked points.
 
 check: `check`: all sessions of a study; every fault in one `InputError`
 bodies: `remarks`: a mass that does not go with the height

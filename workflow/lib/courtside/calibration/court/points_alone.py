@@ -66,20 +66,7 @@ def calibrate(
         "click_bias_px": click_bias_px,
         "click_loss": click_loss,
     }
-    starts = []
-    for name, size in sizes.items():
-        sigma_px = joint_adjustment.click_sigma(click_sigma_px, size)
-        found = misfits.fitted(
-            court.xyz,
-            clicks[name],
-            size,
-            sigma_px=sigma_px,
-            xyz_sigma=court.sigma_m,
-            edges=line_edges.on_lines(court),
-            name=name,
-            placed=court.placed,
-        )
-        starts.append(found.camera)
+    starts = [_start(court, clicks[name], name, sizes[name], click_sigma_px) for name in sizes]
     solved = _solved(_lenses(starts), clicks, court, weights)
     doubts = place_checks.check_cameras(court, solved.cameras, clicks)
     projected = np.stack([project(camera, court.xyz) for camera in solved.cameras])
@@ -92,6 +79,22 @@ def calibrate(
     wrong = click_checks.find_wrong_clicks(table, sigma_px=sigma_px)
     warnings = [*map(str, wrong), *_scattered(solved, click_sigma_px), *doubts]
     return Found(solved, dict(zip(sizes, table.error_px, strict=True)), wrong, warnings)
+
+
+def _start(
+    court: Court, xy: NDArray, name: str, size: tuple[int, int], click_sigma_px: float
+) -> Camera:
+    """Return a camera by itself from its clicks (P, 2) px."""
+    return misfits.fitted(
+        court.xyz,
+        xy,
+        size,
+        sigma_px=joint_adjustment.click_sigma(click_sigma_px, size),
+        xyz_sigma=court.sigma_m,
+        edges=line_edges.on_lines(court),
+        name=name,
+        placed=court.placed,
+    ).camera
 
 
 def summary(found: Found) -> dict[str, Any]:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.calibration.court.court import Court
 from courtside.reconstruction import resampling
@@ -18,10 +19,7 @@ SURE = 0.5  # ASSUME: score of a joint that a network sees, not guesses
 
 
 def find(
-    seen: Sequence[Footage],
-    joints: Skeleton,
-    court: Court | None,
-    calibration: str | None = None,
+    seen: Sequence[Footage], joints: Skeleton, court: Court | None, calibration: str | None = None
 ) -> tuple[People, str]:
     """Associate the tracklets of all cameras of a take; also return what the log says.
 
@@ -34,11 +32,7 @@ def find(
     chosen = [joints.index(name) for name in names]
     limbs = [replace(v, xy=v.xy[:, :, chosen], score=v.score[:, :, chosen]) for v in views]
     time_s = resampling.common_times(views, clocks)
-    if not len(time_s):
-        raise InputError(
-            f"{', '.join(view.camera for view in views)}: expected cameras that film at one time, "
-            "found none by their clocks; correct `clocks` of the take (t_ref = t_own - offset_s)"
-        )
+    _check_common(views, time_s)
     xy = [resampling.resample(v, time_s, c)[0] for v, c in zip(limbs, clocks, strict=True)]
     trunk = [at for at, name in enumerate(names) if name.endswith(("hip", "shoulder"))]
     cameras = [one.camera for one in seen]
@@ -59,8 +53,7 @@ def find(
             clothing=worn,
         )
     except InputError as error:
-        size = scale.apart(cameras, calibration)
-        raise InputError(f"{error}{_hidden(limbs)}; {size}") from None
+        raise InputError(f"{error}{_hidden(limbs)}; {scale.apart(cameras, calibration)}") from None
     frames_s = [c.to_reference(v.time_s) for c, v in zip(clocks, views, strict=True)]
     index = {
         view.camera: associate.on_frames(rows, time_s, frame_s)
@@ -70,6 +63,15 @@ def find(
     confidence = identity.confidence(found.doubts, len(ids))
     kept = {key: getattr(found, key) for key in ("placed", "time_s", "path", "doubts")}
     return People(views[0].model, ids, index=index, confidence=confidence, **kept), found.line()
+
+
+def _check_common(views: Sequence[Keypoints2D], time_s: NDArray) -> None:
+    """Raise `InputError` if cameras have no common times (T,)."""
+    if not len(time_s):
+        raise InputError(
+            f"{', '.join(view.camera for view in views)}: expected cameras that film at one time, "
+            "found none by their clocks; correct `clocks` of the take (t_ref = t_own - offset_s)"
+        )
 
 
 def _hidden(limbs: Sequence[Keypoints2D]) -> str:
