@@ -92,7 +92,7 @@ def test_a_board_calibrates_all_cameras(gym):
     found = cameras.read_toml(results / "calibration/board/cameras.toml")
     quality = json.loads((results / "calibration/board/quality.json").read_text())
     assert abs(quality["neighbour_mm"]["mean"]) < 0.3
-    assert quality["warnings"][0].startswith("board: the world is the board of picture")
+    assert quality["remarks"][0].startswith("board: the world is the board of picture")
     known = covariance.read(results / "calibration/board/covariance.npz")
     assert known.cameras == [camera.name for camera in found]
     assert (np.diag(known.covariance)[:6] > 0).all()
@@ -123,7 +123,7 @@ def test_a_wand_calibrates_all_cameras(gym):
         assert apart[0] == pytest.approx(apart[1], abs=0.02)
     quality = json.loads((results / "calibration/wand/quality.json").read_text())
     assert quality["sigma_px"] == pytest.approx(0.5, rel=0.1)
-    assert quality["warnings"][0].startswith("wand: the origin is the middle of the wand's path")
+    assert quality["remarks"][0].startswith("wand: the origin is the middle of the wand's path")
     assert (
         np.diag(covariance.read(results / "calibration/wand/covariance.npz").covariance)[:6] > 0
     ).all()
