@@ -46,8 +46,7 @@ def main(
     report |= {"line": found.line, "warnings": [*(wrong if is_kept else []), *lost]}
     mended = [] if is_kept else [f"put right here, by people alone: {line}" for line in wrong]
     report["remarks"] = [found.line, *mended, *knocks.lines(rows)]
-    for line in report["warnings"] + report["remarks"]:
-        log.logger.info("%s", line)
+    log.logger.info("%s", "; ".join(report["warnings"] + report["remarks"]))
     report |= {"taken": found.taken, "verdicts": found.verdicts, "wrong": found.wrong}
     report["expected_before_cm"] = expected_cm(paths.court, base, known)
     report["expected_volume_rms_cm"] = expected_cm(paths.court, found.cameras, covariance)
