@@ -96,7 +96,8 @@ def steps(folder, given):
         (given.cameras, pose2d, sync),
         {"synchronised": False, "stated": {}, **parameters["synchronise_cameras"]},
     )
-    yield "associate_people", (paths, made["people"]), {"several": len(given.persons) > 1}
+    who = {"several": len(given.persons) > 1, "calibration": given.cameras.parent.name}
+    yield "associate_people", (paths, made["people"]), who
     fusion = {"sex_of": dict.fromkeys(given.persons), "fusion": {"used": names, "rule": "robust"}}
     fusion |= {"recorded": True, **parameters["triangulate"]}
     yield "triangulate", (paths, made["raw"]), fusion

@@ -223,7 +223,7 @@ def test_scripts_are_called_by_benchmarks_that_the_next_tests_run():
 
 def test_long_take_gives_each_script_what_it_takes(tmp_path):
     given = SimpleNamespace(
-        cameras="cameras.toml", covariance=None, persons=["p1"], model="blazepose-full",
+        cameras=Path("file/cameras.toml"), covariance=None, persons=["p1"], model="blazepose-full",
         skeleton="blazepose33",
     )  # fmt: skip
     steps = list(long_take.steps(tmp_path, given))

@@ -578,7 +578,7 @@ def test_of_devices_alone_the_clock_of_the_first_is_the_reference(root, files, n
 @pytest.mark.parametrize("static", [{"a": {"static": "a.mp4"}, "b": {"static": "b.mp4"}}, {}])
 def test_missing_points_without_a_court_are_told_once_and_no_page_is_promised(root, static):
     content = ALONE | {"court": "none", "court_points": "q.csv"}
-    content |= {"cameras": ALONE["cameras"] | {"c": None}, "takes": {"t": {"videos": AB}}}
+    content |= {"cameras": ALONE["cameras"] | {"c": {}}, "takes": {"t": {"videos": AB}}}
     content |= {"cameras": static} if static else {}
     found = [line for line in find(root, content) if "court_points" in line]
     assert found == [
