@@ -26,12 +26,11 @@ def main(paths, cameras_toml, covariance_npz, quality_json, *, given, names):
         cameras.check_size(lens, sizes[name], f"board of camera {name}")
     floor = None if given.get("floor") is None else str(given["floor"])
     found = adjustment.calibrate(board, seen, sizes, lenses=lenses or None, floor=floor)
-    stated, known = floor is not None, bool(lenses)
-    report = quality.summary(found, seen, board, stated=stated, known=known)
+    report = quality.summary(found, seen, board, known=bool(lenses))
     for warning in report["warnings"]:
         log.logger.warning("%s", warning)
     cameras.write_toml(cameras_toml, found.cameras, source=f"board, {len(seen.pictures)} places")
-    covariance = camera_covariance.of_network(list(names), found.covariance)
+    covariance = camera_covariance.of_network(list(names), found.covariance, found.frame)
     camera_covariance.write(covariance_npz, covariance)
     write_json(quality_json, report)
 

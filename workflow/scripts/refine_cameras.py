@@ -1,5 +1,7 @@
 """Refine cameras by the people in takes: cameras, keypoints, clicks -> cameras, where better."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from courtside.calibration import file_formats
@@ -41,7 +43,7 @@ def main(
         found = refinement.refine(base, wide, seen, limits, points(paths, base, weights), **kept)
     except InputError as error:
         found = refinement.unchanged(base, known, str(error))
-    covariance = known if found.taken == "base" else found.covariance
+    covariance = known if found.taken == "base" else replace(found.covariance, frame=known.frame)
     wrong, is_kept = found.wrong, found.taken == "base"
     report |= {"line": found.line, "warnings": [*(wrong if is_kept else []), *lost]}
     mended = [] if is_kept else [f"put right here, by people alone: {line}" for line in wrong]

@@ -45,6 +45,24 @@ def test_without_noise_the_true_cameras_are_found(known):
         np.testing.assert_allclose(camera.K, true.K, atol=0.3)
 
 
+def test_without_a_board_on_the_floor_z_is_up_as_in_the_pictures():
+    """A board held upright defines no vertical: z would be horizontal."""
+    seen = boards_made.seen(BOARD, RIG, boards_made.places(25, 3)[1:], 0.1, 0)
+    lenses = {camera.name: camera for camera in RIG}
+    found = adjustment.calibrate(BOARD, seen, SIZES, lenses=lenses)
+    named = adjustment.calibrate(BOARD, seen, SIZES, lenses=lenses, floor=found.world)
+    assert (found.stated, named.stated, named.frame.any()) == (False, True, False)
+    ours, theirs = (np.array([c.centre_in_world for c in one.cameras]) for one in (found, named))
+    true = np.array([camera.centre_in_world for camera in RIG])
+    rotation, _ = rigid(true, ours)
+    tilt = np.arccos(rotation[2, 2])
+    assert tilt < 3 * np.sqrt(np.trace(found.frame)) < np.radians(15)
+    rotation, _ = rigid(true, theirs)
+    assert rotation[2, 2] < 0.7  # of the board
+    np.testing.assert_allclose(np.linalg.norm(ours, axis=1), np.linalg.norm(theirs, axis=1))
+    np.testing.assert_array_equal(found.covariance, named.covariance)
+
+
 def squares_in_sigmas(found, places):
     """Return the squared errors of the cameras' positions in their stated errors: 3 on average."""
     off = []

@@ -30,17 +30,21 @@ def solved(seen, known, **lenses):
 
 
 def told(found, seen, known):
-    return quality.summary(found, seen, BOARD, stated=True, known=known)["warnings"]
+    return quality.summary(found, seen, BOARD, known=known)["warnings"]
 
 
 def test_of_good_corners_nothing_is_told_but_numbers():
     seen, found = at_rest()
-    report = quality.summary(found, seen, BOARD, stated=True, known=False)
+    report = quality.summary(found, seen, BOARD, known=False)
     assert report["warnings"] == []
     assert "late_pictures" not in report
     assert report["rms_px"] == pytest.approx(dict.fromkeys(SIZES, 0.2), rel=0.2)
-    (floor,) = quality.summary(found, seen, BOARD, stated=False, known=False)["remarks"]
-    assert "z = 0 its plane" in floor
+    assert report["remarks"] == []
+    found = adjustment.calibrate(BOARD, seen, SIZES, lenses=LENSES)
+    report = quality.summary(found, seen, BOARD, known=True)
+    (floor,) = report["remarks"]
+    assert f"z is up as in the pictures, within {report['vertical_sigma_deg']:.0f} deg" in floor
+    assert f"at the board of picture {found.world}, not at the floor" in floor
     mean, spread, count = quality.neighbours_mm(found, seen, BOARD)
     assert abs(mean) < 0.2
     assert (spread < 2, count > 100) == (True, True)
@@ -91,10 +95,10 @@ def test_of_a_real_recording_the_clock_is_told():
     assert -0.3 < mean < 0.3
     assert spread < 0.9
     assert count > 900
-    report = quality.summary(found, seen, board, stated=False, known=True)
+    report = quality.summary(found, seen, board, known=True)
     assert report["late_pictures"]["cam_1"] == pytest.approx(-0.5, abs=0.2)
     (floor,), (scatter, clock) = report["remarks"], report["warnings"]
-    assert "z = 0 its plane" in floor
+    assert "z is up as in the pictures, within 2 degrees" in floor
     assert "the cameras did not film at one time" in scatter
     assert "camera cam_1: films probably 0.5 pictures early" in clock
     assert not any("give `lenses`" in line for line in report["warnings"])

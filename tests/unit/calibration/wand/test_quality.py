@@ -28,6 +28,7 @@ def test_numbers_by_camera():
     assert report["warnings"] == []
     (world,) = report["remarks"]
     assert world.startswith("wand: the origin is the middle of the wand's path")
+    assert f"within {report['vertical_sigma_deg']:.0f} degrees" in world
 
 
 def test_wrong_markers_that_two_cameras_see_are_counted():

@@ -3,6 +3,8 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
+from mpl_toolkits.mplot3d import proj3d
 
 from courtside.figures.style import oblique_view, style
 from courtside.figures.take import skeletons
@@ -24,7 +26,26 @@ def test_left_and_right_have_their_colours():
     colours = {line.get_color() for line in drawing.axes[0].lines}
     assert {style.LEFT, style.RIGHT, style.MIDDLE} <= colours
     labels = [text.get_text() for text in drawing.axes[1].texts]
-    assert sum("2.0 m high" in label for label in labels) == 3
+    assert sum("z = 2.0 m" in label for label in labels) == 3
+
+
+def test_labels_of_the_panels_do_not_overlap():
+    drawing = skeletons.draw(walker.points(), scene.ring(3), walker.SKELETON)
+    drawing.draw_without_rendering()
+    space, above = drawing.axes
+    (label,) = (text for text in space.texts if text.get_text() == "z (m)")
+    assert space.get_zlabel() == ""
+    x, y, _ = proj3d.proj_transform(*label.get_position_3d(), space.get_proj())
+    middle_px = space.transData.transform((x, y))[0]
+    assert middle_px + label.get_window_extent().width / 2 < above.get_tightbbox().x0
+
+
+@pytest.mark.parametrize(("down_m", "bottom_m"), [(0.0, 0.0), (1.2, -1.5)])
+def test_people_below_the_origin_are_drawn_in_the_box(down_m, bottom_m):
+    record = walker.points()
+    record = replace(record, xyz=record.xyz - [0, 0, down_m])
+    drawing = skeletons.draw(record, scene.ring(2), walker.SKELETON)
+    assert drawing.axes[0].get_zlim()[0] == bottom_m
 
 
 def test_a_take_without_any_point_is_drawn_empty():

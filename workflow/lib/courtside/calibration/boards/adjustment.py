@@ -1,8 +1,9 @@
 """All cameras and all places of a board, adjusted together, with covariance.
 
 The unknowns are poses and lenses of the cameras (`bundle.problem`) and the pose of the board in
-every picture but one, whose board is the world: z = 0 is its plane. Boards are eliminated, so that
-the cost grows with the number of pictures. Residuals have Cauchy weights. The boards' size is the
+every picture but one, whose board is the world: z = 0 is its plane. If it does not lie on the
+floor, z is turned afterwards to what is up in the pictures. Boards are eliminated, so that the cost
+grows with the number of pictures. Residuals have Cauchy weights. The boards' size is the
 only length: its error is added to the covariance.
 """
 
@@ -17,9 +18,11 @@ from courtside.calibration.boards.board import Board
 from courtside.calibration.boards.corners import Corners
 from courtside.calibration.bundle import problem, selection
 from courtside.calibration.bundle.problem import IMAGE, POSE, Network
+from courtside.calibration.people import world_frame
 from courtside.geometry import camera as cameras
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
+from courtside.geometry.similarity import Sim3
 from courtside.study.errors import InputError
 
 # ASSUME: what lenses and sensors usually are, standard deviations: nearly square pixels, a
@@ -41,7 +44,8 @@ class Found:
 
     cameras: list[Camera]
     covariance: NDArray  # of the network's columns, as of `records.covariance.of_network`
-    world: str  # the picture whose board is the world
+    world: str  # the picture whose board is at the origin
+    stated: bool  # whether this board lies on the floor; else z is up as in the pictures
     sigma_px: float  # of a corner, along each axis, by the bulk of the residuals
     factor: float  # by which the scatter of whole pictures widens the covariance
     error_px: NDArray  # (M, 2): of each corner; NaN of pictures that tell no pose
@@ -49,6 +53,13 @@ class Found:
     # and the standard deviation of that; NaN if pictures are in no order
     late: NDArray
     late_sigma: NDArray
+
+    @property
+    def frame(self) -> NDArray:
+        """Covariance of the world frame, as `CameraCovariance.frame` has it."""
+        if self.stated:
+            return np.zeros((3, 3))
+        return world_frame.error_of_pictures(self.cameras)
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +89,8 @@ def calibrate(
     """Calibrate cameras from the corners of a board that they see.
 
     `sizes` px of each camera's pictures. `lenses`, where they are known, are kept; else they are
-    adjusted too. `floor` names the picture whose board is the world, z towards who looks at it.
+    adjusted too. `floor` names the picture whose board is the world, z towards who looks at it; else
+    z is up as in the pictures, and x runs from the first camera to the second.
     Raises `InputError` if cameras share no picture, or the corners are not those of such a board.
     """
     plane = start.flat(board, seen)
@@ -110,9 +122,18 @@ def calibrate(
             replace(camera, cam_from_world=one.cam_from_world)
             for camera, one in zip(known, solved, strict=True)
         ]
-    name = seen.pictures[posed.world]
+    if floor is None:
+        solved = _upright(solved)
     late = _delays(state, fixed, sigma_px, seen)
-    return Found(solved, covariance, name, sigma_px, factor, error_px, *late)
+    name, stated = seen.pictures[posed.world], floor is not None
+    return Found(solved, covariance, name, stated, sigma_px, factor, error_px, *late)
+
+
+def _upright(solved: Sequence[Camera]) -> list[Camera]:
+    """Turn the world about its origin: z up as in the pictures; the covariance stays as it is."""
+    along = solved[1].centre_in_world - solved[0].centre_in_world
+    turn = world_frame.axes(world_frame.up_in_pictures(solved), along)
+    return [Sim3(1.0, turn, np.zeros(3)).camera(camera) for camera in solved]
 
 
 def _check_rigid(seen: Corners, error_px: NDArray) -> None:

@@ -10,6 +10,7 @@ from courtside.calibration.boards.adjustment import Found
 from courtside.calibration.boards.board import Board
 from courtside.calibration.boards.corners import Corners
 from courtside.calibration.bundle.problem import IMAGE, LENS, POSE
+from courtside.calibration.people import world_frame
 from courtside.geometry import triangulation
 
 # ASSUME: one camera is told whose corners fit worse by this factor, and by more than a pixel.
@@ -28,25 +29,26 @@ OF_GIVEN = (
 )
 
 
-def summary(
-    found: Found, seen: Corners, board: Board, *, stated: bool, known: bool
-) -> dict[str, Any]:
+def summary(found: Found, seen: Corners, board: Board, *, known: bool) -> dict[str, Any]:
     """Return for a JSON file how well the corners fit, warnings, and remarks.
 
     By camera: corners, pictures, `rms_px` per axis, standard deviations of the place (mm) and of
     the focal length, and of moving boards how late it films, in steps (`late_pictures`).
     `neighbour_mm`: error of the distance between neighbouring corners, triangulated from two
-    cameras or more, mean and standard deviation. `stated` says whether the session names the
-    picture on the floor, `known` whether it gives the lenses.
+    cameras or more, mean and standard deviation. `known` says whether the lenses are given.
     """
     own = [seen.camera == c for c in range(len(found.cameras))]
     rms_px = [float(np.sqrt(np.nanmean(found.error_px[rows] ** 2))) for rows in own]
-    remarks = [
-        f"board: the world is the board of picture {found.world}, z = 0 its plane; name the "
-        "picture in which it lies on the floor as `floor`"
-    ]
     report: dict[str, Any] = {"warnings": _warnings(found, seen, rms_px, known)}
-    report |= {"remarks": [] if stated else remarks, "world_of_picture": found.world}
+    report |= {"remarks": [], "world_of_picture": found.world}
+    if not found.stated:
+        vertical_deg = world_frame.vertical_sigma_deg(found.frame)
+        report["vertical_sigma_deg"] = vertical_deg
+        report["remarks"].append(
+            f"board: z is up as in the pictures, within {vertical_deg:.0f} degrees (standard "
+            f"deviation), and z = 0 is at the board of picture {found.world}, not at the floor; name "
+            "the picture in which it lies on the floor as `floor`"
+        )
     report |= {"sigma_px": found.sigma_px, "covariance_factor": found.factor}
     first = IMAGE * len(found.cameras)
     for c, camera in enumerate(found.cameras):

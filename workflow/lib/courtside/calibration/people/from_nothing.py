@@ -246,13 +246,12 @@ def summary(found: Found, takes: Sequence[str]) -> dict[str, Any]:
         zip((c.name for c in found.cameras), found.score.accepted_percent(), strict=True)
     )
     lowest = min(accepted, key=accepted.__getitem__)
-    vertical = np.sqrt(np.trace(found.covariance.frame[:2, :2]) / 2)
     return {
         "takes": list(takes),
         "held_out_joints_permille": round(share, 3),
         "accepted_percent": {name: round(float(value), 1) for name, value in accepted.items()},
         "scale_sigma_percent": round(100 * found.scale.sigma, 2),
-        "vertical_sigma_deg": round(float(np.degrees(vertical)), 2),
+        "vertical_sigma_deg": world_frame.vertical_sigma_deg(found.covariance.frame),
         "warnings": [line for line in found.warnings if line != unit.ONE_HEIGHT],
         "remarks": [line for line in found.warnings if line == unit.ONE_HEIGHT],
         "line": f"people alone: views of held-out joints disagree by {share:.1f} thousandths of "

@@ -29,9 +29,9 @@ class CameraCovariance:
     length along y (px), focal length along x over that along y, principal point (px), k1, k2, p1,
     p2.
 
-    `frame` (3, 3) is the covariance of the world frame itself where people define it: a small
-    rotation of the world about its x and y axes (rad), and a shift along z (m). The other errors do
-    not contain it. It is 0 where court points, a board or a file define the frame.
+    `frame` (3, 3) is the covariance of the world frame itself where people or the pictures define
+    it: a small rotation of the world about its x and y axes (rad), and a shift along z (m). The
+    other errors do not contain it. It is 0 where court points, a floor or a file define the frame.
     """
 
     cameras: list[str]
@@ -65,10 +65,17 @@ def columns(n_cameras: int) -> NDArray:
     return np.concatenate([poses, lenses], axis=1).ravel()
 
 
-def of_network(cameras: Sequence[str], covariance: NDArray) -> CameraCovariance:
-    """Build a `CameraCovariance` from the covariance of a network's columns (K, K)."""
+def of_network(
+    cameras: Sequence[str], covariance: NDArray, frame: NDArray | None = None
+) -> CameraCovariance:
+    """Build a `CameraCovariance` from the covariance of a network's columns (K, K).
+
+    `frame` (3, 3) is that of the world frame; without it the frame is exact.
+    """
     at = columns(len(cameras))
-    return CameraCovariance(list(cameras), covariance[np.ix_(at, at)])
+    exact = np.zeros((3, 3))
+    own = covariance[np.ix_(at, at)]
+    return CameraCovariance(list(cameras), own, exact if frame is None else frame)
 
 
 def write(path: StrPath, found: CameraCovariance) -> None:

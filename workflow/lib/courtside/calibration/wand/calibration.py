@@ -42,6 +42,11 @@ class Found:
     error_px: NDArray  # (C, F, M, 2): projected minus measured; NaN where either is missing
     adjusted: Adjusted
 
+    @property
+    def frame(self) -> NDArray:
+        """Covariance of the world frame, as `CameraCovariance.frame` has it."""
+        return np.zeros((3, 3)) if self.stated else world_frame.error_of_pictures(self.cameras)
+
 
 @dataclass(frozen=True, eq=False)
 class Floor:

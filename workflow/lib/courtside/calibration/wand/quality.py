@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle.problem import IMAGE, LENS, POSE
+from courtside.calibration.people import world_frame
 from courtside.calibration.wand import timing
 from courtside.calibration.wand.adjustment import WRONG_SIGMAS
 from courtside.calibration.wand.calibration import Found
@@ -57,6 +58,8 @@ def summary(found: Found, wand: Wand, seen: Seen, known: set[str]) -> dict[str, 
             report.setdefault(key, {})[camera.name] = value
     report["warnings"] = _warnings(found, wand) + _of_cameras(found, seen, known, late, late_sigma)
     report["remarks"] = [] if found.stated else [_world(found)]
+    if not found.stated:
+        report["vertical_sigma_deg"] = world_frame.vertical_sigma_deg(found.frame)
     return report
 
 
@@ -83,10 +86,12 @@ def _length_mm(found: Found, wand: Wand) -> dict[str, float | int]:
 
 
 def _world(found: Found) -> str:
+    vertical_deg = world_frame.vertical_sigma_deg(found.frame)
     return (
-        "wand: the origin is the middle of the wand's path, z is up as in the pictures, and x "
-        f"runs from camera {found.cameras[0].name} to {found.cameras[1].name}; set `floor` to "
-        "frames in which the wand lies on the floor, or click court points"
+        "wand: the origin is the middle of the wand's path, z is up as in the pictures, within "
+        f"{vertical_deg:.0f} degrees (standard deviation), and x runs from camera "
+        f"{found.cameras[0].name} to {found.cameras[1].name}; set `floor` to frames in which the "
+        "wand lies on the floor, or click court points"
     )
 
 

@@ -58,10 +58,10 @@ def of_floor(xyz: NDArray, above_m: float, cameras: Sequence[Camera]) -> Sim3:
 def of_cameras(xyz: NDArray, cameras: Sequence[Camera]) -> Sim3:
     """Return `world_from_cameras` without floor and points, from all markers (F, M, 3) m.
 
-    The origin is the middle of the wand's path, z is opposite to the mean y axis of the pictures,
-    and x runs from the first camera to the second, perpendicular to z.
+    The origin is the middle of the wand's path, z is up as in the pictures, and x runs from the
+    first camera to the second, perpendicular to z.
     """
-    up = rotations.unit(-np.mean([camera.cam_from_world[1, :3] for camera in cameras], axis=0))
+    up = world_frame.up_in_pictures(cameras)
     along = cameras[1].centre_in_world - cameras[0].centre_in_world
     turn = world_frame.axes(up, along)
     return Sim3(1.0, turn, -np.nanmedian(xyz.reshape(-1, 3) @ turn.T, axis=0))

@@ -18,6 +18,7 @@ PATHS = ("left_wrist", "right_wrist", "left_ankle", "right_ankle")
 PERCENTILES = (0.5, 99.5)  # of the joints' positions, shown: without gross outliers
 ARROW_M = 0.6
 N_POSES = 5
+DEEP_M = 0.5  # the box of people on the floor begins so far below it; others are not on z = 0
 
 
 def table(points: Keypoints3D) -> pd.DataFrame:
@@ -73,9 +74,12 @@ def _draw_space(axis: Axes, points: Keypoints3D, skeleton: Skeleton) -> None:
     for path, colour in _paths(points):
         axis.plot(*path.T, color=colour, linewidth=0.6, alpha=0.8)
     _floor(axis, low, high)
-    axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(0, high[2]))
-    axis.set(xlabel="x (m)", ylabel="y (m)", zlabel="z (m)")
-    axis.set_box_aspect((high[0] - low[0], high[1] - low[1], high[2]), zoom=0.9)
+    bottom = low[2] if low[2] < -DEEP_M else 0.0
+    axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(bottom, high[2]))
+    axis.set(xlabel="x (m)", ylabel="y (m)")
+    # A label of the axis itself would lie on that of the panel beside.
+    axis.text(high[0], high[1], high[2], "z (m)", ha="center", va="bottom")
+    axis.set_box_aspect((high[0] - low[0], high[1] - low[1], high[2] - bottom), zoom=0.9)
     step_m = oblique_view.step_m(low, high)
     for each in (axis.xaxis, axis.yaxis, axis.zaxis):
         each.set_major_locator(MultipleLocator(step_m))
@@ -102,7 +106,7 @@ def _draw_above(axis: Axes, points: Keypoints3D, cameras: list[Camera], skeleton
         axis.plot(x, y, "ks", markersize=4)
         axis.annotate("", (x + forward[0], y + forward[1]), (x, y), arrowprops={"arrowstyle": "->"})
         axis.annotate(
-            f"{camera.name}\n{z:.1f} m high", (x, y), (5, 5), textcoords="offset points", fontsize=7
+            f"{camera.name}\nz = {z:.1f} m", (x, y), (5, 5), textcoords="offset points", fontsize=7
         )
     for label, colour in (("left", style.LEFT), ("right", style.RIGHT), ("middle", style.MIDDLE)):
         axis.plot([], [], color=colour, label=label)
