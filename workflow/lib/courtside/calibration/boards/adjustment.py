@@ -89,9 +89,9 @@ def calibrate(
     """Calibrate cameras from the corners of a board that they see.
 
     `sizes` px of each camera's pictures. `lenses`, where they are known, are kept; else they are
-    adjusted too. `floor` names the picture whose board is the world, z towards who looks at it; else
-    z is up as in the pictures, and x runs from the first camera to the second.
-    Raises `InputError` if cameras share no picture, or the corners are not those of such a board.
+    adjusted too. `floor` names the picture whose board is the world, z towards who looks at it;
+    else z is up as in the pictures, and x runs from the first camera to the second. Raises
+    `InputError` if cameras share no picture, or the corners are not those of such a board.
     """
     plane = start.flat(board, seen)
     fair = _only(seen, plane)
@@ -393,5 +393,6 @@ def _per_step(state: _State, fixed: _Problem, step: NDArray) -> NDArray:
     beside = np.array([[at.get(int(number) + d, -1) for d in (-1, 1)] for number in step])
     moved = [_placed(replace(state, boards=state.boards[both]), fixed).network for both in beside.T]
     per_step = (problem.residuals(moved[1]) - problem.residuals(moved[0])) / 2
-    at_ends = np.asarray((beside < 0).any(axis=1))
-    return np.where(at_ends[fixed.picture, None], 0.0, np.nan_to_num(per_step))
+    ends = np.flatnonzero(beside.min(axis=1) < 0)
+    at_end = np.isin(fixed.picture, ends)[:, None]
+    return np.where(at_end, 0.0, np.nan_to_num(per_step))

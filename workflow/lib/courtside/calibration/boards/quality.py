@@ -46,8 +46,8 @@ def summary(found: Found, seen: Corners, board: Board, *, known: bool) -> dict[s
         report["vertical_sigma_deg"] = vertical_deg
         report["remarks"].append(
             f"board: z is up as in the pictures, within {vertical_deg:.0f} degrees (standard "
-            f"deviation), and z = 0 is at the board of picture {found.world}, not at the floor; name "
-            "the picture in which it lies on the floor as `floor`"
+            f"deviation), and z = 0 is at the board of picture {found.world}, not at the floor; "
+            "name the picture in which it lies on the floor as `floor`"
         )
     report |= {"sigma_px": found.sigma_px, "covariance_factor": found.factor}
     first = IMAGE * len(found.cameras)
