@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from courtside.kinematics import cutoffs
 from courtside.pages.report import facts as report_facts
 from courtside.records.keypoints import missing_reason
 from courtside.study.errors import InputError
@@ -26,6 +27,13 @@ def test_frames_that_are_left_out_are_counted(tmp_path):
     facts = report_facts.of_take(report_made.files_of_take(tmp_path, n_frames=20))
     assert facts["left_out"] == {"p1": (1, 20, {"uncertain": 1})}
     assert facts["seconds"] == pytest.approx(19 / 50)
+
+
+def test_cut_offs_are_those_that_were_used(tmp_path):
+    table = cutoffs.table({"arms": cutoffs.Choice(5.39, np.zeros(0), np.zeros(0), np.nan)}, 4)
+    table.to_csv(tmp_path / "cutoffs.csv", index=False)
+    facts = report_facts.of_take({"cutoffs": str(tmp_path / "cutoffs.csv")})
+    assert facts["cutoffs"] == {"arms": 5.39}
 
 
 def test_persons_called_by_digits_keep_their_names(tmp_path):

@@ -14,8 +14,8 @@ def study(tmp_path):
     return copy.deepcopy(report_made.study(tmp_path))
 
 
-def methods_text(study):
-    return methods.paragraphs(study["parameters"], study["sessions"])
+def methods_text(study, used_hz=None):
+    return methods.paragraphs(study["parameters"], study["sessions"], used_hz or {})
 
 
 def test_methods_state_the_configuration(study):
@@ -40,6 +40,24 @@ def test_methods_follow_another_configuration(study):
     html = methods_text(study)
     assert "3 Hz (head)" in html and "within 9 px" in html and "from 12 pictures" in html
     assert "incremental, Schönberger" in html and "Global structure-from-motion" not in html
+
+
+def test_cut_offs_that_were_lowered_or_chosen_are_stated_with_their_takes(study):
+    stated = {"head": 6.0, "arms": 10.0}
+    assert "; at" not in methods_text(study, {("hall", "smash"): stated})
+    slow = {"head": 2.69, "arms": 2.69}
+    html = re.sub(r"\s+", " ", methods_text(study, {("hall", "smash"): slow}))
+    assert (
+        "6 Hz (head), 10 Hz (arms) (Winter 2009); at 2.69 Hz (head), 2.69 Hz (arms) in hall smash, "
+        "as chosen or as their frame rates allow." in html
+    )
+    study["sessions"][0]["overrides"] = {"filter_motion": {"cutoff_hz": slow}}
+    assert "; at" not in methods_text(study, {("hall", "smash"): slow})
+    study["parameters"]["filter_motion"]["cutoff_hz"] = {"head": "residual", "arms": 10}
+    study["sessions"][0]["overrides"] = {}
+    html = methods_text(study, {("hall", "smash"): {"head": 4.2, "arms": 10.0}})
+    assert "a frequency by residual analysis (head), 10 Hz (arms)" in html
+    assert "; at 4.2 Hz (head) in hall smash" in html
 
 
 def test_only_the_methods_that_were_used_are_cited(study):

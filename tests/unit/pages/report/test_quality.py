@@ -62,7 +62,8 @@ def test_of_cameras_refined_by_people_both_qualities_and_the_verdict_are_said(tm
     unknown = facts["quality"]["sfm-n40-people"] | {"expected_before_cm": None}
     facts["quality"]["sfm-n40-people"] = unknown | {"expected_volume_rms_cm": None}
     html = re.sub(r"\s+", " ", quality.session(session, facts, [], takes))
-    assert "playing volume: not known" in html and "map of expected errors" not in html
+    assert "playing volume: not known, because neither a court nor points" in html
+    assert "map of expected errors" not in html
 
 
 def test_the_page_states_clocks_and_movement(tmp_path):

@@ -152,6 +152,7 @@ def test_takes_are_told_with_their_measures_errors_and_links(content):
     assert take["files"] == {
         "summary": f"{REAL}/kinematics/{way}.summary.csv",
         "frames": f"{REAL}/kinematics/{way}.frames.csv",
+        "cutoffs": f"{REAL}/kinematics/{way}.cutoffs.csv",
         "footwork": f"{REAL}/footwork/{way}.summary.csv",
         "pose3d": f"{REAL}/pose3d/{way}.npz",
         "sync": f"{REAL}/sync/file/cameras.blazepose-full.json",

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 from courtside.calibration.point_covariance import WITHIN_90
+from courtside.kinematics import cutoffs
 from courtside.records import tables
 from courtside.records.devices import clocks
 from courtside.records.keypoints import keypoints, missing_reason, skeleton
@@ -24,15 +25,16 @@ def of_take(files: dict) -> dict:
     """Read the facts of a take.
 
     `persons`: {person: {measure: (value, half of the 90 % interval, unit)}}; `footwork` likewise;
-    `strokes`: {person: rows}; `left_out`: {person: (frames without a neck, frames, {reason:
-    frames})}; `seconds`; `joints` and `cameras` as `of_skeleton` returns them; `clocks`: {camera:
-    Clock}; `shake`: lines; `movement`, `devices`, `truth`, `true_paths` and `quality`: rows. Empty
-    without a file. `InputError` if a file is missing or has another content.
+    `cutoffs`: {group of joints: Hz}; `strokes`: {person: rows}; `left_out`: {person: (frames
+    without a neck, frames, {reason: frames})}; `seconds`; `joints` and `cameras` as `of_skeleton`
+    returns them; `clocks`: {camera: Clock}; `shake`: lines; `movement`, `devices`, `truth`,
+    `true_paths` and `quality`: rows. Empty without a file. `InputError` if a file is missing or has
+    another content.
 
-    `files` are paths by `summary` and `frames` (kinematics), `footwork`, `strokes`, `pose3d`,
-    `sync`, `movement` (a list), `shake` (text), `checks` (clocks of devices), `errors` and
-    `kinematics` (against the truth), and by `quality` the `file` of verdicts and the `way` in which
-    the take was measured; each may be left out.
+    `files` are paths by `summary`, `frames` and `cutoffs` (kinematics), `footwork`, `strokes`,
+    `pose3d`, `sync`, `movement` (a list), `shake` (text), `checks` (clocks of devices), `errors`
+    and `kinematics` (against the truth), and by `quality` the `file` of verdicts and the `way` in
+    which the take was measured; each may be left out.
     """
     facts: dict = {"persons": {}, "left_out": {}, "seconds": None, "joints": {}, "cameras": {}}
     if files.get("summary"):
@@ -42,6 +44,7 @@ def of_take(files: dict) -> dict:
         facts["seconds"] = float(np.ptp(frames["time_s"])) if len(frames) else None
     steps = _table(files["footwork"], FOOTWORK) if files.get("footwork") else None
     facts["footwork"] = {} if steps is None else _measures(steps.assign(sigma_camera=np.nan))
+    facts["cutoffs"] = cutoffs.read(files["cutoffs"])[0] if files.get("cutoffs") else {}
     hits = _rows(files, "strokes", ("person", "hand", "overhead"))
     facts["strokes"] = {str(row["person"]): [] for row in hits}
     for row in hits:

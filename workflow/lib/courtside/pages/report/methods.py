@@ -1,9 +1,10 @@
 """The methods section of the report, from the configuration of the run, with its sources."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from markupsafe import Markup
 
+from courtside.kinematics.cutoffs import RESIDUAL
 from courtside.pages import page
 from courtside.study.methods import Calibration, Fusion
 
@@ -49,16 +50,19 @@ FUSED = {  # by the rule of a fusion
     "halfbody": "half of the body from two cameras each",
     "trc": "3D joints as another program gave them",
 }
+Cutoffs = dict[str, float]  # Hz of each group of joints
 UNSTEADY = "views are weighted, and camera shake is not corrected"
 
 
-def paragraphs(parameters: dict, sessions: Sequence[dict]) -> Markup:
+def paragraphs(
+    parameters: dict, sessions: Sequence[dict], used_hz: Mapping[tuple[str, str], Cutoffs]
+) -> Markup:
     """Return the methods as HTML: paragraphs, then the sources that they cite.
 
     `parameters` are the study's steps as configured: `match_images`, `adjust_network` ... Each of
     `sessions` has `name`, `calibration` (of its takes), `mapper`, `n_images`, `fusion`, `model`,
     `imported` (whether another program found the joints), `virtual`, `overrides` ({step: {key:
-    value}}), `takes`.
+    value}}), `takes`. `used_hz` are the cut-offs of the filter by session and take, as used.
     """
     files = [take["files"] for session in sessions for take in session["takes"]]
     mapped = sorted({(s["mapper"], s["n_images"]) for s in sessions if s["mapper"]})
@@ -87,6 +91,7 @@ def paragraphs(parameters: dict, sessions: Sequence[dict]) -> Markup:
         sources=[words for name, words in SOURCES.items() if name in cited],
         names=_names,
         cut=_cut,
+        lowered=_lowered(parameters, sessions, used_hz),
         **used,
     )
 
@@ -125,10 +130,30 @@ def _fused(name: str) -> str:
     return FUSED[fusion.rule] if fusion.steadied else UNSTEADY
 
 
-def _cut(cutoffs: object) -> str:
-    if not isinstance(cutoffs, dict):
-        return f"{cutoffs} Hz"
-    return ", ".join(f"{value} Hz ({group})" for group, value in cutoffs.items())
+def _cut(cutoffs: Mapping[str, object]) -> str:
+    """Return the cut-offs of groups of joints in words: numbers, or how they are chosen."""
+    return ", ".join(
+        f"a frequency by residual analysis ({group})"
+        if value == RESIDUAL
+        else f"{value:g} Hz ({group})"
+        for group, value in cutoffs.items()
+    )
+
+
+def _lowered(
+    parameters: dict, sessions: Sequence[dict], used_hz: Mapping[tuple[str, str], Cutoffs]
+) -> list[tuple[str, list[str]]]:
+    """Return cut-offs in words that are not those configured, and the takes filtered so."""
+    found: dict[str, list[str]] = {}
+    for session in sessions:
+        own = session["overrides"].get("filter_motion", {})
+        stated = own.get("cutoff_hz", parameters["filter_motion"]["cutoff_hz"])
+        for take in session["takes"]:
+            used = used_hz.get((session["name"], take["name"]), {})
+            other = {group: hz for group, hz in used.items() if hz != stated.get(group)}
+            if other:
+                found.setdefault(_cut(other), []).append(f"{session['name']} {take['name']}")
+    return list(found.items())
 
 
 def _overrides(sessions: Iterable[dict]) -> dict[str, list[str]]:

@@ -10,6 +10,9 @@ from courtside.pages.report import methods
 from courtside.pages.report import warnings as warned
 from courtside.study.methods import STAGE_WORDS, Calibration
 
+NO_VOLUME = "neither a court nor points on a floor say where the volume is"
+NO_COVARIANCE = "the error of these cameras is not known"
+
 
 def session(
     configured: dict,
@@ -66,15 +69,16 @@ def _calibration(name: str, content: dict) -> dict:
 def _used(name: str | None, known: dict[str, dict]) -> dict | None:
     """Return what the template says of the calibration that takes are measured with, and why.
 
-    `words`: what it is; `expected_cm` and, of one refined by people, `base`, `before_cm`, `line`
-    (which cameras were taken, by what was held out), `wrong` (numbers named) and `others` (what
-    else its `warnings` and `remarks` say).
+    `words`: what it is; `expected_cm`, why it is `unknown`, and, of one refined by people, `base`,
+    `before_cm`, `line` (which cameras were taken, by what was held out), `wrong` (numbers named)
+    and `others` (what else its `warnings` and `remarks` say).
     """
     if not name or name not in known:
         return None
     content, way = known[name], Calibration.parse(name)
     found: dict = {"name": name, "words": methods.CALIBRATED[way.kind], "base": way.base}
     found["expected_cm"] = content.get("expected_volume_rms_cm")
+    found["unknown"] = NO_VOLUME if way.has_covariance else NO_COVARIANCE
     if way.base:
         line, wrong = content["line"], content["wrong"]
         found |= {"line": line, "wrong": wrong, "before_cm": content.get("expected_before_cm")}

@@ -29,7 +29,7 @@ def build(study: dict) -> str:
         ("figures", "Figures", drawn, [(_group_id(key), _group_name(key)) for key in grouped]),
         ("quality", "How far to trust it", *_quality(known)),
         ("tables", "Tables", Markup().join(map(figures.table, study["tables"])), []),
-        ("methods", "Methods", methods.paragraphs(study["parameters"], study["sessions"]), []),
+        ("methods", "Methods", _methods(study, known), []),
     ]
     body = page.render("report.html", title=study["title"], parts=[one for one in parts if one[2]])
     return page.build(study["title"], body, css=["report.css"], js=["report.js"], images=images)
@@ -73,6 +73,15 @@ def _measured(known: list[dict], reported: list[dict], grouped: figures.Groups) 
     ]
     look = {"glance": glance, "with_error": coach.with_error}
     return page.render("report_measured.html", sessions=sessions, **look)
+
+
+def _methods(study: dict, known: list[dict]) -> Markup:
+    used_hz = {
+        (session["configured"]["name"], take["name"]): facts["cutoffs"]
+        for session in known
+        for take, facts, _ in session["takes"]
+    }
+    return methods.paragraphs(study["parameters"], study["sessions"], used_hz)
 
 
 def _figures(grouped: figures.Groups) -> tuple[Markup, dict[str, tuple[bytes, str]]]:

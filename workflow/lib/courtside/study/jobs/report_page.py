@@ -216,6 +216,7 @@ def _measured(session: Session, take: Take, known: dict[str, str]) -> dict[str, 
     patterns = {
         "summary": paths.MEASURES,
         "frames": paths.FRAME_MEASURES,
+        "cutoffs": paths.CUTOFFS,
         "footwork": paths.FOOTWORK_MEASURES,
         "pose3d": paths.POSE3D,
         "sync": paths.CAMERA_CLOCKS,
