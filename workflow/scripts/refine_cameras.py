@@ -80,9 +80,7 @@ def expected_cm(court_yaml, cameras, covariance):
 
 def in_file(path, names, override, unit):
     """Return the cameras of a calibration file in their own pictures, None of another base."""
-    if not path:
-        return None
-    return file_formats.read_session(path, names, override, unit)
+    return file_formats.read_session(path, names, override, unit) if path else None
 
 
 def points(paths, base, weights):

@@ -118,10 +118,8 @@ def calibrate(
     covariance = covariance + _of_size(board, state.network)
     solved = selection.cameras(state.network, seen.cameras, [c.size for c in known])
     if lenses:
-        solved = [
-            replace(camera, cam_from_world=one.cam_from_world)
-            for camera, one in zip(known, solved, strict=True)
-        ]
+        both = zip(known, solved, strict=True)
+        solved = [replace(lens, cam_from_world=one.cam_from_world) for lens, one in both]
     if floor is None:
         solved = _upright(solved)
     late = _delays(state, fixed, sigma_px, seen)
