@@ -88,7 +88,7 @@ def test_too_few_points_are_told_with_cameras_that_nobody_asked_for(placed):
     hall = placed(cameras=["left", "right", "Back"])
     assert hall.fault() == (
         f"{hall.path}: camera back: expected 8 points or more, found 0; add some; the file has "
-        "points of Back, too"
+        "points of Back"
     )
     hall.content["calibration"] = {"file": str(hall.root / "cameras.toml")}
     assert hall.said()[0] == []

@@ -144,11 +144,12 @@ def test_other_faults_are_one_line():
     places = boards_made.places(12, 5)
     seen = boards_made.seen(BOARD, RIG, places, 0.2, 1)
     listed = r"board.floor: expected a picture .* found 'kitchen'; name one .*: {}$"
-    names = ", ".join(seen.pictures)
+    seen = replace(seen, pictures=tuple(f"{at:06d}" for at in range(12)))
+    names = ", ".join(map(str, range(12)))
     with pytest.raises(InputError, match=listed.format(names)):
         adjustment.calibrate(BOARD, seen, SIZES, floor="kitchen", lenses={c.name: c for c in RIG})
     many = boards_made.seen(BOARD, RIG, boards_made.places(26, 5), 0.2, 1)
-    names = ", ".join(many.pictures[:20])
+    names = ", ".join(map(str, range(20)))
     with pytest.raises(InputError, match=listed.format(f"{names} and 6 more")):
         adjustment.calibrate(BOARD, many, SIZES, floor="kitchen", lenses={c.name: c for c in RIG})
     few = seen.picture < 3

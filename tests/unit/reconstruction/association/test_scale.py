@@ -74,7 +74,7 @@ def test_how_far_apart_cameras_stand_is_told_with_what_says_so():
                   for a in CAMERAS for b in CAMERAS)  # fmt: skip
     said = scale.apart(in_unit(0.1), "board")
     assert said == (
-        f"the cameras stand up to {10 * apart_m:.3g} m apart: if that is wrong, correct `square_m` "
+        f"the cameras stand up to {10 * apart_m:.1f} m apart: if that is wrong, correct `square_m` "
         "of the board"
     )
     assert scale.apart(CAMERAS, "file").endswith("correct their unit")

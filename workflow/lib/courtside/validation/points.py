@@ -65,9 +65,9 @@ def _inside(xy: NDArray, size: NDArray) -> NDArray:
 def _few(seen: Mapping[str, NDArray], others: tuple[str, ...]) -> Iterator[str]:
     """Yield the cameras with too few points for a calibration from points alone."""
     fewest = resection.FEWEST["lens"]
-    named = f"; the file has points of {', '.join(others)}, too" if others else ""
     for name, xy in seen.items():
         if len(xy) < fewest:
+            named = f"; the file has points of {', '.join(others)}" * (bool(others) and not len(xy))
             yield (
                 f"camera {name}: expected {fewest} points or more, found {len(xy)}; add some{named}"
             )

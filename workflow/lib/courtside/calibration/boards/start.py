@@ -192,7 +192,7 @@ def _world(seen: Corners, views: dict[tuple[int, int], View], wanted: str | None
         return score.index(max(score))
     names = [name for name in seen.pictures if _same(name, wanted)]
     if not names or seen.pictures.index(names[0]) not in posed:
-        there = [seen.pictures[at] for at in sorted(posed)]
+        there = [seen.pictures[at].lstrip("0") or "0" for at in sorted(posed)]  # see `_same`
         more = f" and {len(there) - SHOWN} more" if len(there) > SHOWN else ""
         raise InputError(
             f"board.floor: expected a picture that shows {FEWEST_CORNERS} corners of the board or "

@@ -83,7 +83,7 @@ def apart(cameras: Sequence[Camera], calibration: str | None) -> str:
     centres = np.array([camera.centre_in_world for camera in cameras])
     apart_m = np.linalg.norm(centres[:, None] - centres, axis=-1).max()
     lengths = _lengths(calibration) or "their unit"
-    return f"the cameras stand up to {apart_m:.3g} m apart: if that is wrong, correct {lengths}"
+    return f"the cameras stand up to {apart_m:.1f} m apart: if that is wrong, correct {lengths}"
 
 
 def _mend(trunk: float, calibration: str | None) -> str:
