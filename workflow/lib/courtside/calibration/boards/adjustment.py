@@ -272,13 +272,14 @@ def _normal(
     by_point = np.where(weight[:, None, None] > 0, by_point, 0.0) * rows_of[:, :, None]
     arm = network.xyz - state.boards[fixed.picture][:, :, 3]
     by_board = np.concatenate([np.cross(arm[:, None, :], by_point), by_point], axis=2)
-    sides = network.over_columns(by_camera)[:, :, fixed.active]
-    sides = np.concatenate([sides, added * rows_of[:, :, None]], axis=2)
+    sides, more = network.over_columns(by_camera), added * rows_of[:, :, None]
     information, gradient = _prior(network, fixed.active, added.shape[2])
     boards, scores = {}, np.zeros((len(state.boards), len(gradient)))
     for picture in np.unique(fixed.picture):
         rows = np.flatnonzero(fixed.picture == picture)
-        side = sides[rows].reshape(-1, len(gradient))
+        side = sides[rows].reshape(-1, network.n_columns)[:, fixed.active]
+        if more.shape[2]:
+            side = np.hstack([side, more[rows].reshape(len(side), -1)])
         right = off[rows].ravel()
         information = information + side.T @ side
         score = side.T @ right
