@@ -92,10 +92,11 @@ def test_a_board_calibrates_all_cameras(gym):
     found = cameras.read_toml(results / "calibration/board/cameras.toml")
     quality = json.loads((results / "calibration/board/quality.json").read_text())
     assert abs(quality["neighbour_mm"]["mean"]) < 0.3
-    assert quality["remarks"][0].startswith("board: the world is the board of picture")
+    assert quality["remarks"][0].startswith("board: z is up as in the pictures, within 2 degrees")
     known = covariance.read(results / "calibration/board/covariance.npz")
     assert known.cameras == [camera.name for camera in found]
     assert (np.diag(known.covariance)[:6] > 0).all()
+    assert (np.diag(known.frame)[:2] > 0).all()
 
 
 def test_a_wand_calibrates_all_cameras(gym):
