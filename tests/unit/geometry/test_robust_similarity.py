@@ -2,21 +2,11 @@
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
 
 from courtside.geometry import robust_similarity, similarity
 from courtside.study.errors import InputError
 from fixtures.cameras.scene import points
-
-TRUE = similarity.Sim3(
-    2.5, Rotation.from_rotvec([0.4, -1.1, 2.0]).as_matrix(), np.array([3.0, -7, 1])
-)
-
-
-def assert_same(found, true, tolerance=1e-9):
-    assert found.scale == pytest.approx(true.scale, rel=tolerance)
-    np.testing.assert_allclose(found.rotation, true.rotation, atol=tolerance)
-    np.testing.assert_allclose(found.translation, true.translation, atol=10 * tolerance)
+from fixtures.cameras.similarities import TRUE, assert_same
 
 
 @pytest.mark.parametrize("n_wrong", [0, 1, 3, 6])

@@ -6,16 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from courtside.geometry import similarity
 from fixtures.cameras.scene import opencv_projection, points, ring
-
-TRUE = similarity.Sim3(
-    2.5, Rotation.from_rotvec([0.4, -1.1, 2.0]).as_matrix(), np.array([3.0, -7, 1])
-)
-
-
-def assert_same(found, true, tolerance=1e-9):
-    assert found.scale == pytest.approx(true.scale, rel=tolerance)
-    np.testing.assert_allclose(found.rotation, true.rotation, atol=tolerance)
-    np.testing.assert_allclose(found.translation, true.translation, atol=10 * tolerance)
+from fixtures.cameras.similarities import TRUE, assert_same
 
 
 def test_exact_points_give_the_transform_and_its_inverse():
