@@ -5,18 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from courtside.calibration import file_formats
-from courtside.calibration.boards import adjustment, corners, start
+from courtside.calibration.boards import adjustment, start
 from courtside.calibration.boards.board import Board
 from courtside.calibration.bundle.problem import IMAGE
 from courtside.study.errors import InputError
 from fixtures.cameras import boards_made
-from fixtures.recordings.real_data import REAL, needs_real
+from fixtures.recordings import charuco
+from fixtures.recordings.real_data import needs_real
 
 BOARD = Board.of(boards_made.CHARUCO)
 RIG = boards_made.hall()
 SIZES = {camera.name: camera.size for camera in RIG}
-CHARUCO = REAL / "charuco-4cams"
 
 
 def in_world_of_first(places):
@@ -206,12 +205,7 @@ def test_the_error_of_a_delay_is_as_large_as_stated():
 @needs_real
 def test_a_real_recording_against_caliscope():
     """Webcams that film at 6 fps without a common clock, a board in a man's hands."""
-    given = {"kind": "charuco", "squares": [4, 5], "square_m": 0.054, "dictionary": "DICT_4X4_1000"}
-    board, theirs = Board.of(given), file_formats.read(CHARUCO / "camera_array.toml")
-    names = {camera.name: camera.name for camera in theirs}
-    seen = corners.of_table(CHARUCO / "calibration" / "extrinsic" / "xy.csv", names, board)
-    lenses = {camera.name: camera for camera in theirs}
-    found = adjustment.calibrate(board, seen, {c.name: c.size for c in theirs}, lenses=lenses)
+    _, _, theirs, found = charuco.calibrated()
     ours, others = (np.array([c.centre_in_world for c in one]) for one in (found.cameras, theirs))
     rotation, shift = rigid(ours, others)
     assert np.linalg.norm(ours @ rotation.T + shift - others, axis=1).max() < 0.008

@@ -10,11 +10,11 @@ from courtside.calibration.boards import corners
 from courtside.calibration.boards.board import Board
 from courtside.study.errors import InputError
 from fixtures.cameras import boards_made
-from fixtures.recordings.real_data import REAL, needs_real
+from fixtures.recordings.charuco import XY
+from fixtures.recordings.real_data import needs_real
 
 BOARD = Board.of(boards_made.CHARUCO)
 CHESS = {"kind": "chessboard", "squares": [8, 5], "square_m": 0.1}
-XY = REAL / "charuco-4cams" / "calibration" / "extrinsic" / "xy.csv"
 NAMES = {"left": "left", "right": "cam_1"}
 TABLE = "picture,camera,corner,x_px,y_px\n7,left,0,10.5,20.5\n7,cam_1,3,30,40\n8,other,0,1,2\n"
 

@@ -5,17 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from courtside.calibration import file_formats
-from courtside.calibration.boards import adjustment, corners, quality
+from courtside.calibration.boards import adjustment, quality
 from courtside.calibration.boards.board import Board
 from fixtures.cameras import boards_made
-from fixtures.recordings.real_data import REAL, needs_real
+from fixtures.recordings import charuco
+from fixtures.recordings.real_data import needs_real
 
 BOARD = Board.of(boards_made.CHARUCO)
 RIG = boards_made.hall()
 SIZES = {camera.name: camera.size for camera in RIG}
 LENSES = {camera.name: camera for camera in RIG}
-CHARUCO = REAL / "charuco-4cams"
 
 
 def at_rest(sigma_px=0.2, known=False):
@@ -85,12 +84,7 @@ def test_of_a_waved_board_whose_lens_is_wrong_no_clock_is_told():
 @needs_real
 def test_of_a_real_recording_the_clock_is_told():
     """Webcams without a common clock: one camera dropped a picture, its lens is Caliscope's own."""
-    given = {"kind": "charuco", "squares": [4, 5], "square_m": 0.054, "dictionary": "DICT_4X4_1000"}
-    board, theirs = Board.of(given), file_formats.read(CHARUCO / "camera_array.toml")
-    names = {camera.name: camera.name for camera in theirs}
-    seen = corners.of_table(CHARUCO / "calibration" / "extrinsic" / "xy.csv", names, board)
-    lenses = {camera.name: camera for camera in theirs}
-    found = adjustment.calibrate(board, seen, {c.name: c.size for c in theirs}, lenses=lenses)
+    board, seen, _, found = charuco.calibrated()
     mean, spread, count = quality.neighbours_mm(found, seen, board)
     assert -0.3 < mean < 0.3
     assert spread < 0.9
