@@ -8,6 +8,7 @@ these keypoints with the file as it is. Agreement to a few centimetres is what c
 
 import json
 import runpy
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -15,6 +16,8 @@ import cv2
 import numpy as np
 import pytest
 
+sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))  # last: both have a `scene`
+import real_footage
 from courtside.calibration import file_formats
 from courtside.exports import trc
 from courtside.geometry import camera as cameras
@@ -35,7 +38,7 @@ NAMES = ["cam01", "cam02", "cam03", "cam04"]
 CUT = (0, 0, 1080, 1920)
 PARTS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
 CLOSE_PX = 15
-LATER = 1  # frames: number 0 of OpenPose and row 0 of the TRC show the video's frame 1
+LATER = real_footage.LATER  # frames: number 0 of OpenPose shows that one of the video
 LIMBS = [f"{side}_{part}" for side in ("left", "right") for part in PARTS]
 BODY_25B = [
     "nose",
