@@ -26,8 +26,11 @@ def check(session: Session, court_yaml: Path | None, sizes: Sizes) -> tuple[list
     if path is None or not is_there(Path(path)) or not (session.placed or court_yaml):
         return [], []
     try:
-        clicks = place_checks.read(path, court_yaml or "", cameras, session.placed)[1]
-        others = placed_points.read(path, cameras).left_out if session.placed else ()
+        if session.placed:
+            points = placed_points.read(path, cameras)
+            clicks, others = place_checks.as_court(path, points)[1], points.left_out
+        else:
+            clicks, others = place_checks.read(path, court_yaml or "", cameras, False)[1], ()
     except InputError as error:
         return error.lines, []
     seen = {name: xy[np.isfinite(xy).all(axis=1)] for name, xy in clicks.items()}

@@ -10,8 +10,8 @@ resection: dlt, nonlinear: one camera from known points, by `one_camera`
 known_points: method, calibrate, cameras: all cameras from known points, each by itself
 points_alone: calibrate, summary: all cameras from points alone, together
 misfits: fitted: the same, and what is wrong with clicks that fit no camera
-place_checks: read, shifts, check_cameras: the points of a session; places that are shifted,
-    mirrored or in another unit
+place_checks: read, as_court, shifts, check_cameras: the points of a session; places that are
+    shifted, mirrored or in another unit
 click_checks: leave_one_out, find_wrong_clicks, inward_shift, inward_shift_of_points, check
 quality: check_cameras, adjust_and_check, check_maps, leave_one_out_errors, expected_cm,
     expected_volume

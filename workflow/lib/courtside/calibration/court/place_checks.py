@@ -121,9 +121,13 @@ def read(
     if not placed:
         court = court_files.read(court_yaml)
         return court, clicks.read(clicks_csv, cameras, list(court.points))
-    points = placed_points.read(clicks_csv, cameras)
+    return as_court(clicks_csv, placed_points.read(clicks_csv, cameras))
+
+
+def as_court(path: StrPath, points: PlacedPoints) -> tuple[Court, ClickedPoints]:
+    """Do as `read` with points that were read from a file with places of their own."""
     if wrong := [*_in_other_units(points)] or shifts(points):
-        raise InputError(*(f"{clicks_csv}: {one}" for one in wrong))
+        raise InputError(*(f"{path}: {one}" for one in wrong))
     return court_files.of_places("points", points.points, points.xyz), points.clicks
 
 
