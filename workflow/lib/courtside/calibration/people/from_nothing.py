@@ -220,8 +220,8 @@ def adjust(
     found = [*scale.warnings, *warnings.find(cameras, seen, joints, score, limits, apart)]
     places = _places(joints)
     covariance = world_frame.of_shape(cameras, fitted.covariance, places, scale.sigma)
-    named = camera_covariance.of_network([camera.name for camera in cameras], covariance)
-    named = replace(named, frame=world_frame.frame_error(joints, apart, on_floor))
+    frame, names = world_frame.frame_error(joints, apart, on_floor), [c.name for c in cameras]
+    named = camera_covariance.of_network(names, covariance, frame)
     return Found(cameras, named, score, scale, found, places)
 
 
@@ -234,8 +234,7 @@ def rescaled(found: Found, scale: unit.Unit) -> Found:
     own = found.covariance.of(names).covariance * np.outer(grown, grown)
     shape = CameraCovariance(names, own).of_columns()
     covariance = world_frame.of_shape(cameras, shape, places, scale.sigma)
-    named = camera_covariance.of_network(names, covariance)
-    named = replace(named, frame=found.covariance.frame)
+    named = camera_covariance.of_network(names, covariance, found.covariance.frame)
     return replace(found, cameras=cameras, covariance=named, scale=scale, places=places)
 
 
