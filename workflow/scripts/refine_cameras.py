@@ -43,12 +43,13 @@ def main(
         found = refinement.refine(base, wide, seen, limits, points(paths, base, weights), **kept)
     except InputError as error:
         found = refinement.unchanged(base, known, str(error))
-    covariance = known if found.taken == "base" else replace(found.covariance, frame=known.frame)
     wrong, is_kept = found.wrong, found.taken == "base"
+    covariance = known if is_kept else replace(found.covariance, frame=known.frame)
     report |= {"line": found.line, "warnings": [*(wrong if is_kept else []), *lost]}
     mended = [] if is_kept else [f"put right here, by people alone: {line}" for line in wrong]
     report["remarks"] = [found.line, *mended, *knocks.lines(rows)]
-    log.logger.info("%s", "; ".join(report["warnings"] + report["remarks"]))
+    for line in report["warnings"] + report["remarks"]:
+        log.logger.info("%s", line)
     report |= {"taken": found.taken, "verdicts": found.verdicts, "wrong": found.wrong}
     report["expected_before_cm"] = expected_cm(paths.court, base, known)
     report["expected_volume_rms_cm"] = expected_cm(paths.court, found.cameras, covariance)
