@@ -66,7 +66,8 @@ def test_cameras_with_unknown_lenses_are_found_from_two_persons_and_their_height
     summary = from_nothing.summary(found, ["walk"])
     assert min(summary["accepted_percent"].values()) > 95
     assert summary["line"].startswith("people alone: views of held-out joints disagree by ")
-    told = replace(found, warnings=[unit.ONE_HEIGHT, "floor: it differs"])
+    scale = replace(found.scale, remarks=(unit.ONE_HEIGHT,))
+    told = replace(found, scale=scale, warnings=["floor: it differs"])
     summary = from_nothing.summary(told, ["walk"])
     assert (summary["remarks"], summary["warnings"]) == ([unit.ONE_HEIGHT], ["floor: it differs"])
 

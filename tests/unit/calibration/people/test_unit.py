@@ -51,9 +51,9 @@ def test_heights_give_metres_the_tallest_to_the_longest():
     assert found.metres == pytest.approx(2.5) == alone.metres
     least = np.hypot(unit.NETWORK_SIGMA, unit.OF_HEIGHT_SIGMA / 2)  # four persons taught the share
     assert least < found.sigma < alone.sigma
-    assert not found.warnings
-    (warning,) = alone.warnings
-    assert warning.startswith("only one person's height defines the scale; add a second person")
+    assert not found.warnings and not found.remarks and not alone.warnings
+    (remark,) = alone.remarks
+    assert remark.startswith("only one person's height defines the scale; add a second person")
 
 
 def test_two_tracks_of_one_person_are_not_two_persons():
@@ -90,8 +90,8 @@ def test_tracks_that_share_a_tracklet_may_be_one_person():
     exchanged = [body(1.84, tracklets={(0, 1), (1, 0)}), body(1.86, tracklets={(0, 1), (1, 1)})]
     found = unit.by_heights([*exchanged, alone], named([[1.85, 1.65], [1.85]]))
     assert found.metres == pytest.approx(2.5, rel=0.005)
-    (warning,) = found.warnings
-    assert warning.startswith("only one person's height defines the scale")
+    (remark,) = found.remarks
+    assert remark.startswith("only one person's height defines the scale")
 
 
 def test_another_assignment_that_agrees_as_well_gives_a_warning():
@@ -257,6 +257,8 @@ def test_a_known_length_counts_more_than_heights_and_stands_for_them():
     (warning,) = unit.find(SMALL, bodies, named([[1.9, 1.69]]), [clicked()]).warnings
     assert warning.startswith("stated heights: expected a change of all lengths by 2.")
     assert "found +4.2 %; check them against left to right" in warning
+    told = unit.find(SMALL, bodies, named([[1.9, 1.6]]), [clicked()]).warnings
+    assert any(line.startswith("stated heights disagree by ") for line in told)
 
 
 def test_heights_of_persons_who_are_not_seen_are_not_needed_beside_a_known_length():

@@ -251,8 +251,8 @@ def summary(found: Found, takes: Sequence[str]) -> dict[str, Any]:
         "accepted_percent": {name: round(float(value), 1) for name, value in accepted.items()},
         "scale_sigma_percent": round(100 * found.scale.sigma, 2),
         "vertical_sigma_deg": world_frame.vertical_sigma_deg(found.covariance.frame),
-        "warnings": [line for line in found.warnings if line != unit.ONE_HEIGHT],
-        "remarks": [line for line in found.warnings if line == unit.ONE_HEIGHT],
+        "warnings": list(found.warnings),
+        "remarks": list(found.scale.remarks),
         "line": f"people alone: views of held-out joints disagree by {share:.1f} thousandths of "
         f"the height; {accepted[lowest]:.0f} % of the views or more are accepted ({lowest}); the "
         f"standard deviation of all lengths is {100 * found.scale.sigma:.1f} % ({found.scale.by})",

@@ -38,7 +38,6 @@ LEAST_FRAMES = 20  # ASSUME: for the length of a body
 SURE = 2.0  # standard deviations
 NOBODY = 3.0  # standard deviations: cost of a track of no person, and of a person without a track
 HEIGHTS = "stated heights"
-# A remark, not a doubt: the stated error of the scale contains it.
 ONE_HEIGHT = "only one person's height defines the scale; add a second person, or a known length"
 MOST_NAMED = 4  # lengths that a line names
 MOST_WAYS = 4096  # assignments of tracks to persons in one take; only the longest tracks are used
@@ -69,6 +68,7 @@ class Unit:
     sigma: float  # standard deviation, share
     by: str  # the measurement that defines it
     warnings: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()  # what the stated error already contains
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,7 +164,8 @@ def combined(each: Sequence[Unit], covariance: NDArray) -> Unit:
     weight = np.maximum(np.linalg.solve(covariance, np.ones(len(each))), 0.0)
     weight /= weight.sum()
     unit = float(np.exp(weight @ np.log([one.metres for one in each])))
-    warnings = [
+    warnings = [line for one in each for line in one.warnings]
+    warnings += [
         f"{one.by}: expected a change of all lengths by {SURE * 100 * one.sigma:.1f} % at most if "
         f"only these define the scale, found {100 * (one.metres / unit - 1):+.1f} %; check them "
         f"against {each[int(weight.argmax())].by}"
@@ -266,9 +267,8 @@ def by_heights(bodies: Sequence[Body], heights_m: Heights) -> Unit:
     sigma = float(np.linalg.norm([of_height / np.sqrt(persons), learned, NETWORK_SIGMA]))
     rivals = [np.expm1(one[1] - unit) for one in found if one[0] < cost + SURE**2]
     warnings = [*_rivals(rivals, sigma), *_disagreeing(ratios, SURE * np.sqrt(2) * of_height)]
-    if persons == 1:
-        warnings.append(ONE_HEIGHT)
-    return Unit(float(np.exp(unit)), sigma, HEIGHTS, tuple(warnings))
+    remarks = (ONE_HEIGHT,) if persons == 1 else ()
+    return Unit(float(np.exp(unit)), sigma, HEIGHTS, tuple(warnings), remarks)
 
 
 @dataclass(frozen=True, eq=False)
