@@ -79,7 +79,10 @@ def test_the_summary_is_that_of_the_frames(people):
     assert rows.loc["neck_distance", "n"] == 181 - 30
     found = rows.loc["mass_distance"]
     measured = rows.loc["mass_distance_measured", "value"]
-    assert found.value == pytest.approx(measured - rows.loc["mass_distance_noise_bias", "value"])
+    gaps = rows.loc["mass_distance_in_gaps"]
+    less = rows.loc["mass_distance_noise_bias", "value"]
+    assert found.value == pytest.approx(measured - less + gaps.value)
+    assert (gaps.n, gaps.value > 0, 0 < gaps.sigma < found.sigma) == (30, True, True)
     seconds = people[0].points["mass"].distance.seconds
     assert rows.loc["mass_speed_mean", "value"] == pytest.approx(found.value / seconds)
     assert rows.loc["mass_speed_mean", "sigma"] == pytest.approx(found.sigma / seconds)

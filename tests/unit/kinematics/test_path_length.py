@@ -10,6 +10,10 @@ from fixtures.people import footwork
 
 SECONDS = 24
 MODEL_BIAS = 1.0, 0.15
+RATE_HZ = 50.0
+T = np.arange(501) / RATE_HZ
+CIRCLE = 2 * np.stack([np.cos(T), np.sin(T)], axis=1)  # 2 m/s
+SPEED = np.full(len(T), 2.0)
 
 
 def covariance(n_frames, sigma_m):
@@ -108,7 +112,7 @@ def test_gaps_do_not_join_the_noise_on_both_sides_of_them():
         )
         for seed in range(60)
     ]  # fmt: skip
-    own = [np.sqrt(f.sigma_m**2 - f.bias_sigma_m**2) for f in found]
+    own = [np.sqrt(f.sigma_m**2 - f.bias_sigma_m**2 - f.gaps_sigma_m**2) for f in found]
     assert np.mean(own) == pytest.approx(np.std([f.measured_m for f in found], ddof=1), rel=0.25)
 
 
@@ -121,14 +125,42 @@ def test_a_person_at_rest_goes_nearly_nowhere():
     assert abs(found.corrected_m) < 3 * found.sigma_m
 
 
-def test_open_gaps_are_in_neither_distance_nor_time():
+def test_a_gap_on_a_straight_line_changes_neither_distance_nor_time():
     t = np.arange(301) / 30
     xyz = np.stack([2 * t, 0 * t, 0 * t], axis=1)
     xyz[100:150] = np.nan
     found = measure(xyz, covariance(301, 1e-4), 30.0, Noise(0.0), 6.0, 4)
-    seconds = 99 / 30 + 150 / 30
-    assert found.seconds == pytest.approx(seconds)
-    assert found.measured_m == pytest.approx(2 * seconds, rel=1e-3)
+    assert found.seconds == pytest.approx(10)
+    assert found.measured_m == pytest.approx(2 * (99 / 30 + 150 / 30), rel=1e-3)
+    assert found.gaps_m == pytest.approx(2 * 51 / 30, rel=1e-3)
+    assert found.corrected_m == pytest.approx(20, rel=1e-3)
+
+
+def test_a_gap_longer_than_the_known_path_leaves_the_distance_unknown():
+    t = np.arange(301) / 30
+    xyz = np.stack([2 * t, 0 * t, 0 * t], axis=1)
+    xyz[60:240] = np.nan
+    found = measure(xyz, covariance(301, 1e-4), 30.0, Noise(0.0), 6.0, 4)
+    assert np.isnan([found.corrected_m, found.sigma_m, found.gaps_m]).all()
+    assert found.measured_m == pytest.approx(2 * (59 / 30 + 60 / 30), rel=1e-3)
+
+
+@pytest.mark.parametrize("gap_s", [0.2, 0.4, 0.8])
+def test_ninety_percent_of_distances_with_gaps_hold_the_truth(gap_s):
+    """A player's footwork with up to six gaps anywhere, forty times; some leave too little."""
+    rate_hz, sigma_m, noise, off = 30.0, 0.015, Noise(0.05), []
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        time_s, path = footwork.neck(rate_hz, 12, seed=seed)
+        noisy = path + footwork.noise(len(path), rate_hz, sigma_m, 0.05, rng)
+        for start in rng.integers(10, len(path) - 40, rng.integers(1, 7)):
+            noisy[start : start + round(gap_s * rate_hz)] = np.nan
+        found = measure(noisy, covariance(len(path), sigma_m), rate_hz, noise, 6.0, 4)
+        assert found.seconds == pytest.approx(time_s[-1] - time_s[0])
+        off.append((found.corrected_m - arc(path)) / found.sigma_m)
+    known = np.isfinite(off)
+    assert known.mean() > 0.9
+    assert (np.abs(off)[known] < 1.645).mean() >= 0.88
 
 
 def test_without_a_covariance_the_length_is_given_and_its_bias_unknown():
@@ -141,3 +173,29 @@ def test_without_a_covariance_the_length_is_given_and_its_bias_unknown():
     none = measure(np.full((50, 3), np.nan), unknown[:50], 30.0, Noise(0.0), 6.0, 4)
     assert (none.measured_m, none.seconds) == (0.0, 0.0)
     assert np.isnan(none.corrected_m)
+
+
+def bridge_circle(gaps, place=CIRCLE, speed=SPEED):
+    """Return the path in gaps (start, stop)."""
+    starts, stops = zip(*gaps, strict=True)
+    runs = list(zip([0, *stops], [*starts, len(place)], strict=True))
+    return path_length.bridged(place, speed, runs, RATE_HZ)
+
+
+def test_gaps_of_a_circle_are_as_long_as_the_arc():
+    found = bridge_circle([(100, 150), (300, 320)])
+    assert found.length_m == pytest.approx(2 * (51 + 21) / RATE_HZ, rel=1e-3)
+    assert found.sigma_m < 0.002
+
+
+def test_a_path_without_gaps_has_none():
+    found = path_length.bridged(CIRCLE, SPEED, [(0, len(T))], RATE_HZ)
+    assert (found.length_m, found.sigma_m) == (0.0, 0.0)
+
+
+def test_the_less_is_known_of_a_path_the_less_certain_is_its_gap():
+    wavy = CIRCLE + 0.1 * np.sin(9 * T)[:, None]
+    speed = np.linalg.norm(np.gradient(wavy, 1 / RATE_HZ, axis=0), axis=1)
+    long, short = (bridge_circle([(60, 90)], wavy[:n], speed[:n]) for n in (501, 160))
+    assert short.sigma_m > 1.3 * long.sigma_m > 0
+    assert np.isnan(bridge_circle([(100, 400)]).length_m)

@@ -40,12 +40,11 @@ def table(
 ) -> pd.DataFrame:
     """Compare measured paths and speeds with the true ones, over the frames that were measured.
 
-    Distances are in space, measured over all frames of a person and true over the same span; errors
-    of the position are of the filtered path. `frames` and `summary` are of
+    Distances are in space, measured and true from a person's first known frame to the last, gaps
+    included; errors of the position are of the filtered path. `frames` and `summary` are of
     `courtside.exports.measures`, `sex_of` is "m", "f" or None by person.
 
-    Distances stay empty if the truth does not cover the measured frames, or if frames between the
-    first and the last are missing: the paths would differ in span.
+    Distances stay empty if the truth does not cover the measured frames.
     """
     rows, measured = [], summary.set_index(["person", "measure"])
     for part, point, path in _paths(frames, truth, derived, sex_of):
@@ -105,12 +104,10 @@ def _speed_errors(
 def _distances(
     part: pd.DataFrame, point: str, path: "scipy.interpolate.CubicSpline", measured: pd.DataFrame
 ) -> dict:
-    known = np.flatnonzero(part[f"{point}_x_m"].notna())
-    time_s = part["time_s"].to_numpy()[known]
-    whole = len(known) > 1 and np.ptp(known) == len(known) - 1
-    if not whole or time_s[0] < path.x[0] - CLOSE_S or time_s[-1] > path.x[-1] + CLOSE_S:
+    time_s = part["time_s"].to_numpy()[part[f"{point}_speed_m_s"].notna()]
+    if len(time_s) < 2 or time_s[0] < path.x[0] - CLOSE_S or time_s[-1] > path.x[-1] + CLOSE_S:
         return {}
-    fine_s = np.linspace(time_s[0], time_s[-1], FINE * len(time_s))
+    fine_s = np.linspace(time_s[0], time_s[-1], FINE * len(part))
     true_m = np.linalg.norm(np.diff(path(fine_s), axis=0), axis=1).sum()
     found = measured.loc[f"{point}_distance"]
     sigma_m = float(np.hypot(found["sigma"], np.nan_to_num(found["sigma_camera"])))

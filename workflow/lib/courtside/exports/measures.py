@@ -81,13 +81,16 @@ def summary(people: Sequence[measures.Person], stage: str) -> pd.DataFrame:
 
 
 def _distances(point: measures.Point) -> Iterator[Row]:
-    n_frames = int(np.isfinite(point.velocity).all(axis=1).sum())
-    unknown = float("nan")
+    known = np.flatnonzero(np.isfinite(point.velocity).all(axis=1))
+    n_frames, unknown = len(known), float("nan")
+    n_missing = int(np.ptp(known)) + 1 - n_frames if n_frames else 0
     for prefix, found in (("", point.distance), ("ground_", point.ground_distance)):
         value, sigma, camera = found.corrected_m, found.sigma_m, found.camera_sigma_m
         seconds = found.seconds if found.seconds > 0 else unknown
         yield f"{prefix}distance", value, sigma, camera, "m", n_frames
         yield f"{prefix}distance_measured", found.measured_m, unknown, unknown, "m", n_frames
+        gaps = found.gaps_m, found.gaps_sigma_m
+        yield f"{prefix}distance_in_gaps", *gaps, unknown, "m", n_missing
         bias = found.bias_m, found.bias_sigma_m
         yield f"{prefix}distance_noise_bias", *bias, unknown, "m", n_frames
         most = found.bias_most_m

@@ -5,7 +5,7 @@ skeleton_filter: `prepare`, `smooth` (of a take)
 cutoffs: `by_group`, `choose_cutoff`, `table`, `read`
 noise_propagation: `Noise`, `estimate`, `filtered_covariance`, `differentiate`
 shared_errors: `Errors`, `of_person`, `alike` (what errors of joints have in common)
-path_length: `measure`, `mean_norm`
+path_length: `measure`, `mean_norm`, `bridged` (the path in gaps)
 joint_angles: `measure`, `between`, `trunk`
 centre_of_mass: `shares`, `weights`
 measures: `measure` (all of a take), `Filter`, `Person`, `Point`

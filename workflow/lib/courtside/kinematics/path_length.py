@@ -1,9 +1,11 @@
 """Length of a noisy path, its bias, and the uncertainty of both."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from itertools import pairwise
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from courtside.kinematics import filtering, noise_propagation
@@ -13,6 +15,7 @@ N_NODES = 48  # ASSUME: enough for the quadrature; the tests compare it with clo
 SLOWER = 2.0  # the true speed is taken from a path filtered at the cut-off divided by this
 SUBTRACTED = 0.5  # share of the noise's variance taken from the square of that speed: `measure`
 MEMORIES_S = (0.0, 0.01, 0.02, 0.04, 0.08, 0.16)  # ASSUME: tried for the largest bias
+LEAST_WINDOWS = 3  # as long as a gap, not overlapping: with fewer its detour is unknown
 INDEPENDENT_AFTER = 4.0  # memories: the correlation is below exp(-4) = 2 %
 GROUND = slice(0, 2)  # x and y
 SPACE = slice(0, 3)
@@ -43,18 +46,20 @@ def mean_norm(mean: NDArray, covariance: NDArray) -> NDArray:
 
 @dataclass(frozen=True)
 class Distance:
-    """Length of a path."""
+    """Length of a path from its first to its last known frame."""
 
-    measured_m: float  # of the filtered path as it is
+    measured_m: float  # of the filtered path as it is, without its gaps
     bias_m: float  # expected lengthening by noise; NaN where no covariance is known
     bias_sigma_m: float  # standard deviation of `bias_m`
     bias_most_m: float  # the largest lengthening by noise of the stated covariance, for any memory
-    # Measured, less the bias. What the filter cuts off corners and hops is not added.
+    # Measured, less the bias, and the path in gaps; NaN where a gap is too long. What the filter
+    # cuts off corners and hops is not added.
     corrected_m: float
-    sigma_m: float  # standard deviation of `corrected_m`, that of the bias included
+    sigma_m: float  # standard deviation of `corrected_m`, those of the bias and the gaps included
     camera_sigma_m: float  # from the calibration; NaN: unknown
-    # Time over which the path is known; gaps that stayed open are not in the distance.
-    seconds: float
+    gaps_m: float  # what gaps contribute to `corrected_m`
+    gaps_sigma_m: float  # standard deviation of `gaps_m`
+    seconds: float  # from the first to the last known frame
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,14 +92,35 @@ def measure(
     projection on the floor; `model_bias` the mean and standard deviation of the true bias over the
     expected one; `others` errors of which only the scatter counts.
 
-    The length is the integral of the speed by the trapezoidal rule. Noise e with covariance S
-    lengthens a velocity v to E|v + e|, by about the variance across v over 2 |v| where the noise is
-    small and by E|e| at rest. |v| is not known: the speed of the path filtered again at half the
-    lowest cut-off, where the velocity's noise is several times smaller, stands for it. Half of that
-    noise's variance is subtracted from its square. None would leave too much speed in rests, and
-    all of it too little, for negative squares are cut at 0; a half left 0.1 % of the length on
-    made-up footwork where noise had added 4 %.
+    The length is the integral of the speed by the trapezoidal rule, and that of the gaps
+    (`bridged`). Noise e with covariance S lengthens a velocity v to E|v + e|, by about the variance
+    across v over 2 |v| where the noise is small and by E|e| at rest. |v| is not known: the speed of
+    the path filtered again at half the lowest cut-off, where the velocity's noise is several times
+    smaller, stands for it. Half of that noise's variance is subtracted from its square. None would
+    leave too much speed in rests, and all of it too little, for negative squares are cut at 0; a
+    half left 0.1 % of the length on made-up footwork where noise had added 4 %.
     """
+    known = _between_gaps(position, parts, rate_hz, noise, order, axes, model_bias, others)
+    speed = np.linalg.norm(noise_propagation.differentiate(position, rate_hz)[:, axes], axis=1)
+    runs = filtering.runs(np.isfinite(speed))
+    if not runs:
+        return known
+    share = known.corrected_m / known.measured_m if known.measured_m else 1.0
+    gaps = bridged(position[:, axes], share * speed, runs, rate_hz)
+    longer = 1 + gaps.length_m / known.measured_m if known.measured_m else 1.0
+    return replace(
+        known,
+        corrected_m=known.corrected_m + gaps.length_m,
+        sigma_m=float(np.hypot(known.sigma_m, gaps.sigma_m)),
+        camera_sigma_m=known.camera_sigma_m * longer,
+        gaps_m=gaps.length_m,
+        gaps_sigma_m=gaps.sigma_m,
+        seconds=(runs[-1][1] - 1 - runs[0][0]) / rate_hz,
+    )
+
+
+def _between_gaps(position, parts, rate_hz, noise, order, axes, model_bias, others) -> Distance:
+    """Measure the path without its gaps."""
     known = np.isfinite(position).all(axis=1)
     velocity = noise_propagation.differentiate(position, rate_hz)
     weight_s = _weights_s(known, rate_hz)
@@ -116,15 +142,64 @@ def measure(
     scatter += _scatter_of_others(others, true, known, used, weight_s, axes, filters)
     most = spread * of_noise.largest_variance_ratio(noise)
     return Distance(
-        measured,
-        float(bias),
-        float(bias_sigma),
-        float(_lengthening(true, most) @ weight_s),
-        float(measured - bias),
-        float(np.hypot(np.sqrt(scatter), bias_sigma)),
-        _camera_sigma(others, velocity[used], weight_s, used, axes),
-        float(weight_s.sum()),
+        measured_m=measured,
+        bias_m=float(bias),
+        bias_sigma_m=float(bias_sigma),
+        bias_most_m=float(_lengthening(true, most) @ weight_s),
+        corrected_m=float(measured - bias),
+        sigma_m=float(np.hypot(np.sqrt(scatter), bias_sigma)),
+        camera_sigma_m=_camera_sigma(others, velocity[used], weight_s, used, axes),
+        gaps_m=0.0,
+        gaps_sigma_m=0.0,
+        seconds=float(weight_s.sum()),
     )
+
+
+@dataclass(frozen=True)
+class Gaps:
+    """The path in gaps."""
+
+    length_m: float  # expected; NaN if the known path has no stretches as long as a gap
+    sigma_m: float  # standard deviation; its 90 % interval is right for few stretches, too
+
+
+def bridged(
+    position: NDArray, speed: NDArray, runs: Sequence[tuple[int, int]], rate_hz: float
+) -> Gaps:
+    """Return the expected length of a path in the gaps between its known runs.
+
+    `position` (T, d) m and `speed` (T,) m/s are known in `runs`, (start, stop) in order. A gap is
+    as long as the straight line over it and a detour: how much longer the same person's known path
+    is than the straight line, on average over all windows that last as long as the gap. Their
+    scatter is the error, with Student's t for the number of windows that do not overlap.
+    """
+    gaps = [(before[1] - 1, after[0]) for before, after in pairwise(runs)]
+    length, variance, common = 0.0, 0.0, 0.0
+    for last, first in gaps:
+        detour, scatter, n_windows = _detours(position, speed, runs, first - last, rate_hz)
+        length += float(np.linalg.norm(position[first] - position[last])) + detour
+        variance += scatter**2
+        common += scatter / np.sqrt(n_windows)
+    return Gaps(length, float(np.sqrt(variance + common**2)))
+
+
+def _detours(
+    position: NDArray, speed: NDArray, runs: Sequence[tuple[int, int]], n: int, rate_hz: float
+) -> tuple[float, float, int]:
+    """Return mean and scatter of the detours of windows of `n` frames, and how many lie apart."""
+    found, apart = [], 0
+    for start, stop in runs:
+        steps = (speed[start : stop - 1] + speed[start + 1 : stop]) / (2 * rate_hz)
+        along = np.concatenate([[0.0], np.cumsum(steps)])
+        own = position[start:stop]
+        straight = np.linalg.norm(own[n:] - own[:-n], axis=1)
+        found.append(np.maximum(along[n:] - along[:-n] - straight, 0.0))
+        apart += (stop - start - 1) // n
+    if apart < LEAST_WINDOWS:
+        return float("nan"), float("nan"), 1
+    detours = np.concatenate(found)
+    wider = scipy.special.stdtrit(apart - 1, 0.95) / scipy.special.ndtri(0.95)
+    return float(detours.mean()), float(detours.std() * wider), apart
 
 
 def _velocity_spreads(parts, known, noise, rate_hz, order) -> dict[float, NDArray]:
