@@ -113,6 +113,9 @@ def test_kinematics_stand_with_their_stage_and_clocks_with_the_raw_one_by_their_
     assert raw[["n_clocks", "n_clocks_found", "n_clocks_within"]].tolist() == [4, 3, 2]
     assert raw["clock_error_ms"] == 9
     assert pd.isna(last["n_clocks"]) and np.isnan(raw["neck_speed_rmse_m_s"])
+    unknown = [*measured, kinematics("f4", np.nan, 0.06)]
+    last = table(parts, unknown).set_index("stage").loc["corrected"]
+    assert np.isnan(last["neck_distance_error_percent"])
 
 
 def test_clocks_that_were_not_found_are_counted():

@@ -92,7 +92,7 @@ SHOWN = {
         "in 90 % ellipsoids, %: raw / filtered / corrected (least take)": " / ".join(
             f"{{{stage}_coverage}} ({{{stage}_least}})" for stage in STAGES
         ),
-        "joints": "{raw_median.n}",
+        "joints, raw / corrected": "{raw_median.n} / {corrected_median.n}",
     },
     "players": {
         "take: cameras, rule": "{row}",
@@ -104,7 +104,7 @@ SHOWN = {
             f"{{{stage}_coverage}}" for stage in STAGES
         ),
         "missing, raw / corrected, %": "{raw_missing} / {corrected_missing}",
-        "joints": "{raw_median.n}",
+        "joints, raw / corrected": "{raw_median.n} / {corrected_median.n}",
     },
     "players-measures": {
         "take: cameras": "{row}",

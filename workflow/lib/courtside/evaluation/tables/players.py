@@ -148,6 +148,6 @@ def _clocks(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def furthest(values: pd.Series) -> float:
-    """Return the value that is furthest from zero, with its sign; NaN if none is known."""
-    known = values.dropna().to_numpy(dtype=float)
-    return known[np.abs(known).argmax()] if len(known) else np.nan
+    """Return the value that is furthest from zero, with its sign; NaN if one is unknown."""
+    every = values.to_numpy(dtype=float)
+    return every[np.abs(every).argmax()] if len(every) and np.isfinite(every).all() else np.nan
