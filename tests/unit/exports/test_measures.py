@@ -67,6 +67,16 @@ def test_a_row_for_every_frame(people):
     assert rows.neck_reason.iloc[10] == "ok"
 
 
+def test_every_measure_is_described(people):
+    words = (Path(__file__).parents[3] / "config" / "README.md").read_text(encoding="utf-8")
+    words = words[words.index("`.summary.csv`: `person`") : words.index("`.cutoffs.csv`: `group`")]
+    for measure in measures.summary(people, "filtered")["measure"]:
+        name = measure.replace("ground_", "")
+        for known in sorted((*people[0].points, *people[0].angles), key=len, reverse=True):
+            name = name.removeprefix(known)
+        assert f"`{name}`" in words or f"`{name.removeprefix('_distance')}`" in words, measure
+
+
 def test_the_summary_is_that_of_the_frames(people):
     rows = measures.summary(people, "filtered").set_index("measure")
     frames = measures.frames(people)
