@@ -57,6 +57,12 @@ def test_the_limits_of_the_distance_include_the_cameras_error(tables):
         assert f"12.00 ± {reach:.2f} m" in drawing.subfigs[0].axes[0].get_title()
 
 
+def test_a_distance_that_is_unknown_is_told_in_words(tables):
+    frames, summary = tables
+    title = speeds.draw(frames, summary.assign(value=np.nan), None).subfigs[0].axes[0].get_title()
+    assert "nan" not in title and "distance unknown" in title
+
+
 def test_each_person_has_a_row_and_a_court_is_not_needed(tables):
     frames, summary = (twice(rows) for rows in tables)
     drawing = speeds.draw(frames, summary, None)

@@ -62,9 +62,10 @@ def _draw_path(
     found = measured.loc["neck_ground_distance"]
     cameras = 0.0 if np.isnan(found.sigma_camera) else found.sigma_camera
     reach = point_covariance.WITHIN_90 * np.hypot(found.sigma, cameras)
-    axis.set_title(
-        f"{person}: neck from above\n{found.value:.2f} ± {reach:.2f} m on the ground (90 %)"
-    )
+    length = f"{found.value:.2f} ± {reach:.2f} m on the ground (90 %)"
+    if np.isnan(found.value):
+        length = "distance unknown: gaps too long, or errors not known"
+    axis.set_title(f"{person}: neck from above\n{length}")
     if known.size and court is not None:
         axis.set_ylim(
             min(0.0, np.min(y[known])) - ROOM_M,

@@ -25,7 +25,7 @@ LIMITS = {
     "missing": (0.05, 0.2, "share of the limb joints that are missing, before filtering"),
     "two_views": (0.5, 0.8, "share of the reconstructed limb joints that only two cameras see"),
     "distance": (0.05, 0.2, "error bar of the neck's distance, as a share of the distance"),
-    "frames": (0.05, 0.2, "share of the frames that are left out of distance and speed"),
+    "frames": (0.05, 0.2, "share of the frames in which the path of the neck is unknown"),
 }
 
 
@@ -230,7 +230,8 @@ def distance(person: str, measures: dict) -> Warned | None:
     """Return a warning if a distance is known badly; `measures` are those of `facts.of_take`."""
     value, half, _ = measures.get("neck_distance", (math.nan, math.nan, "m"))
     if math.isnan(value):
-        return Warned(DOUBT, f"{person}: the distance of the neck could not be measured.")
+        why = "its gaps are too long, or its errors are not known"
+        return Warned(DOUBT, f"{person}: the distance of the neck is unknown: {why}.")
     share = half / value if value > 0 else math.nan
     level = _level_of("distance", share)
     if math.isnan(share):
@@ -249,12 +250,12 @@ def true_path(row: dict) -> Warned | None:
 
 
 def frames(person: str, lost: int, total: int, why: dict[str, int]) -> Warned | None:
-    """Return a warning if many frames are left out of distance and speed; `why` counts reasons."""
+    """Return a warning if the neck's path is unknown in many frames; `why` counts reasons."""
     level = _level_of("frames", lost / total) if total else LOOK
     if not level:
         return None
     words = {"uncertain": "the position of the neck is too uncertain there"}
     most = max(why, key=lambda word: why[word], default="")
     reason = words.get(most, f"mostly {most.replace('_', ' ')}" if most else "nobody was found")
-    text = f"{lost} of {total} frames are left out of distance and speed"
+    text = f"the path of the neck is unknown in {lost} of {total} frames"
     return Warned(level, f"{person}: {text}; {reason}.")
