@@ -21,6 +21,7 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 
+import marker_system
 from repository import ROOT
 
 sys.path[:0] = [str(ROOT / "workflow" / "lib"), str(ROOT / "workflow" / "scripts")]
@@ -29,7 +30,7 @@ import find_contacts
 import fit_skeleton
 
 from courtside.body_model import take
-from courtside.evaluation import joints, kinematics, marker_system
+from courtside.evaluation import joints, kinematics
 from courtside.evaluation.movement import contacts
 from courtside.evaluation.numbers import stated
 from courtside.evaluation.numbers.players import NETWORK

@@ -25,12 +25,12 @@ import pandas as pd
 import yaml
 from scipy.spatial.transform import Rotation
 
+import marker_system
 from many_sessions import copied
 from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
-from courtside.evaluation import marker_system
 from courtside.evaluation.numbers import stated
 from courtside.evaluation.numbers.players import NETWORK
 from courtside.geometry import camera as camera_models

@@ -27,13 +27,13 @@ import pandas as pd
 import yaml
 
 import hall_markers
+import marker_system
 from many_sessions import copied
 from real_footage import LATER
 from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
-from courtside.evaluation import marker_system
 from courtside.evaluation.numbers import networks as numbers
 from courtside.evaluation.numbers import register, stated
 from courtside.pose import decoders

@@ -9,7 +9,6 @@ kinematics: `table`, `angles`: errors of paths and speeds, of joint angles
 movement: contacts of feet, strokes
 sources: `errors`, `table`, `split`: errors of devices and cameras, and their parts
 round_trip: `table`, `distance_after`: the paper's table 1
-marker_system: `fit`, `table`: joints against an optical marker system
 camera_sets: `compare`, `gains`: fewer cameras, and other fusions
 skin_depths: `estimate`: depth of joints behind the skin
 calibration: `of_ties`, `of_known`, `score`: one trial of calibration; `over_volume`, `coverage`

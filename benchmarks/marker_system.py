@@ -5,6 +5,7 @@ else ties the two: an error of time or place that is the same for the whole take
 scale is not fitted. It is stated, and an error of scale counts.
 """
 
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -13,6 +14,10 @@ import numpy as np
 import pandas as pd
 import scipy
 from numpy.typing import NDArray
+
+from repository import ROOT
+
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
 from courtside.calibration.point_covariance import ellipsoid, mahalanobis
 from courtside.evaluation import joints
