@@ -22,6 +22,7 @@ import numpy as np
 import pandas as pd
 
 import marker_system
+import stated
 from repository import ROOT
 
 sys.path[:0] = [str(ROOT / "workflow" / "lib"), str(ROOT / "workflow" / "scripts")]
@@ -32,7 +33,6 @@ import fit_skeleton
 from courtside.body_model import take
 from courtside.evaluation import joints, kinematics
 from courtside.evaluation.movement import contacts
-from courtside.evaluation.numbers import stated
 from courtside.evaluation.numbers.players import NETWORK
 from courtside.footwork import feet
 from courtside.kinematics import joint_angles, shared_errors

@@ -14,11 +14,11 @@ from pathlib import Path
 import numpy as np
 
 import real_footage
+import stated
 from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
-from courtside.evaluation.numbers import stated
 from courtside.records.keypoints import keypoints, skeleton
 
 TAKE = f"walk-4cams/takes/balancing/{{stage}}/file/all-robust/{real_footage.NETWORK}.npz"

@@ -23,6 +23,7 @@ import numpy as np
 import pandas as pd
 import scipy
 
+import stated
 from repository import ROOT
 
 sys.path[:0] = [str(ROOT / "workflow" / "lib"), str(ROOT / "workflow" / "scripts")]
@@ -31,7 +32,7 @@ import fit_source
 
 from courtside.body_model import source, take
 from courtside.evaluation import joints, kinematics
-from courtside.evaluation.numbers import stated, views
+from courtside.evaluation.numbers import views
 from courtside.evaluation.numbers.players import NETWORK as MODEL
 from courtside.exports import device
 from courtside.geometry import interpolation, rotations, similarity

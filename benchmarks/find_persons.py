@@ -23,11 +23,11 @@ import numpy as np
 import pandas as pd
 
 import hall_markers
+import stated
 from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
-from courtside.evaluation.numbers import stated
 from courtside.geometry import camera as camera_models
 from courtside.pose import decoders, tiles
 from courtside.pose.detector import SIDE_OF_BOX, Region

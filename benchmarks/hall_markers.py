@@ -26,12 +26,12 @@ import yaml
 from scipy.spatial.transform import Rotation
 
 import marker_system
+import stated
 from many_sessions import copied
 from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
-from courtside.evaluation.numbers import stated
 from courtside.evaluation.numbers.players import NETWORK
 from courtside.geometry import camera as camera_models
 from courtside.geometry import triangulation

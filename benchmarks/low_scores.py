@@ -16,11 +16,11 @@ from pathlib import Path
 
 import numpy as np
 
+import stated
 from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.evaluation import error_fit, joints
-from courtside.evaluation.numbers import stated
 from courtside.evaluation.numbers.players import NETWORK
 from courtside.reconstruction import fusion, joint_correction
 from courtside.study.configuration import yaml_files

@@ -28,6 +28,7 @@ import yaml
 
 import hall_markers
 import marker_system
+import stated
 from many_sessions import copied
 from real_footage import LATER
 from repository import ROOT
@@ -35,7 +36,7 @@ from repository import ROOT
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
 from courtside.evaluation.numbers import networks as numbers
-from courtside.evaluation.numbers import register, stated
+from courtside.evaluation.numbers import register
 from courtside.pose import decoders
 from courtside.records.keypoints import skeleton
 from courtside.study import paths

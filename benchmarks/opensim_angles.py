@@ -17,12 +17,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+import stated
 from real_footage import LATER
 from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
-from courtside.evaluation.numbers import stated
 from courtside.evaluation.numbers.players import NETWORK
 
 OURS = f"walk-4cams/takes/balancing/pose3d_ik/file/all-robust/{NETWORK}.p1.mot"

@@ -21,11 +21,11 @@ import pandas as pd
 
 import body_model
 import peers
+import stated
 from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
-from courtside.evaluation.numbers import stated
 from courtside.exports import markers, opensim, opensim_model, trc
 from courtside.records.keypoints import keypoints, skeletal_motion
 from courtside.records.truth import take_truth

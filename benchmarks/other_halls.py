@@ -16,11 +16,12 @@ from pathlib import Path
 
 import numpy as np
 
+import stated
 import ways_to_calibrate
 from courtside.calibration.court import joint_adjustment
 from courtside.calibration.records import tie_points
 from courtside.evaluation import calibration as trials
-from courtside.evaluation.numbers import calibration, register, stated
+from courtside.evaluation.numbers import calibration, register
 from repository import ROOT
 from ways_to_calibrate import HALLS, WEIGHTS
 

@@ -22,6 +22,7 @@ from pathlib import Path
 import numpy as np
 import scipy
 
+import stated
 from people_seen import CONFIG, LIMITS, WEIGHTS
 from repository import ROOT
 
@@ -30,7 +31,6 @@ from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
 from courtside.calibration.court import joint_adjustment
 from courtside.calibration.people import from_nothing, unit, world_frame
-from courtside.evaluation.numbers import stated
 from courtside.evaluation.numbers.players import NETWORK as MODEL
 from courtside.geometry import camera as camera_models
 from courtside.geometry import similarity

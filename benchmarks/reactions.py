@@ -21,13 +21,13 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 
+import stated
 from repository import ROOT
 from strokes import made, skeletons
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.court import court
 from courtside.evaluation.movement import contacts, reactions, strokes
-from courtside.evaluation.numbers import stated
 from courtside.footwork import feet
 from courtside.geometry import interpolation
 from courtside.kinematics import cutoffs, filtering

@@ -18,13 +18,13 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 
+import stated
 from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.court import court
 from courtside.calibration.point_covariance import WITHIN_90
 from courtside.evaluation.movement import contacts, strokes
-from courtside.evaluation.numbers import stated
 from courtside.evaluation.numbers.players import NETWORK
 from courtside.footwork import feet
 from courtside.kinematics import cutoffs

@@ -17,13 +17,13 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+import stated
 import true_cameras
 import ways_to_calibrate
 from courtside.calibration.court import joint_adjustment
 from courtside.calibration.court_lines import edges, walk_and_lines
 from courtside.calibration.records import tie_points
 from courtside.evaluation import calibration, error_fit
-from courtside.evaluation.numbers import stated
 from courtside.evaluation.numbers.players import NETWORK
 from courtside.reconstruction import joint_correction
 from courtside.records.cameras import clicks

@@ -25,6 +25,7 @@ from pathlib import Path
 
 import numpy as np
 
+import stated
 from people_seen import WEIGHTS
 from repository import ROOT
 
@@ -37,7 +38,6 @@ from courtside.calibration.people.adjustment import court_clicks
 from courtside.calibration.wand import calibration, points
 from courtside.calibration.wand import quality as wand_quality
 from courtside.calibration.wand.points import SIGMA_M, Seen, Wand
-from courtside.evaluation.numbers import stated
 from courtside.geometry import camera as camera_models
 from courtside.geometry import rotations, similarity
 from courtside.geometry.similarity import Sim3

@@ -25,6 +25,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+import stated
 from people_seen import CONFIG, LIMITS, STATED, WEIGHTS, of_takes
 from repository import ROOT
 
@@ -44,7 +45,6 @@ from courtside.calibration.people import views as people_views
 from courtside.calibration.people.held_out import Points
 from courtside.calibration.records import covariance, tie_points
 from courtside.evaluation import calibration
-from courtside.evaluation.numbers import stated
 from courtside.evaluation.numbers.players import NETWORK
 from courtside.geometry import camera as camera_models
 from courtside.geometry import similarity
