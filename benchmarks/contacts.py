@@ -38,6 +38,17 @@ TAKES = {
 ALL = "all of them"
 
 
+def errors_of_times(known, steps, truth, what):
+    """Return errors and stated standard deviations (N, 2) s of all paired onsets, or ends."""
+    found = [np.zeros((0, 2))]
+    for person in set(known.person_id.tolist()) & set(truth.person_id.tolist()):
+        for foot in known.foot.tolist():
+            own = steps[(steps.person == person) & (steps.foot == foot)]
+            _, true_s = contacts.true_contact(truth, person, foot)
+            found.append(contacts.paired(known.time_s, own, true_s[what], what)[0])
+    return np.concatenate(found)
+
+
 def of_take(results, name):
     """Return the errors of each foot of a take."""
     session, take = name.split("/")
@@ -50,7 +61,7 @@ def of_take(results, name):
     truth = take_truth.read(results / "virtual" / session / "takes" / take / "truth.npz")
     known, steps, _ = feet.find(points, per_joint)
     errors = contacts.table(points, known, steps, truth)
-    pairs = [contacts.errors(known, steps, truth, what) for what in contacts.BOUNDARIES]
+    pairs = [errors_of_times(known, steps, truth, what) for what in contacts.BOUNDARIES]
     return errors.assign(take=name), pairs
 
 

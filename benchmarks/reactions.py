@@ -23,7 +23,7 @@ import pandas as pd
 
 import stated
 from repository import ROOT
-from strokes import made, skeletons
+from strokes import made, skeletons, summary_of_hits
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.court import court
@@ -171,10 +171,26 @@ def filmed(results, name):
     return judged(points, truth, cutoff_hz, name)
 
 
+def summary_of_answers(rows, what):
+    """Return counts and errors of the rows of `reactions.table` of one of `WORDS`; shares in %."""
+    own = rows[rows.what == what]
+    n_of, found = own.result.value_counts(), own[own.result == "found"]
+    n_true, error = len(found) + int(n_of.get("missed", 0)), found.error_ms.astype(float)
+    return {
+        "true": n_true,
+        "found_percent": 100 * len(found) / n_true if n_true else np.nan,
+        "false": int(n_of.get("false", 0)),
+        "bias_ms": error.median(),
+        "median_ms": error.abs().median(),
+        "within_40_ms_percent": 100 * (error.abs() <= 40).mean() if len(error) else np.nan,
+        "within_90_percent": 100 * found.within_90_percent.astype(float).mean(),
+    }
+
+
 def numbers(row, parts, sessions):
     """Yield the numbers of one row of each table, and print them."""
     hits, answered, stood = parts
-    each, about = strokes.summary(hits, RATE_HZ), (sessions,)
+    each, about = summary_of_hits(hits, RATE_HZ), (sessions,)
     right = np.average(stood.right_percent, weights=stood.n_frames)
     false = 100 * each["false"] / each["hits"]
     missed = int((hits.result == "missed").sum())
@@ -189,7 +205,7 @@ def numbers(row, parts, sessions):
     for part, (value, unit) in printed.items():
         yield "rally-hits", row, part, value, unit, *about, int(each["hits"]), missed, *MADE
     for what, words in WORDS.items():
-        one = reactions.summary(answered, what)
+        one = summary_of_answers(answered, what)
         n, right = int(one["true"]), (answered.what == what) & (answered.result == "found")
         p95 = answered[right].error_ms.astype(float).abs().quantile(0.95)
         printed = {

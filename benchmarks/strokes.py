@@ -138,10 +138,26 @@ def played(results, errors, seed):
     return rows.assign(session="new players", take=f"seed {seed}", true_hand=hand)
 
 
+def summary_of_hits(rows, rate_hz):
+    """Return counts and errors of rows of `strokes.table`, in frames of `rate_hz`; shares in %."""
+    count = rows.result.value_counts()
+    found = rows[rows.result == "found"]
+    n_hits = len(found) + count.get("missed", 0)
+    frames = found.error_ms.abs() * rate_hz / 1000
+    return {
+        "hits": n_hits,
+        "found_percent": 100 * len(found) / n_hits if n_hits else np.nan,
+        "false": int(count.get("false", 0)),
+        "median_frames": frames.median(),
+        "p95_frames": frames.quantile(0.95),
+        "within_90_percent": 100 * found.within_90_percent.astype(float).mean(),
+    }
+
+
 def show(rows):
     """Print counts, errors of times, and the errors of each hypothesis."""
     found = rows[rows.result == "found"]
-    line = {key: round(float(value), 2) for key, value in strokes.summary(rows, RATE_HZ).items()}
+    line = {key: round(float(value), 2) for key, value in summary_of_hits(rows, RATE_HZ).items()}
     print(rows.session.iloc[0] if rows.session.nunique() == 1 else "all filmed takes", line)
     for overhead, part in found.groupby(found.overhead.astype(bool)):
         print("  overhead" if overhead else "  low", f"n = {len(part)}")
@@ -155,7 +171,7 @@ def show(rows):
 
 def counts(row, rows, sessions):
     """Yield the numbers of the table of hits."""
-    each = strokes.summary(rows, RATE_HZ)
+    each = summary_of_hits(rows, RATE_HZ)
     n, missed = int(each["hits"]), int((rows.result == "missed").sum())
     about = sessions, n, missed, *MADE
     yield "strokes", row, "hits", n, "", *about

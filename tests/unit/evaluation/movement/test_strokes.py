@@ -42,13 +42,3 @@ def test_missed_false_and_cut_ones_are_told_apart(perfect):
     assert found.result.value_counts().loc[["missed", "false"]].tolist() == [1, 1]
     short = points.between(first - 0.1, points.time_s[-1])
     assert strokes.table(rows, short, truth).result.iloc[0] == "cut"
-
-
-def test_the_summary_counts_and_gives_errors_in_frames(perfect):
-    points, truth, rows = perfect
-    table = strokes.table(rows.assign(time_s=rows.time_s + 1 / 30), points, truth)
-    found = strokes.summary(table, 30.0)
-    assert found["found_percent"] == 100
-    assert found["false"] == 0
-    assert found["median_frames"] == pytest.approx(1.0)
-    assert found["within_90_percent"] == 0 if 1.645 * 0.02 < 1 / 30 else 100

@@ -72,18 +72,7 @@ def _frames(
     }
 
 
-def errors(contacts: Contacts, steps: pd.DataFrame, truth: TakeTruth, what: str) -> NDArray:
-    """Return errors and stated standard deviations (N, 2) s of all paired onsets, or ends."""
-    found = [np.zeros((0, 2))]
-    for person in set(contacts.person_id.tolist()) & set(truth.person_id.tolist()):
-        for foot in contacts.foot.tolist():
-            own = steps[(steps.person == person) & (steps.foot == foot)]
-            _, true_s = true_contact(truth, person, foot)
-            found.append(_paired(contacts.time_s, own, true_s[what], what)[0])
-    return np.concatenate(found)
-
-
-def _paired(
+def paired(
     time_s: NDArray, steps: pd.DataFrame, true_s: NDArray, what: str
 ) -> tuple[NDArray, int, int]:
     """Return errors and sigmas (N, 2) of pairs, and how many true and found times there are."""
@@ -101,7 +90,7 @@ def _boundaries(
     """Return counts of true and found steps and the errors of both boundaries."""
     row: dict[str, float] = {}
     for what in BOUNDARIES:
-        pairs, n_true, n_found = _paired(time_s, steps, true_s[what], what)
+        pairs, n_true, n_found = paired(time_s, steps, true_s[what], what)
         size, known = abs(pairs[:, 0]), len(pairs) > 0
         row |= {f"n_true_{what}": n_true, f"n_found_{what}": n_found}
         row |= {

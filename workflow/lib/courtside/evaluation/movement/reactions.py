@@ -14,7 +14,6 @@ SAME_S = 0.15  # ASSUME: a landing this near to a true one is that split step's
 CUT_S = strokes.CUT_S
 SPLIT = "split_step"
 INTERVALS = ("to_split", "to_step", "split_to_step")
-COMPARED = (SPLIT, *INTERVALS)
 COLUMNS = [
     "person", "what", "result", "hit_s", "true_s", "found_s", "error_ms", "sigma_ms",
     "within_90_percent",
@@ -108,20 +107,4 @@ def _compared(true_s: float, found_s: float, sigma_s: float) -> dict[str, object
         "error_ms": 1000 * (found_s - true_s),
         "sigma_ms": 1000 * sigma_s,
         "within_90_percent": bool(abs(found_s - true_s) <= WITHIN_90 * sigma_s),
-    }
-
-
-def summary(rows: pd.DataFrame, what: str) -> dict[str, float]:
-    """Return counts and errors of the rows of `table` of one of `COMPARED`; shares in %."""
-    own = rows[rows.what == what]
-    n_of, found = own.result.value_counts(), own[own.result == "found"]
-    n_true, error = len(found) + int(n_of.get("missed", 0)), found.error_ms.astype(float)
-    return {
-        "true": n_true,
-        "found_percent": 100 * len(found) / n_true if n_true else np.nan,
-        "false": int(n_of.get("false", 0)),
-        "bias_ms": error.median(),
-        "median_ms": error.abs().median(),
-        "within_40_ms_percent": 100 * (error.abs() <= 40).mean() if len(error) else np.nan,
-        "within_90_percent": 100 * found.within_90_percent.astype(float).mean(),
     }

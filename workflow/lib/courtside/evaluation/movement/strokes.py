@@ -1,6 +1,5 @@
 """Errors of a simulated take's strokes against the true hits, and of each hypothesis by itself."""
 
-import numpy as np
 import pandas as pd
 
 from courtside.calibration.point_covariance import WITHIN_90
@@ -60,20 +59,4 @@ def _errors(stroke: pd.Series, true_s: float, found: signals.Signals) -> dict[st
         "sigma_ms": 1000 * stroke.sigma_s,
         "within_90_percent": bool(abs(error_s) <= WITHIN_90 * stroke.sigma_s),
         **{f"{cue}_ms": 1000 * (time_s - true_s) for cue, time_s in cue_times_s.items()},
-    }
-
-
-def summary(rows: pd.DataFrame, rate_hz: float) -> dict[str, float]:
-    """Return counts and errors of rows of `table`: errors in frames of `rate_hz`, shares in %."""
-    count = rows.result.value_counts()
-    found = rows[rows.result == "found"]
-    n_hits = len(found) + count.get("missed", 0)
-    frames = found.error_ms.abs() * rate_hz / 1000
-    return {
-        "hits": n_hits,
-        "found_percent": 100 * len(found) / n_hits if n_hits else np.nan,
-        "false": int(count.get("false", 0)),
-        "median_frames": frames.median(),
-        "p95_frames": frames.quantile(0.95),
-        "within_90_percent": 100 * found.within_90_percent.astype(float).mean(),
     }
