@@ -16,6 +16,7 @@ others. Writes docs/numbers/people_alone.csv.
 
 import argparse
 import sys
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -30,7 +31,8 @@ sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
 from courtside.calibration.court import joint_adjustment
-from courtside.calibration.people import from_nothing, unit, world_frame
+from courtside.calibration.people import unit, world_frame
+from courtside.calibration.records import covariance as camera_covariance
 from courtside.evaluation.numbers.players import NETWORK as MODEL
 from courtside.geometry import camera as camera_models
 from courtside.geometry import similarity
@@ -112,6 +114,23 @@ def clicked(real, places, seed):
     return unit.of_clicks(stated_ends, names, xy, **CLICK)
 
 
+def rescaled(found, scale):
+    """Return the result with another unit, which replaces its scale and the error of its scale."""
+    factor, names = scale.metres, [camera.name for camera in found.cameras]
+    cameras = [
+        replace(camera, cam_from_world=camera.cam_from_world * [1, 1, 1, factor])
+        for camera in found.cameras
+    ]
+    grown = np.ones((len(names), len(camera_covariance.PARAMETERS)))
+    grown[:, 3:6] = factor  # the translations
+    own = found.covariance.of(names).covariance * np.outer(grown, grown)
+    shape = camera_covariance.CameraCovariance(names, own).of_columns()
+    places = factor * found.places
+    covariance = world_frame.of_shape(cameras, shape, places, scale.sigma)
+    named = camera_covariance.of_network(names, covariance, found.covariance.frame)
+    return replace(found, cameras=cameras, covariance=named, scale=scale, places=places)
+
+
 def with_lengths(found, known, heights):
     """Return cameras by heights with the unit of known lengths, or of both.
 
@@ -123,7 +142,7 @@ def with_lengths(found, known, heights):
     if heights:
         each.append(unit.Unit(1.0, found.scale.sigma, unit.HEIGHTS))
         covariance = scipy.linalg.block_diag(covariance, found.scale.sigma**2)
-    return from_nothing.rescaled(found, unit.combined(each, covariance))
+    return rescaled(found, unit.combined(each, covariance))
 
 
 def rows(results, name, takes, names):

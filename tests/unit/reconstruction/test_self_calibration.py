@@ -1,13 +1,17 @@
 """Takes for the calibration from people: common times, sure joints, cameras that do not film."""
 
+import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+sys.path.append(str(Path(__file__).parents[3] / "benchmarks"))  # last: both have a `scene`
+import people_alone
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
-from courtside.calibration.people import from_nothing, unit
+from courtside.calibration.people import unit
 from courtside.calibration.people.from_nothing import Guess
 from courtside.calibration.people.views import Limits
 from courtside.geometry import camera as camera_models
@@ -124,7 +128,7 @@ def test_a_known_length_stands_for_heights(calibrated):
 
 
 def test_another_unit_is_that_of_a_calibration_with_this_length(calibrated):
-    """`rescaled` gives the cameras, and the errors of points, of the calibration by the length."""
+    """It gives the cameras, and the errors of points, of the calibration by the length."""
     ends = np.array([[-1.0, 1.0, 0.0], [1.0, 1.0, 0.0]])
     xy = np.stack([camera_models.project(camera, ends) for camera in CAMERAS])
     known = unit.KnownLength("line", 2.0, xy, click_sigma_px=1.0)
@@ -132,7 +136,7 @@ def test_another_unit_is_that_of_a_calibration_with_this_length(calibrated):
     tall = calibrated(*[Clock()] * 3, heights_m=(1.76, 1.98))
     (own,), _ = unit.by_lengths(tall.cameras, [known])
     assert abs(own.metres - 1) > 0.05
-    found = from_nothing.rescaled(tall, replace(wanted.scale, metres=own.metres))
+    found = people_alone.rescaled(tall, replace(wanted.scale, metres=own.metres))
     for one, other in zip(found.cameras, wanted.cameras, strict=True):
         np.testing.assert_allclose(one.centre_in_world, other.centre_in_world, atol=0.02)
     spread = [

@@ -11,6 +11,6 @@ relative_poses: `pair`, `pose`: relative poses of cameras from tracks of unknown
 unit: `Body`, `KnownLength`, `of_clicks`, `find`, `combined`, `by_lengths`, `by_heights`: the unit
 world_frame: `floor`, `axes`, `of_shape`: the floor from feet or points, axes, covariance
 warnings: `find`: warnings about cameras from people alone
-from_nothing: `guess`, `adjust`, `check`, `rescaled`, `summary`: cameras from people alone
+from_nothing: `guess`, `adjust`, `check`, `summary`: cameras from people alone
 refinement: `refine`, `unchanged`: which cameras are taken, what was wrong, the table
 """

@@ -225,19 +225,6 @@ def adjust(
     return Found(cameras, named, score, scale, found, places)
 
 
-def rescaled(found: Found, scale: unit.Unit) -> Found:
-    """Return the result with another unit, which replaces its scale and the error of its scale."""
-    factor, names = scale.metres, [camera.name for camera in found.cameras]
-    cameras, places = [_scaled(camera, factor) for camera in found.cameras], factor * found.places
-    grown = np.ones((len(names), len(PARAMETERS)))
-    grown[:, 3:6] = factor  # the translations
-    own = found.covariance.of(names).covariance * np.outer(grown, grown)
-    shape = CameraCovariance(names, own).of_columns()
-    covariance = world_frame.of_shape(cameras, shape, places, scale.sigma)
-    named = camera_covariance.of_network(names, covariance, found.covariance.frame)
-    return replace(found, cameras=cameras, covariance=named, scale=scale, places=places)
-
-
 def summary(found: Found, takes: Sequence[str]) -> dict[str, Any]:
     """Return the quality of cameras as numbers and one `line`."""
     share = 1000 * found.score.typical()
