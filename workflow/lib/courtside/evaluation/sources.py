@@ -16,7 +16,6 @@ from courtside.geometry.similarity import Sim3
 from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.body_motion import BodyMotion
 
-ALIGNMENTS = ("body_frame", "trunk_frame", "root_relative", "procrustes_take", "procrustes_frame")
 PARTS = ("origin", "scale", "rotation", "time")
 LONGEST_S = 0.1  # ASSUME: longer gaps are not interpolated; a fast wrist turns within them
 MOST_SHIFT_S = 0.3  # ASSUME: largest error of a clock that is searched

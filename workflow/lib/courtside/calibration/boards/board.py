@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from courtside.study.errors import InputError
 
-KINDS = ("charuco", "chessboard", "tags", "aprilgrid")
 LEAST_SQUARES = 4  # of a chessboard along one side: OpenCV finds no smaller ones
 MARKER_SHARE = 0.75  # of a square, where the session does not say it: as most programs print them
 # Of Kalibr's AprilGrid: family, cells of black around the bits, and the share as in its examples.
@@ -31,7 +30,7 @@ class Board:
     Raises `InputError` if the board is impossible or rotationally symmetric.
     """
 
-    kind: str  # one of `KINDS`
+    kind: str  # "charuco", "chessboard", "tags" or "aprilgrid"
     squares: tuple[int, int]  # columns and rows; of tags: these
     square_m: float  # side of a square; of tags: from one tag to the next
     marker_m: float  # side of a marker or tag
