@@ -362,3 +362,14 @@ def test_a_plain_camera_looks_along_z_through_the_centre_of_its_picture():
     camera = cameras.plain("left", (1920, 1080), 1.2)
     assert camera.K[0, 0] == camera.K[1, 1] == pytest.approx(2304.0)
     np.testing.assert_allclose(cameras.project(camera, [0.0, 0.0, 2.0]), [959.5, 539.5])
+
+
+def test_a_camera_looks_at_its_aim_and_roll_turns_it_about_its_axis():
+    level, rolled = (cameras.look_at([0, -5, 1], [0, 0, 1], np.radians(roll)) for roll in (0, -10))
+    np.testing.assert_allclose(level[:, :3], [[1, 0, 0], [0, 0, -1], [0, 1, 0]], atol=1e-12)
+    # Turned clockwise, the camera sees what is straight below to the right of its middle.
+    down = rolled[:, :3] @ [0, 0, -1.0]
+    np.testing.assert_allclose(
+        down, [np.sin(np.radians(10)), np.cos(np.radians(10)), 0], atol=1e-12
+    )
+    np.testing.assert_allclose(rolled[:, :3] @ [0, -5, 1] + rolled[:, 3], 0, atol=1e-12)

@@ -114,17 +114,6 @@ def test_a_lens_scales_with_the_picture():
     assert large[0][0, 2] + 0.5 == pytest.approx(8 * (small[0][0, 2] + 0.5))
 
 
-def test_roll_turns_the_camera_clockwise():
-    level, rolled = (layouts.look_at([0, -5, 1], [0, 0, 1], roll) for roll in (0.0, 10.0))
-    np.testing.assert_allclose(level[:, :3], [[1, 0, 0], [0, 0, -1], [0, 1, 0]], atol=1e-12)
-    # What was straight below is now to the left of the bottom... of a picture turned clockwise.
-    down = rolled[:, :3] @ [0, 0, -1.0]
-    np.testing.assert_allclose(
-        down, [np.sin(np.radians(10)), np.cos(np.radians(10)), 0], atol=1e-12
-    )
-    np.testing.assert_allclose(rolled[:, :3] @ [0, -5, 1] + rolled[:, 3], 0, atol=1e-12)
-
-
 def test_the_same_generator_gives_the_same_cameras():
     one, two, other = cameras(seed=1), cameras(seed=1), cameras(seed=2)
     assert all((a.K == b.K).all() for a, b in zip(one, two, strict=True))

@@ -1,6 +1,7 @@
 """Geometry of cameras: projection, rotations, similarity, epipolar lines, triangulation.
 
-camera: `Camera`, `plain`, `project`, `undistort`, `crop`, `scaled`, `check_size`, and TOML files
+camera: `Camera`, `plain`, `look_at`, `project`, `undistort`, `crop`, `scaled`, `check_size`, and
+    TOML files
 picture_size: `relation`, `scaled_size`, `advice`: a video's size against the calibrated one
 camera_fields: checked numbers of calibration files (`numbers`, `pose`, `five_coefficients`)
 rotations: `rotation_from_rodrigues`, `rodrigues_from_rotation`, `interpolate`, `invert`, `composed`

@@ -96,6 +96,21 @@ def plain(name: str, size: tuple[int, int], focal_share: float) -> Camera:
     return Camera(name, size, np.array(matrix), np.zeros(5), np.eye(3, 4))
 
 
+def look_at(place: ArrayLike, target: ArrayLike, roll: float = 0.0) -> NDArray:
+    """Return cam_from_world (3, 4) of a camera at `place` (3,) m that looks at `target` (3,) m.
+
+    At roll 0 the picture's x is horizontal; `roll`, radians, turns the camera about its optical
+    axis, anticlockwise as it sees the world. It must not look straight up or down.
+    """
+    forward = np.subtract(target, place)
+    forward = forward / np.linalg.norm(forward)
+    right = np.cross(forward, [0, 0, 1.0])
+    right /= np.linalg.norm(right)
+    upright = np.stack([right, np.cross(forward, right), forward])
+    rotation = rotations.rotation_from_rodrigues([0, 0, roll]) @ upright
+    return np.column_stack([rotation, -rotation @ np.asarray(place, dtype=float)])
+
+
 def project(camera: Camera, xyz_in_world: ArrayLike) -> NDArray:
     """Project points (..., 3) m to distorted px (..., 2), not limited to the picture.
 

@@ -1,11 +1,10 @@
 """Places and lenses of the fixed cameras of a virtual session."""
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from courtside.calibration.court.court import Court
-from courtside.geometry import rotations
-from courtside.geometry.camera import Camera
+from courtside.geometry.camera import Camera, look_at
 from virtualgym.presets import Preset
 
 # ASSUME: a phone's main camera and places as in a large hall; where no source stands, none is
@@ -120,7 +119,7 @@ def fixed_cameras(
         matrix[[0, 1], [0, 1]] *= zoom
         place = centre + np.array([*places[name], HEIGHTS_M[name]])
         roll_deg = rng.uniform(-ROLL_DEG, ROLL_DEG)
-        pose = look_at(place, aim, roll_deg)
+        pose = look_at(place, aim, -np.radians(roll_deg))
         made.append(Camera(name, size_px, matrix, dist, pose))
     return made
 
@@ -155,22 +154,6 @@ def lens(
         ]
     )
     return matrix, LENS + np.append(spreads * draws[3:], 0.0)
-
-
-def look_at(place: ArrayLike, target: ArrayLike, roll_deg: float = 0.0) -> NDArray:
-    """Return cam_from_world (3, 4) of a camera at `place` (3,) m that looks at `target` (3,) m.
-
-    At roll 0 the picture's x is horizontal; `roll_deg` turns the camera about its optical axis,
-    clockwise as it sees the world.
-    """
-    forward = np.subtract(target, place)
-    forward = forward / np.linalg.norm(forward)
-    right = np.cross(forward, [0, 0, 1.0])
-    right /= np.linalg.norm(right)
-    upright = np.stack([right, np.cross(forward, right), forward])
-    roll = rotations.rotation_from_rodrigues([0, 0, -np.radians(roll_deg)])
-    rotation = roll @ upright
-    return np.column_stack([rotation, -rotation @ np.asarray(place, dtype=float)])
 
 
 def _places(

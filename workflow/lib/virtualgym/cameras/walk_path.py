@@ -11,7 +11,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from courtside.calibration.court.court import Court
 from courtside.geometry import rotations
-from courtside.geometry.camera import Camera
+from courtside.geometry.camera import Camera, look_at
 from virtualgym.cameras import layouts, lens_errors, row_warp
 from virtualgym.presets import Preset
 
@@ -110,7 +110,7 @@ class Walk:
         """Return cam_from_world (3, 4) at a time, metres."""
         place = np.append(self.route(time_s), HEIGHT_M)
         place = place + sum(waves.at(time_s) for waves in self.sway)
-        upright = layouts.look_at(place, self.aim_at + self.wander.at(time_s))[:, :3]
+        upright = look_at(place, self.aim_at + self.wander.at(time_s))[:, :3]
         turn = sum(waves.at(time_s) for waves in self.shake)
         rotation = rotations.rotation_from_rodrigues(turn) @ upright
         return np.column_stack([rotation, -rotation @ place])

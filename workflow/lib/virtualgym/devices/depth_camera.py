@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.geometry import rotations
-from courtside.geometry.camera import Camera
+from courtside.geometry.camera import Camera, look_at
 from virtualgym.body.athlete import Athlete
-from virtualgym.cameras import layouts
 from virtualgym.devices import depth_noise
 from virtualgym.rendering import (
     background,
@@ -139,7 +138,7 @@ class DepthCamera:
         middle, ahead = start.pelvis[:2], start.world_from_pelvis[:2, 2]
         angle = np.arctan2(ahead[1], ahead[0]) + np.radians(self.azimuth_deg)
         away = self.distance_m * np.array([np.cos(angle), np.sin(angle)])
-        pose = layouts.look_at([*(middle + away), self.height_m], [*middle, self.aim_m])
+        pose = look_at([*(middle + away), self.height_m], [*middle, self.aim_m])
         depth = self._camera(f"{name}-depth", self.depth_size_px or self.size_px, pose)
         turn, shift = self.colour_from_depth[:, :3], self.colour_from_depth[:, 3]
         moved = np.column_stack([turn @ pose[:, :3], turn @ pose[:, 3] + shift])

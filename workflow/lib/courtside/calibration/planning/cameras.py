@@ -7,7 +7,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
-from courtside.geometry import rotations
+from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError
 
@@ -38,18 +38,13 @@ def camera(
     if fov_deg is not None:
         focal_px = width / 2 / np.tan(np.radians(fov_deg) / 2)
     K = np.array([[focal_px, 0, (width - 1) / 2], [0, focal_px, (height - 1) / 2], [0, 0, 1]])
-    forward = np.subtract(aim_m, place_m).astype(float)
+    forward = np.subtract(aim_m, place_m)
     if np.hypot(*forward[:2]) < 1e-3 * np.maximum(np.linalg.norm(forward), 1e-9):
         raise InputError(
             f"camera {name}: expected it to look sideways, found the aim {list(aim_m)} from "
             f"{list(place_m)}; move one of them"
         )
-    forward /= np.linalg.norm(forward)
-    right = np.cross(forward, [0, 0, 1.0])
-    right /= np.linalg.norm(right)
-    upright = np.stack([right, np.cross(forward, right), forward])
-    rotation = rotations.rotation_from_rodrigues([0, 0, roll]) @ upright
-    pose = np.column_stack([rotation, -rotation @ np.asarray(place_m, dtype=float)])
+    pose = camera_models.look_at(place_m, aim_m, roll)
     return Camera(name, (int(width), int(height)), K, np.zeros(5), pose)
 
 
