@@ -3,8 +3,6 @@
 Reads 3D keypoints of every stage and fusion; writes errors.
 """
 
-import pandas as pd
-
 from courtside.evaluation import joints
 from courtside.records import tables
 from courtside.records.keypoints import keypoints
@@ -14,12 +12,8 @@ from courtside.study.execution.script import run
 
 def main(pose3d_npz, truth_npz, errors_csv, *, labels):
     truth = take_truth.read(truth_npz)
-    parts = [
-        table(keypoints.read_3d(path), truth).assign(**about)
-        for path, about in zip(pose3d_npz, labels, strict=True)
-    ]
-    rows = pd.concat(parts, ignore_index=True)
-    tables.write(errors_csv, tables.labels_first(rows, labels[0]))
+    parts = [table(keypoints.read_3d(path), truth) for path in pose3d_npz]
+    tables.write(errors_csv, tables.joined(parts, labels))
 
 
 def table(points, truth):

@@ -3,8 +3,6 @@
 Reads them for each way in which the take was measured; writes one table.
 """
 
-import pandas as pd
-
 from courtside.quality import doubts, seen, verdict
 from courtside.records import tables
 from courtside.records.cameras import footage
@@ -14,9 +12,8 @@ from courtside.study.execution.script import run
 
 
 def main(quality_csv, *, ways):
-    judged = [judge(way).assign(**way["labels"]) for way in ways]
-    rows = pd.concat(judged, ignore_index=True)
-    tables.write(quality_csv, tables.labels_first(rows, ways[0]["labels"]))
+    judged = tables.joined(map(judge, ways), [way["labels"] for way in ways])
+    tables.write(quality_csv, judged)
 
 
 def judge(way):

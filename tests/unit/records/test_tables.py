@@ -51,6 +51,15 @@ def test_labels_that_differ_by_row_come_first_too():
     assert list(found) == ["take", "n", "error_mm"] and found["take"].tolist() == ["a", "b"]
 
 
+def test_parts_are_joined_each_with_its_own_labels():
+    parts = [pd.DataFrame({"n": [1, 2]}), pd.DataFrame({"n": [3]})]
+    found = tables.joined(parts, [{"stage": "raw"}, {"stage": "filtered"}])
+    assert found.columns.tolist() == ["stage", "n"] and found.index.tolist() == [0, 1, 2]
+    assert found.to_numpy().tolist() == [["raw", 1], ["raw", 2], ["filtered", 3]]
+    with pytest.raises(ValueError, match="shorter"):
+        tables.joined(parts, [{"stage": "raw"}])
+
+
 def test_nothing_is_left_of_a_table_that_cannot_be_written(tmp_path):
     with pytest.raises(ValueError, match="float_format"):
         tables.write(tmp_path / "rows.csv", pd.DataFrame({"n": [0.5]}), float_format=3)

@@ -1,6 +1,6 @@
 """Write and read the CSV tables of the study: whole files, labels first, 6 significant digits."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -53,6 +53,12 @@ def write(
         if about:
             file.write(f"# {about}\n")
         rows.to_csv(file, index=False, float_format=float_format, lineterminator="\n")
+
+
+def joined(parts: Iterable[pd.DataFrame], labels: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
+    """Return parts one below the other, each with its own `labels` in the first columns."""
+    each = [part.assign(**about) for part, about in zip(parts, labels, strict=True)]
+    return labels_first(pd.concat(each, ignore_index=True), labels[0])
 
 
 def labels_first(rows: pd.DataFrame, labels: Iterable[str]) -> pd.DataFrame:
