@@ -10,13 +10,13 @@ from courtside.calibration.records import tie_points
 from courtside.calibration.records.support import Support
 from courtside.pages.viewer import layers
 from courtside.records import footwork, study_table, tables
+from courtside.records import strokes as stroke_tables
 from courtside.records.cameras import frame_table, frame_times, shake_table
 from courtside.records.devices import device_motion
 from courtside.records.keypoints import body_motion, keypoints, people, sightings
 from courtside.records.truth import session_truth as truth
 from courtside.records.truth import take_truth
 from courtside.sfm import grid
-from courtside.strokes import detect, reaction
 from fixtures.cameras import networks_made, scene
 from fixtures.people import found, walker
 from fixtures.people.bodies_made import body
@@ -165,13 +165,15 @@ def foot_events(folder):
 def strokes(folder):
     """Write strokes."""
     rows = [("p1", 1.25, 0.02, "right", "found", True, 2.125, 1.5, -2.75, 5.5, 1.0)]
-    tables.write(folder / "strokes.csv", pd.DataFrame(rows, columns=detect.COLUMNS))
+    tables.write(folder / "strokes.csv", pd.DataFrame(rows, columns=stroke_tables.STROKE_COLUMNS))
 
 
 def reactions(folder):
     """Write reactions."""
     rows = [("p2", "p1", 1.0, 1.0, 1.15, 1.35, 0.15, 0.02, 0.35, 0.03, 0.2, 0.02)]
-    tables.write(folder / "reactions.csv", pd.DataFrame(rows, columns=reaction.COLUMNS))
+    tables.write(
+        folder / "reactions.csv", pd.DataFrame(rows, columns=stroke_tables.REACTION_COLUMNS)
+    )
 
 
 def named(folder):
@@ -215,6 +217,6 @@ FORMATS += [
     Format("steps-csv", 300, stances, footwork.read_steps),
     Format("foot-events-csv", 300, foot_events, footwork.read_events),
     Format("study-csv", 500, measured, study_table.read),
-    Format("strokes-csv", 300, strokes, detect.read),
-    Format("reactions-csv", 300, reactions, reaction.read),
+    Format("strokes-csv", 300, strokes, stroke_tables.read),
+    Format("reactions-csv", 300, reactions, stroke_tables.read_reactions),
 ]

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from courtside.evaluation.movement import strokes
-from courtside.strokes import detect
+from courtside.records.strokes import STROKE_COLUMNS
 from fixtures.people import strokes_made
 
 
@@ -15,7 +15,7 @@ def perfect():
     points, truth = strokes_made.take(seed=1)
     true_s = [hit for hit in strokes.hits(truth, "p1") if hit < points.time_s[-1]]
     rows = pd.DataFrame({"time_s": true_s, "person": "p1", "sigma_s": 0.02, "hand": "right"})
-    return points, truth, rows.reindex(columns=detect.COLUMNS).assign(overhead=True)
+    return points, truth, rows.reindex(columns=STROKE_COLUMNS).assign(overhead=True)
 
 
 def test_hits_are_read_in_order_and_their_windows_are_not(perfect):

@@ -14,11 +14,10 @@ import pandas as pd
 import scipy
 from numpy.typing import NDArray
 
-from courtside.records import tables
 from courtside.records.keypoints.keypoints import Keypoints3D
+from courtside.records.strokes import STROKE_COLUMNS
 from courtside.strokes import local_fit, signals
 from courtside.strokes.signals import HANDS, Arm, Signals
-from courtside.study.errors import StrPath
 
 # ASSUME: limits from the development takes (players-dev); no source is recorded. Reaches and
 # heights are shares of arm and trunk.
@@ -34,10 +33,6 @@ PEAK_S = 0.1  # around an extremum: what a parabola is fitted to
 # development bodies (benchmarks/strokes.py).
 LEAD_S = {"overhead": (-0.002, 0.016), "low": (0.102, 0.021)}
 SLOW_HZ = 15.0  # ASSUME: below this rate errors grow with the square of the frame interval
-COLUMNS = [
-    "person", "time_s", "sigma_s", "hand", "hand_from", "overhead", "height_m", "x_m", "y_m",
-    "speed_m_s", "quality",
-]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -167,7 +162,7 @@ def playing_hand(found: Signals) -> str | None:
 
 
 def table(points: Keypoints3D, hand_of: Mapping[str, str | None]) -> pd.DataFrame:
-    """Return the strokes of all persons of a take, in the columns `COLUMNS`.
+    """Return the strokes of all persons of a take, in the columns `STROKE_COLUMNS`.
 
     `hand_of` is the stated playing hand by person, "left", "right" or None: then it is found.
     Positions are in the world: of the trunk on the floor (x, y), of the wrist over it (height).
@@ -181,18 +176,8 @@ def table(points: Keypoints3D, hand_of: Mapping[str, str | None]) -> pd.DataFram
         for stroke in find(found, hand) if hand else []:
             source = "stated" if stated else "found"
             rows.append({"person": person, "hand_from": source, **_row(found, stroke)})
-    made = pd.DataFrame(rows, columns=COLUMNS)
+    made = pd.DataFrame(rows, columns=STROKE_COLUMNS)
     return made.sort_values(["time_s", "person"], ignore_index=True)
-
-
-def read(path: StrPath) -> pd.DataFrame:
-    """Read strokes that `table` made; raise `InputError` if the file is no such table."""
-    numbers = [name for name in COLUMNS if name.endswith(("_s", "_m")) or name == "quality"]
-    return tables.read(
-        path,
-        "a table of strokes",
-        lambda rows: tables.column_fault(rows, COLUMNS, numbers),
-    )
 
 
 def _row(found: Signals, stroke: Stroke) -> dict[str, object]:

@@ -7,22 +7,17 @@ floor, of a split step; the foot leaves, of a step) and `stop_s` (the first foot
 import numpy as np
 import pandas as pd
 
-from courtside.records import tables
-from courtside.study.errors import StrPath
+from courtside.records.strokes import REACTION_COLUMNS
 
 # ASSUME: limits of a reaction to a stroke; no source is recorded.
 EARLY_S = 0.3  # a split step may begin before the stroke: players foresee it,
 LANDS_EARLY_S = 0.1  # and land before it, or seem to
 LATEST_S = 1.2  # what begins later answers something else
 STEPS = ("step", "lunge")
-COLUMNS = [
-    "person", "opponent", "hit_s", "split_start_s", "split_stop_s", "first_step_s", "to_split_s",
-    "to_split_sigma_s", "to_step_s", "to_step_sigma_s", "split_to_step_s", "split_to_step_sigma_s",
-]  # fmt: skip
 
 
 def join(strokes: pd.DataFrame, events: pd.DataFrame) -> pd.DataFrame:
-    """Return a row for each stroke and each other person who has events, in columns `COLUMNS`.
+    """Return a row for each stroke and each other person who has events: `REACTION_COLUMNS`.
 
     `strokes` are of `courtside.strokes.detect.table`, `events` have the columns `person`, `event`,
     `start_s`, `start_sigma_s`, `stop_s`, `stop_sigma_s`. Intervals end when the split step lands
@@ -38,17 +33,7 @@ def join(strokes: pd.DataFrame, events: pd.DataFrame) -> pd.DataFrame:
             own = events[events.person.astype(str) == person]
             reacted = _reaction(hit.time_s, hit.sigma_s, own, stop_s)
             rows.append({"person": person, "opponent": hit.person, "hit_s": hit.time_s, **reacted})
-    return pd.DataFrame(rows, columns=COLUMNS)
-
-
-def read(path: StrPath) -> pd.DataFrame:
-    """Read reactions that `join` made; raise `InputError` if the file is no such table."""
-    numbers = [name for name in COLUMNS if name.endswith("_s")]
-    return tables.read(
-        path,
-        "a table of reactions",
-        lambda rows: tables.column_fault(rows, COLUMNS, numbers),
-    )
+    return pd.DataFrame(rows, columns=REACTION_COLUMNS)
 
 
 def _reaction(hit_s: float, sigma_s: float, own: pd.DataFrame, stop_s: float) -> dict[str, float]:
