@@ -57,9 +57,9 @@ class Distance:
     corrected_m: float
     sigma_m: float  # standard deviation of `corrected_m`, those of the bias and the gaps included
     camera_sigma_m: float  # from the calibration; NaN: unknown
-    gaps_m: float  # what gaps contribute to `corrected_m`
-    gaps_sigma_m: float  # standard deviation of `gaps_m`
     seconds: float  # from the first to the last known frame
+    gaps_m: float = 0.0  # what gaps contribute to `corrected_m`
+    gaps_sigma_m: float = 0.0  # standard deviation of `gaps_m`
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,11 +100,14 @@ def measure(
     leave too much speed in rests, and all of it too little, for negative squares are cut at 0; a
     half left 0.1 % of the length on made-up footwork where noise had added 4 %.
     """
-    known = _between_gaps(position, parts, rate_hz, noise, order, axes, model_bias, others)
-    speed = np.linalg.norm(noise_propagation.differentiate(position, rate_hz)[:, axes], axis=1)
+    velocity = noise_propagation.differentiate(position, rate_hz)
+    speed = np.linalg.norm(velocity[:, axes], axis=1)
     runs = filtering.runs(np.isfinite(speed))
     if not runs:
-        return known
+        return replace(UNKNOWN, measured_m=0.0, seconds=0.0)
+    known = _between_gaps(
+        position, velocity, runs, parts, rate_hz, noise, order, axes, model_bias, others
+    )
     share = known.corrected_m / known.measured_m if known.measured_m else 1.0
     gaps = bridged(position[:, axes], share * speed, runs, rate_hz)
     longer = 1 + gaps.length_m / known.measured_m if known.measured_m else 1.0
@@ -115,15 +118,16 @@ def measure(
         camera_sigma_m=known.camera_sigma_m * longer,
         gaps_m=gaps.length_m,
         gaps_sigma_m=gaps.sigma_m,
-        seconds=(runs[-1][1] - 1 - runs[0][0]) / rate_hz,
     )
 
 
-def _between_gaps(position, parts, rate_hz, noise, order, axes, model_bias, others) -> Distance:
-    """Measure the path without its gaps."""
+def _between_gaps(
+    position, velocity, runs, parts, rate_hz, noise, order, axes, model_bias, others
+) -> Distance:
+    """Measure the path without its gaps: its known `runs`."""
     known = np.isfinite(position).all(axis=1)
-    velocity = noise_propagation.differentiate(position, rate_hz)
-    weight_s = _weights_s(known, rate_hz)
+    weight_s = _weights_s(runs, len(known), rate_hz)
+    seconds = (runs[-1][1] - 1 - runs[0][0]) / rate_hz
     used = weight_s > 0
     weight_s = weight_s[used]
     measured = float(np.linalg.norm(velocity[used][:, axes], axis=1) @ weight_s)
@@ -131,8 +135,8 @@ def _between_gaps(position, parts, rate_hz, noise, order, axes, model_bias, othe
     spreads = _velocity_spreads(parts, known, noise, *filters)
     spreads = {cutoff_hz: spread[used] for cutoff_hz, spread in spreads.items()}
     spread = np.sum(list(spreads.values()), axis=0)[:, axes, axes]
-    if not used.any() or not np.isfinite(spread).any():
-        return replace(UNKNOWN, measured_m=measured, seconds=float(weight_s.sum()))
+    if not np.isfinite(spread).any():
+        return replace(UNKNOWN, measured_m=measured, seconds=seconds)
     spread = _filled(spread)
     slow, slow_spread = _slower(position, parts, known, rate_hz, noise, order)
     true = true_velocity(slow[used][:, axes], _filled(slow_spread[used][:, axes, axes]))
@@ -149,9 +153,7 @@ def _between_gaps(position, parts, rate_hz, noise, order, axes, model_bias, othe
         corrected_m=float(measured - bias),
         sigma_m=float(np.hypot(np.sqrt(scatter), bias_sigma)),
         camera_sigma_m=_camera_sigma(others, velocity[used], weight_s, used, axes),
-        gaps_m=0.0,
-        gaps_sigma_m=0.0,
-        seconds=float(weight_s.sum()),
+        seconds=seconds,
     )
 
 
@@ -174,30 +176,37 @@ def bridged(
     scatter is the error, with Student's t for the number of windows that do not overlap.
     """
     gaps = [(before[1] - 1, after[0]) for before, after in pairwise(runs)]
+    stretches = [(position[a:b], _along(speed[a:b], rate_hz)) for a, b in runs]
+    detours = {n: _detours(stretches, n) for n in {first - last for last, first in gaps}}
     length, variance, common = 0.0, 0.0, 0.0
     for last, first in gaps:
-        detour, scatter, n_windows = _detours(position, speed, runs, first - last, rate_hz)
+        detour, scatter, n_windows = detours[first - last]
         length += float(np.linalg.norm(position[first] - position[last])) + detour
         variance += scatter**2
         common += scatter / np.sqrt(n_windows)
     return Gaps(length, float(np.sqrt(variance + common**2)))
 
 
-def _detours(
-    position: NDArray, speed: NDArray, runs: Sequence[tuple[int, int]], n: int, rate_hz: float
-) -> tuple[float, float, int]:
-    """Return mean and scatter of the detours of windows of `n` frames, and how many lie apart."""
-    found, apart = [], 0
-    for start, stop in runs:
-        steps = (speed[start : stop - 1] + speed[start + 1 : stop]) / (2 * rate_hz)
-        along = np.concatenate([[0.0], np.cumsum(steps)])
-        own = position[start:stop]
-        straight = np.linalg.norm(own[n:] - own[:-n], axis=1)
-        found.append(np.maximum(along[n:] - along[:-n] - straight, 0.0))
-        apart += (stop - start - 1) // n
+def _along(speed: NDArray, rate_hz: float) -> NDArray:
+    """Return the length (T,) m of a path from its first frame to each, from its speed (T,)."""
+    return np.concatenate([[0.0], np.cumsum((speed[:-1] + speed[1:]) / (2 * rate_hz))])
+
+
+def _detours(stretches: Sequence[tuple[NDArray, NDArray]], n: int) -> tuple[float, float, int]:
+    """Return mean and scatter of the detours of windows of `n` frames, and how many lie apart.
+
+    `stretches` have places (T, d) m and the length (T,) m of the path up to each.
+    """
+    long = [(place, along) for place, along in stretches if len(along) > n]
+    apart = sum((len(along) - 1) // n for _, along in long)
     if apart < LEAST_WINDOWS:
         return float("nan"), float("nan"), 1
-    detours = np.concatenate(found)
+    detours = np.concatenate(
+        [
+            np.maximum(along[n:] - along[:-n] - np.linalg.norm(place[n:] - place[:-n], axis=1), 0.0)
+            for place, along in long
+        ]
+    )
     wider = scipy.special.stdtrit(apart - 1, 0.95) / scipy.special.ndtri(0.95)
     return float(detours.mean()), float(detours.std() * wider), apart
 
@@ -255,13 +264,12 @@ def _shares(spreads: Mapping[float, NDArray]) -> dict[float, float]:
     return {at: value / sum(found.values()) for at, value in found.items()}
 
 
-def _weights_s(known: NDArray, rate_hz: float) -> NDArray:
-    """Return trapezoidal weights in seconds, 0 in gaps and in runs of fewer than 3 frames."""
-    weights = np.zeros(len(known))
-    for start, stop in filtering.runs(known):
-        if stop - start > 2:
-            weights[start:stop] = 1 / rate_hz
-            weights[[start, stop - 1]] /= 2
+def _weights_s(runs: Sequence[tuple[int, int]], n_frames: int, rate_hz: float) -> NDArray:
+    """Return trapezoidal weights (T,) in seconds, 0 outside of the runs."""
+    weights = np.zeros(n_frames)
+    for start, stop in runs:
+        weights[start:stop] = 1 / rate_hz
+        weights[[start, stop - 1]] /= 2
     return weights
 
 
