@@ -117,10 +117,8 @@ def clicked(real, places, seed):
 def rescaled(found, scale):
     """Return the result with another unit, which replaces its scale and the error of its scale."""
     factor, names = scale.metres, [camera.name for camera in found.cameras]
-    cameras = [
-        replace(camera, cam_from_world=camera.cam_from_world * [1, 1, 1, factor])
-        for camera in found.cameras
-    ]
+    larger = similarity.Sim3(factor, np.eye(3), np.zeros(3))
+    cameras = [larger.camera(camera) for camera in found.cameras]
     grown = np.ones((len(names), len(camera_covariance.PARAMETERS)))
     grown[:, 3:6] = factor  # the translations
     own = found.covariance.of(names).covariance * np.outer(grown, grown)

@@ -12,20 +12,19 @@ from courtside.study.execution.script import run
 def main(paths, counts_csv, *, labels, sex_of):
     truth, parts = take_truth.read(paths.truth), []
     derived = derived_joints.read(paths.derived)
-    for path, about in zip(paths.pose3d, labels, strict=True):
+    for path in paths.pose3d:
         points = keypoints.read_3d(path).between(truth.time_s[0], truth.time_s[-1])
         true = joints.true_places(points, truth)
-        parts.append(reliability.counts(points, truth.joints.tolist(), true).assign(**about))
+        counts = reliability.counts(points, truth.joints.tolist(), true)
         measured = {"angle": kinematics.all_angles(points, truth)}
-        if about is labels[-1]:
+        if path == paths.pose3d[-1]:
             frames = tables.read(paths.frames, "a table of frames")
             summary = tables.read(paths.summary, "a table of measures")
             given = truth, derived, sex_of
             measured["speed"] = kinematics.speeds(frames, *given)
             measured["distance"] = kinematics.distances(kinematics.table(frames, summary, *given))
-        parts.append(reliability.of_measures(measured).assign(**about))
-    rows = pd.concat(parts, ignore_index=True)
-    tables.write(counts_csv, tables.labels_first(rows, labels[0]))
+        parts.append(pd.concat([counts, reliability.of_measures(measured)]))
+    tables.write(counts_csv, tables.joined(parts, labels))
 
 
 if __name__ == "__main__":
