@@ -44,7 +44,8 @@ def table(
     included; errors of the position are of the filtered path. `frames` and `summary` are of
     `courtside.exports.measures`, `sex_of` is "m", "f" or None by person.
 
-    Distances stay empty if the truth does not cover the measured frames.
+    Distances stay empty if the truth does not cover the measured frames, errors of distances also
+    if a gap is too long for a distance.
     """
     rows, measured = [], summary.set_index(["person", "measure"])
     for part, point, path in _paths(frames, truth, derived, sex_of):
