@@ -41,7 +41,7 @@ from courtside.records.devices import clocks, device_motion
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.records.truth import take_truth
 from courtside.study.configuration import yaml_files
-from courtside.study.jobs.devices import OF_KIND
+from courtside.study.configuration.sessions import SKELETONS
 
 SESSIONS, DEVELOPMENT = ("single-view",), "single-dev"
 LIMBS = list(skeleton.JOINTS)
@@ -94,7 +94,7 @@ def fitted(path, motion, subject, folder):
     before = time.process_time()
     fit_source.main(
         path,
-        ROOT / "config" / "skeletons" / f"{OF_KIND.get(motion.kind, 'blazepose33')}.yaml",
+        ROOT / "config" / "skeletons" / f"{SKELETONS.get(motion.kind, 'blazepose33')}.yaml",
         *files,
         person=subject[0],
         height_m=subject[1],

@@ -255,6 +255,14 @@ def test_recordings_are_those_of_the_user_wherever_they_are():
     assert "a.png" in found and "results/external/b.mp4" not in found
 
 
+def test_a_device_says_whether_it_is_a_suit_and_has_a_skeleton():
+    found = {kind: sessions.Device(kind, "f", "p1") for kind in ("inertial", "nuitrack", "rgbd")}
+    assert [kind for kind, device in found.items() if device.is_suit] == ["inertial"]
+    assert found["inertial"].skeleton == "mocopi27"
+    assert found["nuitrack"].skeleton == "nuitrack19"
+    assert found["rgbd"].skeleton is None
+
+
 def test_people_refine_a_calibration_that_the_session_has_where_takes_are_filmed():
     ways = ["file", "file-people", "sfm-n40-people"]
     filmed = {"t": sessions.Take("t", {"a": "a.mp4"}, ())}

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from courtside.study import paths
+from courtside.study.configuration import sessions
 from courtside.study.configuration.sessions import Device
 from courtside.study.errors import InputError
 from courtside.study.jobs import devices
@@ -159,6 +160,18 @@ def test_without_vision_nothing_is_corrected(job, study):
     assert list(devices.sources(one)) == ["suit"]
     with pytest.raises(InputError, match=r"takes\.claps: expected fixed cameras or a depth camera"):
         devices.vision_file(one)
+
+
+def test_a_suit_of_another_kind_is_corrected_with_its_own_skeleton(job, study, monkeypatch):
+    monkeypatch.setattr(sessions, "SUITS", ("inertial", "other"))
+    monkeypatch.setitem(sessions.SKELETONS, "other", "other15")
+    suit, depth = Device("other", "m.csv", "p1"), Device("rgbd", "d.bag", "p1")
+    one = job(of_devices(study, suit=suit, d415=depth), **CLAPS, device="suit")
+    skeletons = devices.skeletons(one)
+    assert next(iter(skeletons)) == "d415-depth"
+    assert skeletons["suit"] == skeletons["suit-corrected"] == "other15"
+    assert devices.skeleton_file(one) == study.folder / "skeletons" / "other15.yaml"
+    assert devices.correctable(one) == ["suit"]
 
 
 def test_names_of_devices_do_not_make_them_cameras(job, study):

@@ -15,6 +15,8 @@ DEFAULT = "config.yaml"  # in config/, over which a user's files are merged
 DEFAULT_DETECTOR = "blazepose-detector"  # of config/detectors.yaml
 FEWEST_ALONE = 3  # cameras that people alone can place
 ONE_STAGE = ("rtmo", "yolo-pose")  # decoders of networks that find persons themselves
+SUITS = ("inertial",)  # kinds of devices that vision corrects and whose motion is exported
+SKELETONS = {"inertial": "mocopi27", "nuitrack": "nuitrack19"}  # that devices come with, by kind
 
 
 @dataclass(frozen=True)
@@ -54,6 +56,16 @@ class Device:
     subject: str  # whom it follows
     unit: str | None = None  # of the lengths in its file, where that is not its format's
     angles: str | None = None  # of a BVH: `degrees` or `radians`, where that is stated
+
+    @property
+    def is_suit(self) -> bool:
+        """Whether it is an inertial suit."""
+        return self.kind in SUITS
+
+    @property
+    def skeleton(self) -> str | None:
+        """The name of the skeleton that it comes with; None if a network measures its pictures."""
+        return SKELETONS.get(self.kind)
 
     def sources(self, name: str, metric_body: bool) -> tuple[str, ...]:
         """Return the names of the skeletons that this device, called `name`, gives.

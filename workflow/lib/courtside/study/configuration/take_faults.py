@@ -4,6 +4,7 @@ from collections.abc import Collection, Iterable, Iterator
 from pathlib import Path
 
 from courtside.study.configuration.session_files import KINDS, kind_of
+from courtside.study.configuration.sessions import SUITS
 from courtside.study.configuration.yaml_files import Content
 from courtside.study.methods import STAGE_WORDS
 
@@ -168,7 +169,7 @@ def _reference(take: Content) -> str | None:
     Of devices alone, the first that is no suit, else the first: the order of `jobs.devices.sources`
     """
     devices = take.get("devices", {})
-    ranked = sorted(devices, key=lambda name: _kind(devices[name]) == "inertial")
+    ranked = sorted(devices, key=lambda name: _kind(devices[name]) in SUITS)
     return next(iter([*cameras_of(take), *ranked]), None)
 
 

@@ -14,7 +14,6 @@ from courtside.study.errors import InputError
 from courtside.study.jobs.job import Job
 from courtside.study.targets.devices import DeviceTake, thesis_take
 
-OF_KIND = {"inertial": "mocopi27", "nuitrack": "nuitrack19"}  # skeletons that devices come with
 CAMERAS = "cameras"  # the source that fixed cameras give
 PLATES = ("blazepose33", "mocopi27", "nuitrack19", "cpm14")  # skeletons drawn side by side
 
@@ -33,16 +32,17 @@ def sources(job: Job, corrected: bool = True) -> dict[str, Source]:
     of_network, found = job.model.skeleton, {}
     if job.session.measures(job.take):
         found[CAMERAS] = Source(job.fill(paths.CAMERA_SOURCE), of_network, CAMERAS)
-    devices = sorted(job.take.devices.items(), key=lambda pair: pair[1].kind == "inertial")
+    devices = sorted(job.take.devices.items(), key=lambda pair: pair[1].is_suit)
     for name, device in devices:
-        own = OF_KIND.get(device.kind)
+        own = device.skeleton
         for source in device.sources(name, job.model.metric_body):
             known = {"device": name, "source": source}
             file = job.fill(paths.DEVICE if own else paths.SOURCE, **known)
             found[source] = Source(file, own or of_network, name)
     for name in correctable(job) if corrected else ():
         source = f"{name}-corrected"
-        found[source] = Source(job.fill(paths.SOURCE, source=source), OF_KIND["inertial"], name)
+        own = job.take.devices[name].skeleton or of_network
+        found[source] = Source(job.fill(paths.SOURCE, source=source), own, name)
     return found
 
 
@@ -63,7 +63,7 @@ def bodies(job: Job, pattern: str = paths.BODY, corrected: bool = True) -> list[
 
 def skeleton_file(job: Job) -> Path:
     """Return the skeleton that a device comes with."""
-    return job.study.folder / paths.SKELETON_YAML.format(skeleton=OF_KIND[job.device.kind])
+    return job.study.folder / paths.SKELETON_YAML.format(skeleton=job.device.skeleton)
 
 
 def exported(job: Job) -> str:
@@ -126,8 +126,8 @@ def vision(job: Job) -> str | None:
 
 def correctable(job: Job) -> list[str]:
     """Return the inertial devices of a take that vision can correct."""
-    inertial = [name for name, device in job.take.devices.items() if device.kind == "inertial"]
-    return [] if vision(job) is None else inertial
+    suits = [name for name, device in job.take.devices.items() if device.is_suit]
+    return [] if vision(job) is None else suits
 
 
 def vision_file(job: Job) -> str:

@@ -41,7 +41,7 @@ class DeviceTake:
         seen = "rgbd" in kinds or self.session.measures(self.take)
         found: list[str] = []
         for name, device in self.take.devices.items():
-            corrected = [f"{name}-corrected"] if seen and device.kind == "inertial" else []
+            corrected = [f"{name}-corrected"] if seen and device.is_suit else []
             found += [*device.sources(name, self.metric_body), *corrected]
         return found
 
@@ -93,7 +93,7 @@ def every_device_export(study: Study) -> list[str]:
         if one.take.person_of_devices in consent.refusing(one.session, one.take, "export"):
             continue
         for name, device in one.take.devices.items():
-            if device.kind == "inertial":
+            if device.is_suit:
                 known = {**one.labels, "device": name, "suffix": EXPORTED}
                 found += paths.each(paths.DEVICE_EXPORT, **known)
             else:
