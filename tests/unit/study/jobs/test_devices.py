@@ -107,6 +107,15 @@ def test_the_model_is_fitted_with_the_errors_of_each_kind_of_source(job):
     assert compared["person"] == "p1" and compared["devices"] == devices.clocks(one)
 
 
+def test_errors_that_are_not_stated_are_told_in_one_line(job, study):
+    other = of_devices(study, suit=Device("other", "m.csv", "p1"))
+    with pytest.raises(
+        InputError, match=r"^fit_source\.sigma_m: expected .*'other', .* suit "
+    ) as e:
+        devices.source_sigmas(job(other, **CLAPS))
+    assert "\n" not in str(e.value)
+
+
 def test_bodies_and_body_frames_of_all_sources(job):
     frames = devices.bodies(job(**CLAPS), paths.BODY_FRAME, corrected=False)
     names = ("d415-depth", "d415-rgb", "mocopi")

@@ -166,13 +166,20 @@ def fitting(job: Job) -> dict[str, Any]:
 def source_sigmas(job: Job) -> dict[str, dict[str, float]]:
     """Return the stated errors of limb joints, m, by source, without the fixed cameras.
 
-    They are those of the method (`depth`, `rgb`, `corrected`), otherwise of the kind of the device.
+    They are those of the method (`depth`, `rgb`, `corrected`), otherwise of the kind of the device;
+    an `InputError` if they are not stated.
     """
     stated, devices, found = job.step("fit_source")["sigma_m"], job.take.devices, {}
     for name, source in sources(job).items():
         if name != CAMERAS:
             method = name.removeprefix(source.device).removeprefix("-")
-            found[name] = stated[method or devices[source.device].kind]
+            kind = method or devices[source.device].kind
+            if kind not in stated:
+                raise InputError(
+                    f"fit_source.sigma_m: expected the errors of joints of {kind!r}, from which "
+                    f"{name} comes, found those of {sorted(stated)}; state them"
+                )
+            found[name] = stated[kind]
     return found
 
 
