@@ -1,11 +1,17 @@
 """Every CSV of the study has a place in the data dictionary, which describes its every column."""
 
 import csv
-import re
 from fnmatch import fnmatchcase
 
 import pytest
 
+from fixtures.study.data_dictionary import (
+    OF_FOOTWORK,
+    OF_KINEMATICS,
+    OF_NETWORKS,
+    OF_VERDICTS,
+    Dictionary,
+)
 from smoke.snakemake_runs import ROOT
 
 # Parts of config/README.md: a heading (all below it), `heading | first cell` (rows of a table below
@@ -134,62 +140,14 @@ PLACES = {
         )
     },
 }
-POINTS = "(neck|centre|mass)"
-ANGLES = (
-    "((left|right)_(knee_flexion|elbow_flexion|hip_flexion|shoulder_elevation)"
-    "|trunk_lean(_forward)?)"
-)
-
-
-class Dictionary:
-    """The data dictionary, part by part."""
-
-    def __init__(self, text):
-        self.text = text
-        pieces = re.split(r"^#+ (.*)\n", text, flags=re.M)
-        self.sections = dict(zip(pieces[1::2], pieces[2::2], strict=True))
-        self.paragraphs = re.split(r"\n\n", text)
-
-    def part(self, place):
-        """Return the text of a part; nothing where there is none."""
-        heading, _, key = place.partition(" | ")
-        if heading.startswith(": "):
-            return "\n".join(p for p in self.paragraphs if heading[2:] in p)
-        section = self.sections.get(heading, "")
-        if not key:
-            return section
-        rows, inside = [], False
-        for line in section.splitlines():
-            first = line.split("|")[1].strip() if line.startswith("|") else ""
-            inside = key in re.split(r"`?, `?", first.strip("`")) if first else inside
-            rows += [line] if inside and line.startswith("|") else []
-        return "\n".join(rows)
-
-    def undescribed(self, columns, places):
-        """Return those of some columns that no part describes."""
-        text = "\n".join(map(self.part, places))
-        patterns = list(map(pattern, names(text)))
-        return [c for c in columns if not any(re.fullmatch(p, c) for p in patterns)]
-
-
-def names(text):
-    """Return the names that a text describes, those that stand for several still as written."""
-    found = re.findall(r"(\*[A-Z]+\*)?`([^`]+)`", text)
-    stem, whole = "", []
-    for lead, name in found:
-        stem = lead or (stem if name.startswith("_") else "")  # *POINT*`_x_m`, `_y_m`
-        whole.append(f"{stem}{name}")
-    for a, first, z, last in re.findall(r"`(\w*?)(\d+)(\w*)` \.\.\. `\w*?(\d+)\w*`", text):
-        whole += [f"{a}{n:0{len(first)}}{z}" for n in range(int(first), int(last) + 1)]
-    return whole
-
-
-def pattern(name):
-    """Return the regular expression of a name that may stand for several."""
-    kept = re.escape(name).replace(r"\.\.\.", r"\w+")
-    kept = re.sub(r"<\w+>", r"\\w+", kept)
-    kept = kept.replace(r"\*SIDE\*", "(left|right)")
-    return kept.replace(r"\*POINT\*", POINTS).replace(r"\*ANGLE\*", ANGLES)
+# Where the measures of a table are described. Those of comparisons are measures of `study.csv`.
+MEASURES = {
+    "*/takes/*/kinematics/*.summary.csv": OF_KINEMATICS,
+    "*/takes/*/footwork/*.summary.csv": OF_FOOTWORK,
+    "*/takes/*/quality.csv": OF_VERDICTS,
+    "figures/study.csv": OF_KINEMATICS + OF_FOOTWORK,
+    "figures/networks*.csv": OF_NETWORKS,
+}
 
 
 def faults(results, dictionary):
@@ -201,13 +159,18 @@ def faults(results, dictionary):
             continue
         n_tables += 1
         with path.open(newline="") as stream:
-            columns = next(csv.reader(stream), [])
+            reader = csv.DictReader(stream)
+            columns = list(reader.fieldnames or [])
+            described = next((MEASURES[key] for key in MEASURES if fnmatchcase(name, key)), ())
+            measures = dict.fromkeys(row["measure"] for row in reader) if described else ()
         fitting = next((key for key in PLACES if fnmatchcase(name, key)), None)
         if fitting is None:
             found.add(f"{name}: no place in the dictionary")
             continue
         lacking = dictionary.undescribed(columns, PLACES[fitting])
         found |= {f"{fitting}: {column}" for column in lacking}
+        lacking = dictionary.undescribed(measures, described)
+        found |= {f"{fitting}: measure {measure}" for measure in lacking}
     return sorted(found), n_tables
 
 
@@ -217,7 +180,8 @@ def dictionary():
 
 
 def test_every_part_that_tables_are_sent_to_is_there(dictionary):
-    places = {place for some in PLACES.values() for place in some}
+    named = [*PLACES.values(), *MEASURES.values()]
+    places = {place for some in named for place in some}
     assert [place for place in sorted(places) if not dictionary.part(place).strip()] == []
 
 
@@ -235,4 +199,16 @@ def test_a_column_that_nobody_described_is_found(tmp_path, dictionary):
     assert faults(tmp_path, dictionary)[0] == [
         "*/static/*.csv: shift_z_px",
         "gym/new.csv: no place in the dictionary",
+    ]
+
+
+def test_a_measure_that_nobody_described_is_found(tmp_path, dictionary):
+    folder = tmp_path / "gym" / "takes" / "t"
+    (folder / "kinematics").mkdir(parents=True)
+    known = "measure,value\nneck_ground_distance_in_gaps,1\nleft_knee_flexion_min,2\n"
+    (folder / "kinematics" / "a.summary.csv").write_text(known + "neck_height_max,3\n")
+    (folder / "quality.csv").write_text("measure,value\nwhole,1\nviews_2,1\nviews_9,1\n")
+    assert faults(tmp_path, dictionary)[0] == [
+        "*/takes/*/kinematics/*.summary.csv: measure neck_height_max",
+        "*/takes/*/quality.csv: measure views_9",
     ]

@@ -9,6 +9,7 @@ import pytest
 from courtside.calibration.court import court
 from courtside.footwork import kinds, measures
 from courtside.footwork.stances import Stance
+from fixtures.study import data_dictionary
 
 CONFIG = Path(__file__).parents[3] / "config"
 NAN = float("nan")
@@ -41,6 +42,14 @@ def test_counts_and_times_of_a_run():
     assert found.loc["stance_time", "sigma"] == pytest.approx(0.01 * np.sqrt(2 / 8))
     assert found.loc["swing_time_left", "value"] == pytest.approx(0.35)
     assert found.loc["flight_time", "value"] == pytest.approx(0.05)
+
+
+def test_every_measure_is_described():
+    found = values(run(), court.read(CONFIG / "courts" / "badminton.yaml")).index
+    assert {"jumps", "swing_time_right", "steps_rear_left", "rally_1_step_rate"} <= set(found)
+    text = (CONFIG / "README.md").read_text(encoding="utf-8")
+    dictionary = data_dictionary.Dictionary(text)
+    assert dictionary.undescribed([*found, "hops"], data_dictionary.OF_FOOTWORK) == ["hops"]
 
 
 def test_times_in_which_a_foot_is_not_seen_are_neither_swings_nor_flights():
