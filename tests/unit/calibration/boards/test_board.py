@@ -25,7 +25,7 @@ BOARDS = {
 def test_corners_are_found_under_their_numbers(name, upside_down):
     board = Board.of(BOARDS[name])
     K = [[900, 0, 639.5], [0, 900, 359.5], [0, 0, 1]]
-    pose = boards_made.look((0.3, -0.9, 1.1), (0, 0, 0))
+    pose = boards_made.look_at((0.3, -0.9, 1.1), (0, 0, 0))
     camera = cameras.Camera("c", boards_made.SIZE, K, np.zeros(5), pose)
     turn = np.diag([-1.0, -1, 1] if upside_down else [1.0, 1, 1])
     middle = board.corners.mean(axis=0)
