@@ -12,7 +12,7 @@ def main(recording, video, frames_csv, camera_toml, *, device, crf):
     found = open_depth.read(recording, device)
     for remark in found.remarks:
         log.logger.warning("%s: %s", device, remark)
-    table = found.colour_index()
+    table = open_depth.colour_times(recording, found)
     pictures = log.progress(found.colour_frames(), len(table.time_s), f"{device}: frames")
     images = (image for _, image in pictures)
     writer.write_video(video, images, table.rate_hz, crf=crf)

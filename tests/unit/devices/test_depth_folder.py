@@ -108,7 +108,7 @@ def text(name, old, new):
 def table(name, content):
     def change(folder):
         for other in ("colour.csv", "depth.csv"):
-            rows = "".join(f"{k},{k}\n" for k in range(N))
+            rows = "".join(f"{k},{k / 10}\n" for k in range(N))
             (folder / other).write_text(f"number,time_s\n{rows}")
         (folder / name).write_text(content)
 
@@ -118,12 +118,12 @@ def table(name, content):
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        (unlink("cameras.toml"), "expected TOML"),
+        (unlink("cameras.toml"), "expected cameras.toml"),
         (unlink("colour.mp4"), "expected one video"),
         (unlink("depth/0002.png"), "as many depth pictures"),
         (lambda folder: shutil.rmtree(folder / "depth"), "expected 16-bit PNG"),
         (text("cameras.toml", '"depth"', '"ir"'), "named colour and depth"),
-        (text("cameras.toml", "0.0005", "5"), r"depth unit of .* depth_unit_m in"),
+        (text("cameras.toml", "0.0005", "5"), r"depth unit of .* units in \[meta"),
         (text("cameras.toml", "0.0005", '"mm"'), "depth_unit_m as"),
         (text("cameras.toml", "48", "64"), "expected 64x32 px"),
         (lambda folder: (folder / "colour.csv").write_text("number,time_s\n"), "found one"),
@@ -141,16 +141,37 @@ def test_what_is_missing_is_named_in_one_line(folder, change, says):
 
 
 @pytest.mark.parametrize(
-    "picture", [np.zeros((24, 32), np.uint8), np.zeros((24, 30), np.uint16), None]
+    ("picture", "says"),
+    [
+        (np.zeros((24, 32), np.uint8), r"0003\.png: .* 16-bit .* one channel, found uint8 with 1"),
+        (np.zeros((24, 32, 3), np.uint16), r"0003\.png: .* found uint16 with 3; export"),
+        (np.zeros((24, 30), np.uint16), r"0003\.png: expected 32x24 px, .* found 30x24; correct"),
+        (None, r"0003\.png: expected a 16-bit picture"),
+    ],
 )
-def test_a_picture_that_is_no_depth_is_named(folder, picture):
+def test_a_picture_that_is_no_depth_is_named(folder, picture, says):
     path = folder / "depth" / "0003.png"
     if picture is None:
         path.write_bytes(b"no picture")
     else:
         cv2.imwrite(str(path), picture)
-    with pytest.raises(InputError, match=r"0003\.png: expected a 16-bit picture"):
+    with pytest.raises(InputError, match=says):
         list(depth_folder.read(folder).depth_frames())
+
+
+def test_times_in_milliseconds_are_told(folder):
+    rows = "".join(f"{k},{33.3 * k}\n" for k in range(N))
+    for name in ("colour.csv", "depth.csv"):
+        (folder / name).write_text(f"number,time_s\n{rows}")
+    with pytest.raises(InputError, match=r"colour\.csv: .* every 33\.3 s; write time_s in seconds"):
+        depth_folder.read(folder)
+
+
+def test_cameras_in_another_unit_are_told(folder):
+    toml = folder / "cameras.toml"
+    toml.write_text(toml.read_text().replace("    0.3185", "    318.5"))
+    with pytest.raises(InputError, match=r"cameras\.toml: .* at most 1 m apart, found 318 m"):
+        depth_folder.read(folder)
 
 
 def test_metadata_that_are_no_table_are_named(folder):

@@ -126,8 +126,13 @@ def test_only_a_first_row_without_any_rotation_is_the_rest_pose(tmp_path):
     assert mocopi.read(tmp_path / "a.bvh", MOCOPI).performed.tolist() == [False] + [True] * 4
     recorded(tmp_path / "a.bvh", rest=False)
     assert mocopi.read(tmp_path / "a.bvh", MOCOPI).performed.all()
-    recorded(tmp_path / "a.bvh", n_frames=0)
-    assert len(mocopi.read(tmp_path / "a.bvh", MOCOPI).performed) == 0
+
+
+@pytest.mark.parametrize(("n_frames", "n_performed"), [(0, 0), (1, 0), (2, 1)])
+def test_fewer_than_two_frames_of_motion_are_refused(tmp_path, n_frames, n_performed):
+    recorded(tmp_path / "a.bvh", n_frames=n_frames)
+    with pytest.raises(InputError, match=rf"a\.bvh: expected 2 frames .* found {n_performed}; rec"):
+        mocopi.read(tmp_path / "a.bvh", MOCOPI)
 
 
 def test_joints_in_another_order_come_out_in_the_skeleton_s(tmp_path):

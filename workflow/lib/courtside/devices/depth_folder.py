@@ -38,6 +38,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from courtside.devices import plausible
 from courtside.devices.depth_recording import DEFAULT_UNIT_M, STANDING_STILL, DepthRecording
 from courtside.geometry import camera as camera_models
 from courtside.geometry import camera_fields, rotations
@@ -57,6 +58,11 @@ def read(path: StrPath, name: str = "rgbd") -> DepthRecording:
     """
     folder = Path(path)
     toml = folder / "cameras.toml"
+    if not toml.is_file():
+        raise InputError(
+            f"{folder}: expected cameras.toml with the cameras colour and depth, found no such "
+            "file; add it"
+        )
     found = {camera.name: camera for camera in camera_models.read_toml(toml)}
     if set(found) != {"colour", "depth"}:
         raise InputError(
@@ -83,7 +89,7 @@ def read(path: StrPath, name: str = "rgbd") -> DepthRecording:
             remarks=remarks,
         )
     except ValueError as error:
-        raise InputError(f"{toml}: {error}; correct it, or depth_unit_m in [metadata]") from error
+        raise InputError(f"{toml}: {error}; correct it, or the units in [metadata]") from error
 
 
 def _metadata(toml: Path) -> tuple[float, float, tuple[str, ...]]:
@@ -151,6 +157,7 @@ def _table(path: Path, n_frames: int) -> FrameTimes:
             f"{path}: expected {n_frames} rows with rising number and time_s, one for each frame, "
             f"found {len(rows)} rows or others; correct them"
         )
+    plausible.check_rate(path, times_s, "write time_s in seconds")
     return FrameTimes(times_s, numbers)
 
 
@@ -163,10 +170,17 @@ def _depth(
     pictures: Sequence[Path], times_s: NDArray, size: tuple[int, int]
 ) -> Iterator[tuple[float, NDArray]]:
     for path, time_s in zip(pictures, times_s.tolist(), strict=True):
-        what = f"a 16-bit picture of one channel, {camera_fields.times(size)} px"
+        what = "a 16-bit picture of one channel"
         image = images.read(path, cv2.IMREAD_UNCHANGED, what=what, advice=EXPORT)
-        if image.dtype != np.uint16 or image.shape != size[::-1]:
+        if image.dtype != np.uint16 or image.ndim != 2:
+            n_channels = 1 if image.ndim == 2 else image.shape[2]
             raise InputError(
-                f"{path}: expected {what}, found {image.dtype} {image.shape}; {EXPORT}"
+                f"{path}: expected {what}, found {image.dtype} with {n_channels}; {EXPORT}"
+            )
+        if image.shape != size[::-1]:
+            raise InputError(
+                f"{path}: expected {camera_fields.times(size)} px, the `size` of the camera depth "
+                f"in cameras.toml, found {camera_fields.times(image.shape[::-1])}; correct the "
+                "size there, or export depth again as the camera recorded it"
             )
         yield time_s, image

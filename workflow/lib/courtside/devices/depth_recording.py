@@ -13,6 +13,7 @@ from courtside.records.cameras.frame_times import FrameTimes
 
 DEFAULT_UNIT_M = 0.001  # one step of a D400's depth unless its option says otherwise
 STANDING_STILL = np.eye(3, 4)  # pose of both cameras
+APART_M = 1.0  # ASSUME: of the cameras of one device
 Frames = Callable[[], Iterator[tuple[float, NDArray]]]
 
 
@@ -46,6 +47,12 @@ class DepthRecording:
         rotation = moved[:, :3]
         if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-4 or np.linalg.det(rotation) < 0:
             raise ValueError("expected colour_from_depth with a right-handed rotation, found none")
+        apart_m = float(np.linalg.norm(moved[:, 3]))
+        if apart_m > APART_M:
+            raise ValueError(
+                f"expected cameras of colour and depth at most {APART_M:g} m apart, found "
+                f"{apart_m:.3g} m"
+            )
         if not 1e-6 <= self.depth_unit_m <= 0.1:  # ASSUME: a micrometre to 10 cm covers any sensor
             raise ValueError(
                 f"expected a depth unit of 0.000001 to 0.1 m a step, found {self.depth_unit_m}"

@@ -48,8 +48,8 @@ def read(
     zero with the first row. The rest pose in the first row is kept, as not performed. `posed` has
     the joints in the file's order, by the study's names. `unit` is that of its lengths, cm where
     absent; `angles` are `degrees`, `radians`, or, where absent, degrees that are checked. An
-    `InputError` if the file is not BVH, its joints are not the skeleton's, or the size of the body,
-    the angles or the rate are not a person's.
+    `InputError` if the file is not BVH, its joints are not the skeleton's, it has fewer than two
+    frames of motion, or the size of the body, the angles or the rate are not a person's.
 
     A frame time of 0.016667 s means 1/60 s: as written the clock would run 20 ppm fast. Frame times
     of 30, 50 and 60 frames a second are taken as these; others as written.
@@ -69,6 +69,7 @@ def read(
     plausible.check_rate(path, posed.time_s, mend)
     if angles is None:
         _check_angles(path, posed)
+    performed = _performed(path, posed)
     xyz, _ = hierarchy.forward(posed)
     order = [posed.hierarchy.joints.index(joint) for joint in skeleton.joints]
     return DeviceMotion(
@@ -78,7 +79,7 @@ def read(
         time_s=posed.time_s,
         xyz=xyz[:, order],
         reason=np.full(xyz.shape[:2], missing_reason.OK, dtype=np.uint8),
-        performed=~_rest_rows(posed),
+        performed=performed,
         posed=posed,
     )
 
@@ -134,8 +135,13 @@ def _nominal(time_s: NDArray) -> NDArray:
     return time_s
 
 
-def _rest_rows(posed: PosedHierarchy) -> NDArray:
-    """Return which rows are the app's rest pose, (T,) bool: only the first, without rotations."""
-    found = np.zeros(len(posed.time_s), dtype=bool)
-    found[:1] = (np.abs(posed.parent_from_joint[:1] - np.eye(3)) < NO_TURN).all()
+def _performed(path: StrPath, posed: PosedHierarchy) -> NDArray:
+    """Return which rows are motion, (T,) bool: all but a first one without rotations."""
+    found = np.ones(len(posed.time_s), dtype=bool)
+    found[:1] = (np.abs(posed.parent_from_joint[:1] - np.eye(3)) >= NO_TURN).any()
+    if found.sum() < 2:
+        raise InputError(
+            f"{path}: expected 2 frames of motion or more, without the rest pose of the app's own "
+            f"model, found {found.sum()}; record again, or remove the device from the take"
+        )
     return found

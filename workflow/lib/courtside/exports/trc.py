@@ -26,7 +26,7 @@ def write(path: StrPath, keypoints: Keypoints3D, person: int) -> None:
     if len(keypoints.time_s) < 2:
         raise InputError(
             f"{path}: expected at least 2 frames in a TRC file, found {len(keypoints.time_s)}; "
-            "change `trim_s` of the take"
+            "change `trim_s` of the take, or record longer"
         )
     xyz = keypoints.xyz[person][..., WORLD_AXES]
     joints, n_frames = list(keypoints.joints), len(xyz)
