@@ -229,6 +229,21 @@ def test_walks_and_devices_are_looked_at(hall):
     assert [line.split(":")[0] for line in faults] == [str(walk), str(webcam)]
 
 
+def test_photos_of_a_walk_are_decoded(hall):
+    folder = hall.root / "walk"
+    folder.mkdir()
+    for at in range(3):
+        cv2.imwrite(str(folder / f"{at}.jpg"), rooms_filmed.background(1)[: 180 - 20 * (at == 2)])
+    hall.content["walks"] = {"walk1": {"images": str(folder)}}
+    first, few = hall.said()[0]
+    assert f"{folder / '2.jpg'}: expected 320x180 pixels as in 0.jpg, found 320x160" in first
+    assert "walks: expected 40 pictures or more, found 3" in few
+    (folder / "2.jpg").write_text("no photo")
+    assert f"{folder / '2.jpg'}: expected a photo, found one that is damaged" in hall.said()[0][0]
+    cv2.imwrite(str(folder / "2.jpg"), rooms_filmed.background(2))
+    assert hall.fault() == few
+
+
 def test_what_is_not_there_yet_is_left_to_its_job(hall):
     hall.content["calibration"]["file"] = "results/external/elsewhere/cameras.toml"
     hall.content["takes"]["lob"]["videos"] = dict.fromkeys(("left", "right"), "results/none.mp4")

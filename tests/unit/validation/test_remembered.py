@@ -46,6 +46,24 @@ def test_a_damaged_entry_is_looked_at_again(tmp_path):
     assert Remembered(kept).look(film).n_frames == 5
 
 
+def test_a_folder_is_read_again_if_a_file_in_it_changes(tmp_path):
+    folder, kept, read = tmp_path / "recording", tmp_path / "looks.json", []
+    (folder / "depth").mkdir(parents=True)
+    (folder / "times.csv").write_text("1")
+
+    def look():
+        looks = Remembered(kept)
+        looks.check(folder, "depth", lambda: read.append(1))
+        looks.save()
+        return len(read)
+
+    assert [look(), look()] == [1, 1]
+    (folder / "times.csv").write_text("22")
+    assert [look(), look()] == [2, 2]
+    (folder / "depth" / "0.png").write_text("new")
+    assert [look(), look()] == [3, 3]
+
+
 def test_faults_are_not_remembered(tmp_path):
     film = tmp_path / "a.mp4"
     film.write_bytes(b"no video")

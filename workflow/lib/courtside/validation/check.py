@@ -15,6 +15,7 @@ from courtside.validation import (
     boards,
     bodies,
     calibrated,
+    devices,
     keypoint_folders,
     lengths,
     points,
@@ -22,6 +23,7 @@ from courtside.validation import (
     views,
 )
 from courtside.validation.remembered import Remembered
+from courtside.video import walk_frames
 from courtside.video.glance import Glance
 
 
@@ -73,9 +75,14 @@ class _Session:
         }
         sizes = {name: next(iter(found.values())) for name, found in self._sizes().items()}
         self._points = points.check(session, study.court_file(session), sizes)
-        others = [*session.walks.values(), *_filmed_by_devices(session)]
-        for path in others:
+        self._devices = [
+            line
+            for take in session.takes.values()
+            for line in devices.faults(take, remembered, study.skeleton_file)
+        ]
+        for path in (*session.walks.values(), *_filmed_by_devices(session)):
             self._look(path)
+            self._look_at_photos(path)
 
     def _look(
         self, path: str | None, trim_s: tuple[float, ...] | None = None, *, film: bool = False
@@ -96,10 +103,20 @@ class _Session:
             self._unreadable += error.lines
             return []
 
+    def _look_at_photos(self, folder: str) -> None:
+        """Decode all photos of a walk, if it is a folder that has changed."""
+        if not is_there(Path(folder)) or not Path(folder).is_dir():
+            return
+        try:
+            self._remembered.check(folder, "photos", lambda: _decode_all(folder))
+        except InputError as error:
+            self._unreadable += error.lines
+
     def faults(self) -> Iterator[str]:
         """Yield every fault."""
         file = self._session.file
         yield from self._unreadable
+        yield from self._devices
         for line in calibrated.faults(self._session, self._sizes()):
             yield line if line.startswith(tuple(self._paths())) else f"{file}: {line}"
         for name, take in self._session.takes.items():
@@ -191,6 +208,11 @@ class _Session:
     def _paths(self) -> Iterable[str]:
         given = self._session.calibration_file
         return [*(path for files in self._sizes().values() for path in files), given or "\0"]
+
+
+def _decode_all(folder: str) -> None:
+    for _ in walk_frames.frames(folder):
+        pass
 
 
 def _of_board(session: Session, key: str) -> dict[str, str]:

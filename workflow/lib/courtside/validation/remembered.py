@@ -3,6 +3,7 @@
 import base64
 import contextlib
 import json
+from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ from courtside.study.errors import DAMAGED, InputError, StrPath
 from courtside.study.execution import files
 from courtside.video.glance import SMALL_PX, Glance, glance
 
-FORMAT = 1  # of the file: another one is not used
+FORMAT = 2  # of the file: another one is not used
 
 
 class Remembered:
@@ -35,6 +36,18 @@ class Remembered:
             self._used[key] = _stored(found or glance(path, stop_s=stop_s))
         found = _restored(self._used[key])
         return found if found else glance(path, stop_s=stop_s)
+
+    def check(self, path: StrPath, how: str, read: Callable[[], object]) -> None:
+        """Read a file or folder that a check found right before, only if it has changed.
+
+        `how` tells one way of reading from others. What `read` raises is not kept. Of a folder, its
+        files count, and of folders in it that files are added or removed.
+        """
+        parts = sorted(Path(path).iterdir()) if Path(path).is_dir() else [Path(path)]
+        key = " ".join([how, *(_key(part, None) for part in parts)])
+        if key not in self._kept:
+            read()
+        self._used[key] = True
 
     def save(self) -> None:
         """Write what this run used, if it is new and the file may be written."""
