@@ -4,6 +4,7 @@ from courtside.depth import single_view
 from courtside.records.cameras import frame_times
 from courtside.records.devices import device_motion
 from courtside.records.keypoints import keypoints
+from courtside.study.execution import log
 from courtside.study.execution.script import run
 
 
@@ -11,7 +12,10 @@ def main(pose2d_npz, device_npz, frames_csv=None, *, source):
     view = keypoints.read_2d(pose2d_npz)
     if frames_csv:
         view = frame_times.on_device_clock(view, frames_csv)
-    device_motion.write(device_npz, single_view.landmarks(source, view))
+    person = single_view.main_person(view)
+    if doubt := single_view.doubt(source, person):
+        log.tell(doubt, device_npz)
+    device_motion.write(device_npz, single_view.landmarks(source, person))
 
 
 if __name__ == "__main__":

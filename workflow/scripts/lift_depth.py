@@ -12,9 +12,10 @@ from courtside.study.execution.script import run
 def main(paths, device_npz, *, device, source, baseline_m, skin_m=None, beyond_m=None, **sampling):
     recording = open_depth.read(paths.recording, device)
     view = frame_times.on_device_clock(keypoints.read_2d(paths.pose2d), paths.frames)
+    person = single_view.main_person(view)
     motion, sigma_m = lifting.lift_take(
         source,
-        single_view.main_person(view),
+        person,
         log.progress(recording.depth_frames(), None, f"{device}: depth pictures"),
         recording,
         bones=skeleton.read(paths.skeleton).bones,
@@ -24,6 +25,8 @@ def main(paths, device_npz, *, device, source, baseline_m, skin_m=None, beyond_m
         sampling=surfaces.Sampling(**sampling),
     )
     log.logger.info("%s", lifting.summary(motion, sigma_m))
+    for doubt in filter(None, (single_view.doubt(source, person), lifting.doubt(motion))):
+        log.tell(doubt, device_npz)
     device_motion.write(device_npz, motion)
 
 

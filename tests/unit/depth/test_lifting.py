@@ -174,6 +174,21 @@ def test_a_lost_depth_picture_is_no_depth(still):
     assert (motion.reason[5] == missing_reason.NO_DEPTH).all()
     assert np.count_nonzero(motion.reason) == len(NAMES)
     assert "91.7%" in lifting.summary(motion, np.ones(3))
+    assert lifting.doubt(motion) is None
+
+
+def test_hardly_any_depth_is_doubted(still):
+    xyz, pictures = still
+    keypoints = view(xyz)
+    holes = [
+        (t, depth_scenes.steps(z) * 0) for t, z in zip(keypoints.time_s, pictures, strict=True)
+    ]
+    motion, _ = lifting.lift_take(
+        "d", keypoints, holes, RIG, bones=BONES, baseline_m=0.055, skin_m=RADIUS_M
+    )
+    assert "d: expected depth at 20% of the joints seen or more, found it at 0.0%" in lifting.doubt(
+        motion
+    )
 
 
 def test_a_slower_depth_stream_serves_every_colour_frame(still):

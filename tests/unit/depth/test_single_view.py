@@ -46,11 +46,21 @@ def test_nobody_is_unseen():
     assert (found.reason == missing_reason.UNSEEN).all()
 
 
+def test_a_thing_that_is_taken_for_a_person_is_doubted():
+    seen = single_view.main_person(view([[NEAR, NEAR, [NONE, NONE]]]))
+    assert single_view.doubt("cam-rgb", seen) is None
+    unsure = replace(seen, score=np.where(np.isfinite(seen.score), 0.13, np.nan))
+    assert "cam-rgb: expected joints with a median" in single_view.doubt("cam-rgb", unsure)
+    assert "found 0.13" in single_view.doubt("cam-rgb", unsure)
+    nobody = single_view.main_person(view(np.zeros((0, 4, 2, 2))))
+    assert single_view.doubt("cam-rgb", nobody) is None
+
+
 def test_landmarks_become_a_motion():
     in_body = np.random.default_rng(0).normal(size=(1, 2, 2, 3))
     in_body[0, 1, 1] = np.nan
     seen = replace(view([[NEAR, NEAR]], in_body), time_s=np.array([7.0, 7.1]))
-    motion = single_view.landmarks("cam-rgb", seen)
+    motion = single_view.landmarks("cam-rgb", single_view.main_person(seen))
     assert (motion.source, motion.kind) == ("cam-rgb", "rgb")
     assert np.array_equal(motion.xyz, in_body[0], equal_nan=True)
     assert motion.reason.tolist() == [[0, 0], [0, missing_reason.UNSEEN]]

@@ -67,6 +67,10 @@ def test_a_device_among_others_must_clap():
     _, _, mocopi, depth = take()
     with pytest.raises(InputError, match="d415-depth: expected a T-pose"):
         shown([mocopi, depth], DEVICES)
+    still = replace(mocopi, xyz=np.repeat(mocopi.xyz[:1], len(mocopi.xyz), axis=0))
+    with pytest.raises(InputError) as raised:
+        shown([still, depth], DEVICES)
+    assert [line.split(":")[0] for line in raised.value.lines] == ["mocopi", "d415-depth"]
     found = shown([mocopi, depth], DEVICES, stated=["d415"])
     assert (len(found["mocopi"].claps), found["d415-depth"].claps) == (2, [])
 

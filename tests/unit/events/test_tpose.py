@@ -117,5 +117,5 @@ def test_a_rest_pose_that_nobody_performed_gives_a_t_pose_of_its_own():
     assert spell.bend_deg == pytest.approx(np.degrees(0.2))
     with pytest.raises(InputError, match="found none"):
         tpose.rest(replace(motion, performed=np.ones(len(xyz), bool)))
-    with pytest.raises(InputError, match="level arms, found level_deg 90"):
+    with pytest.raises(InputError, match="level arms, found arms 90 degrees from square"):
         tpose.rest(replace(motion, performed=~performed))

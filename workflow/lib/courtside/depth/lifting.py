@@ -43,6 +43,8 @@ FIRST = 11  # depth pictures that tell their interval
 BONE_TOLERANCE, BONE_TOLERANCE_M = 0.25, 0.06  # share of a bone's length, and least tolerance
 FEWEST = 10  # frames that a bone's median length needs
 FROM_BODY_M = {True: 0.4, False: 1.1}  # largest depth from the trunk: joints of the trunk, others
+# Share of the joints seen that have depth, without a warning; the virtual depth camera lifts 98 %.
+LEAST_LIFTED = 0.2
 COVERED_M = 0.05  # a limb covers a joint if the depths of both agree to this
 
 
@@ -256,10 +258,28 @@ def _uncover(chosen, xy, z, radius_px_m, chain, is_trunk) -> None:
                 break
 
 
+def _share_lifted(motion: DeviceMotion) -> float:
+    """Return the share of the joints seen that have depth; NaN if none is seen."""
+    seen = np.isin(motion.reason, (missing_reason.OK, missing_reason.NO_DEPTH))
+    lifted = np.count_nonzero(motion.reason == missing_reason.OK)
+    return lifted / int(seen.sum()) if seen.any() else np.nan
+
+
+def doubt(motion: DeviceMotion) -> str | None:
+    """Return a line if hardly any joint that is seen has depth."""
+    lifted = _share_lifted(motion)
+    if not lifted < LEAST_LIFTED:
+        return None
+    return (
+        f"{motion.source}: expected depth at {LEAST_LIFTED:.0%} of the joints seen or more, found "
+        f"it at {lifted:.1%}: look whether colour and depth are of one recording and one clock, "
+        "and the person within the camera's range"
+    )
+
+
 def summary(motion: DeviceMotion, sigma_m: NDArray) -> str:
     """Return a log line: the share of joints with depth, and its precision."""
-    seen = np.isin(motion.reason, (missing_reason.OK, missing_reason.NO_DEPTH))
-    lifted = np.count_nonzero(motion.reason == missing_reason.OK) / max(int(seen.sum()), 1)
+    lifted = _share_lifted(motion)
     known = sigma_m[np.isfinite(sigma_m)]
     sigma_mm = 1000 * np.median(known) if len(known) else np.nan
     return f"{motion.source}: {lifted:.1%} of the joints seen have depth, noise {sigma_mm:.1f} mm"

@@ -9,6 +9,9 @@ from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints2D
 
+# ASSUME: median score of the joints of a person who is there. Followed persons of the virtual
+# sessions have 0.85 and more, things that are taken for persons 0.5 and less.
+LEAST_SCORE = 0.5
 FIELDS = ("xy", "score", "reason", "xyz_in_body", "clothing")  # of each tracklet
 
 
@@ -34,13 +37,23 @@ def main_person(view: Keypoints2D) -> Keypoints2D:
     return replace(view, **{key: getattr(view, key)[who, at][np.newaxis] for key in FIELDS})
 
 
-def landmarks(source: str, view: Keypoints2D) -> DeviceMotion:
+def doubt(source: str, person: Keypoints2D) -> str | None:
+    """Return a line if the main person of a source is perhaps a thing; None if there is nobody."""
+    scores = person.score[np.isfinite(person.xy).all(axis=-1)]
+    if not len(scores) or np.median(scores) >= LEAST_SCORE:
+        return None
+    return (
+        f"{source}: expected joints with a median score of {LEAST_SCORE:g} or more, found "
+        f"{np.median(scores):.2f}: look whether there is a person in its picture"
+    )
+
+
+def landmarks(source: str, person: Keypoints2D) -> DeviceMotion:
     """Return the network's own metric body of the main person, as a motion named `source`.
 
     It is relative to the centre of the hips, axes as in cam (x right, y down, z forward), metres.
-    The view has any number of tracklets and `xyz_in_body`.
+    `person` has one tracklet, of `main_person`, and `xyz_in_body`.
     """
-    person = main_person(view)
     xyz, reason = person.xyz_in_body[0], person.reason[0]
     seen = np.isfinite(xyz).all(axis=-1)
     return DeviceMotion(

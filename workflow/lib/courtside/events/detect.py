@@ -46,12 +46,16 @@ def of_devices(
     One source of each device must show a clap, because they share a clock. A source with T-poses
     but without a clap gets the claps of its device's first source with claps. A device that is
     alone, or whose clock is `stated`, needs no clap. An `InputError` if a device among others shows
-    no T-pose and clap in any of its sources.
+    no T-pose and clap in any of its sources; it has a line for each source of all such devices.
     """
     clapped = {devices[source] for source, each in found.items() if each.claps} | set(stated)
-    for source, each in found.items():
-        if each.fault and devices[source] not in clapped and len(set(devices.values())) > 1:
-            raise InputError(each.fault)
+    faults = [
+        each.fault
+        for source, each in found.items()
+        if each.fault and devices[source] not in clapped and len(set(devices.values())) > 1
+    ]
+    if faults:
+        raise InputError(*faults)
     return {source: _with_claps(source, found, devices) for source in found}
 
 

@@ -27,6 +27,13 @@ LIMITS = {
     "sideways_deg": 35.0,  # of each arm, from the line of the shoulders
     "speed_per_s": 0.4,  # of each wrist against the trunk, half wrist spans per second
 }
+# How messages tell a measure: what comes before its value, and after.
+WORDS = {
+    "bend_deg": ("elbows bent by", "degrees"),
+    "level_deg": ("arms", "degrees from square to the trunk"),
+    "sideways_deg": ("arms", "degrees from the line of the shoulders"),
+    "speed_per_s": ("wrists moving by", "half arm spans a second"),
+}
 HELD = 21  # frames that a rest pose is repeated for: more than the medians and speeds need
 SIDES = ("left", "right")
 JOINTS = tuple(f"{side}_{part}" for part in ("shoulder", "elbow", "wrist", "hip") for side in SIDES)
@@ -75,7 +82,7 @@ def rest(motion: DeviceMotion) -> TPose:
     middle = {key: float(values[HELD // 2]) for key, values in measure(still).items()}
     over = [key for key, limit in LIMITS.items() if not middle[key] <= limit]
     if over:
-        found = ", ".join(f"{key} {middle[key]:.2g}" for key in over)
+        found = _told({key: middle[key] for key in over})
         raise InputError(f"{motion.source}: expected a rest pose with level arms, found {found}")
     return _spell(motion.time_s, first, stop, middle)
 
@@ -176,9 +183,14 @@ def _spell(time_s: NDArray, first: int, stop: int, middle: Mapping[str, float]) 
     return TPose(start_s, stop_s, int(first), int(stop), cost=cost, **middle)
 
 
+def _told(measures: Mapping[str, float]) -> str:
+    words = ((*WORDS[key], value) for key, value in measures.items())
+    return ", ".join(f"{before} {value:.2g} {after}" for before, after, value in words)
+
+
 def _nearest(motion, measures, over, good) -> str:
-    words = ", ".join(f"{key} <= {limit:g}" for key, limit in LIMITS.items())
-    line = f"{motion.source}: expected a T-pose ({words}, for {LEAST_S:g} s), found none"
+    limits = f"{_told(LIMITS)} at most, for {LEAST_S:g} s"
+    line = f"{motion.source}: expected a T-pose ({limits}), found none"
     worst = np.where(np.isfinite(over).all(axis=0), over.max(axis=0), np.inf)
     if not np.isfinite(worst).any():
         return f"{line}, nor a frame with both arms and the trunk; film a T-pose before the clap"
@@ -189,6 +201,6 @@ def _nearest(motion, measures, over, good) -> str:
         found = f"the longest lasts {lasts:.2f} s at {motion.time_s[first]:.2f} s"
     else:
         at = int(worst.argmin())
-        nearest = ", ".join(f"{key} {measures[key][at]:.2g}" for key in LIMITS)
-        found = f"the nearest is at {motion.time_s[at]:.2f} s with {nearest}"
+        nearest = _told({key: measures[key][at] for key in LIMITS})
+        found = f"the nearest is at {motion.time_s[at]:.2f} s: {nearest}"
     return f"{line}; {found}; film a T-pose before the clap"
