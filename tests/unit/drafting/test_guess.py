@@ -322,6 +322,11 @@ def test_files_of_devices_alone_are_takes():
     ]
 
 
+def test_takes_of_devices_are_spelled_as_their_files():
+    found = guess("single_depth_color_640x480.bag", "jump-2.bvh")
+    assert list(found.takes) == ["single_depth_color_640x480", "jump-2"]
+
+
 def keypoints(*paths):
     """Return the kinds of recordings: folders of keypoints of these names."""
     return dict.fromkeys((PurePosixPath(path).name for path in paths), "keypoints")

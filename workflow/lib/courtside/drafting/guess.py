@@ -427,7 +427,8 @@ def _rename(found: Guess) -> None:
     found.serials = {cameras[c]: serial for c, serial in found.serials.items()}
     takes: dict[str, str] = {}
     for at, (take, films) in enumerate(found.takes.items(), start=1):
-        takes[take] = distinct(_named(take, films.values(), f"take{at}"), takes.values())
+        shown = [*films.values()] or [r for name, _, r in found.devices if name == take]
+        takes[take] = distinct(_named(take, shown, f"take{at}"), takes.values())
     found.takes, found.keypoints = (
         {takes[key]: {cameras[c]: r for c, r in take.items()} for key, take in kind.items()}
         for kind in (found.takes, found.keypoints)

@@ -84,9 +84,11 @@ def name(text: str, otherwise: str) -> str:
 def spelling(name: str, texts: Iterable[str]) -> str:
     """Return the name of a camera or take as all texts spell it: `cam_0` where words are `cam0`.
 
-    Only hyphens and underscores may differ; a name that texts spell in two ways stays.
+    Only hyphens and underscores may differ, `color640_x480` is `color_640x480`; a name that texts
+    spell in two ways stays.
     """
-    words = re.escape(name).replace("_", "[-_]")
+    words = re.sub("(?<![0-9])_|_(?![a-z])", "[-_]", re.escape(name))
+    words = re.sub("(?<=[0-9])_(?=[a-z])", "[-_]?", words)
     words = re.sub("(?<=[a-z])(?=[0-9])", "[-_]?", words)
     pattern = re.compile(f"(?<![a-z0-9]){words}(?![a-z0-9])")
     found = {(pattern.search(text.lower()) or [name])[0] for text in texts}
