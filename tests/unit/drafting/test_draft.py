@@ -231,7 +231,8 @@ def test_a_folder_without_recordings_says_what_is_there():
 def test_nothing_is_written_over(tmp_path):
     path = tmp_path / "north.yaml"
     path.write_text("mine")
-    with pytest.raises(InputError, match="found one"):
+    advice = "found one and left it; delete it to draft it anew, or give another name by --name"
+    with pytest.raises(InputError, match=advice):
         session_draft.write(path, draft(*TAKE)[1])
     assert path.read_text() == "mine"
 

@@ -74,7 +74,8 @@ def write(path: Path, content: str) -> None:
             stream.write(content)
     except FileExistsError:
         raise InputError(
-            f"{path}: expected no file of that name, found one and left it; give another by --name"
+            f"{path}: expected no file of that name, found one and left it; delete it to draft it "
+            "anew, or give another name by --name"
         ) from None
     faults = schemas.faults(yaml_files.read(path), "session", path)
     if faults:
