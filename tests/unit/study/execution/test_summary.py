@@ -91,9 +91,23 @@ def test_a_log_without_an_error_gives_its_last_line(tmp_path, content, expected)
     assert f"rule: {expected} (whole" in summary.failed([("rule", [str(log)])], 0, 1, 1)
 
 
-def test_many_failures_are_counted():
-    text = summary.failed([("rule", [])] * 7, 0, 9, 1)
-    assert text.count("rule: ") == 3 and "and 4 more jobs" in text
+def test_every_failure_of_a_folder_of_faulty_files_is_told(tmp_path):
+    logs = [tmp_path / f"take{number}.log" for number in range(19)]
+    for log in logs:
+        log.write_text(f"2026-01-01 10:00:00,000 ERROR {log.stem}.bvh: expected a BVH file\n")
+    text = summary.failed([("import_device", [str(log)]) for log in logs], 0, 57, 1)
+    assert all(f"{log.stem}.bvh: expected" in text for log in logs) and "more job" not in text
+
+
+def test_more_failures_are_counted_with_the_places_of_their_logs(tmp_path):
+    logs = [tmp_path / take / "import.log" for take in ("a", "b")]
+    for log in logs:
+        log.parent.mkdir()
+        log.write_text("cut off\n")
+    text = summary.failed([("rule", [])] * 20 + [("rule", [str(log)]) for log in logs], 0, 99, 1)
+    assert text.count("rule: ") == 20
+    assert f"and 2 more jobs (their logs: {logs[0]}, {logs[1]})" in text
+    assert "\n  and 1 more job\n" in summary.failed([("rule", [])] * 21, 0, 99, 1)
 
 
 @pytest.mark.parametrize(

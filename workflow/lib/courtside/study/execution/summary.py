@@ -6,7 +6,7 @@ from pathlib import Path
 from courtside.study.errors import SPARE_MEMORY, StrPath
 
 N_NAMED = 3  # folders or files that a line names; the rest are counted
-N_FAULTS = 3
+N_FAULTS = 20  # told with their reason
 UNFINISHED = (" INFO ", " WARNING ")  # the last line of a log without an error
 # What a file is, by what its path must contain and how it ends; the first that fits counts.
 KINDS = (
@@ -64,12 +64,19 @@ def failed(
         why = _last_fault(log) if log else "no log of its own"
         lines.append(f"  {name}: {why}" + (f" (whole log: {log})" if log else ""))
     if len(faults) > N_FAULTS:
-        lines.append(f"  and {len(faults) - N_FAULTS} more jobs")
+        lines.append(_more(faults[N_FAULTS:]))
     lines.append(
         "Finished files are kept: correct the fault and run the same command again. If it reports "
         "a locked folder and no other run uses this folder: snakemake --unlock."
     )
     return "\n".join(lines)
+
+
+def _more(faults: Sequence[tuple[str, list[str]]]) -> str:
+    """Return a line on the jobs that are only counted, with the places of their logs."""
+    logs = [path for _, paths in faults for path in paths if Path(path).is_file()]
+    count = "1 more job" if len(faults) == 1 else f"{len(faults)} more jobs"
+    return f"  and {count}" + (f" (their logs: {_places(logs)})" if logs else "")
 
 
 def duration(seconds: float) -> str:
