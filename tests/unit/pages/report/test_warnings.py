@@ -1,6 +1,7 @@
 """Warnings: what is well gives none, what is not gives one that names it, as serious as it is."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -225,6 +226,23 @@ def test_a_truth_outside_the_error_bar_gives_a_warning():
 def test_an_uncertain_distance_gives_a_warning(value, half, expected):
     measures = {"neck_distance": (value, half, "m")}
     assert level(warned.distance("p1", measures)) == expected
+
+
+@pytest.mark.parametrize(
+    ("bias", "measured", "gaps", "why"),
+    [
+        (0.1, 8.0, math.nan, "a gap in its path is too long to bridge; cut the take .*`trim_s`"),
+        (math.nan, 8.0, math.nan, "the errors of the joints are not known, .* measure with videos"),
+        (math.nan, 8.0, 0.0, "the errors of the joints are not known, .* measure with videos"),
+        (math.nan, 0.0, math.nan, "its path is known in no frame; see which joints"),
+    ],
+)
+def test_an_unknown_distance_has_its_cause_and_remedy(bias, measured, gaps, why):
+    values = {"": math.nan, "_noise_bias": bias, "_measured": measured, "_in_gaps": gaps}
+    measures = {f"neck_distance{what}": (each, 0.0, "m") for what, each in values.items()}
+    found = warned.distance("p1", measures)
+    assert found.level == warned.DOUBT
+    assert re.fullmatch(f"p1: the distance of the neck is unknown: {why}.*\\.", found.text)
 
 
 @pytest.mark.parametrize(

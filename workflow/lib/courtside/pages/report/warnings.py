@@ -230,13 +230,30 @@ def distance(person: str, measures: dict) -> Warned | None:
     """Return a warning if a distance is known badly; `measures` are those of `facts.of_take`."""
     value, half, _ = measures.get("neck_distance", (math.nan, math.nan, "m"))
     if math.isnan(value):
-        why = "its gaps are too long, or its errors are not known"
-        return Warned(DOUBT, f"{person}: the distance of the neck is unknown: {why}.")
+        text = f"the distance of the neck is unknown: {_unknown_distance(measures)}"
+        return Warned(DOUBT, f"{person}: {text}.")
     share = half / value if value > 0 else math.nan
     level = _level_of("distance", share)
     if math.isnan(share):
         return Warned(level, f"{person}: the error of the distance is unknown.")
     return Warned(level, f"{person}: the distance is known only to {share:.0%}.") if level else None
+
+
+def _unknown_distance(measures: dict) -> str:
+    """Return why a distance is unknown, and what to do; `measures` are as for `distance`."""
+    bias, length, gaps = (
+        measures.get(f"neck_distance{what}", (math.nan,))[0]
+        for what in ("_noise_bias", "_measured", "_in_gaps")
+    )
+    if math.isnan(bias) and not length > 0:
+        return "its path is known in no frame; see which joints are missing, and why"
+    if math.isnan(bias):
+        why = "the errors of the joints are not known, as of 3D joints of another program"
+        return f"{why}; measure with videos, or with keypoints of the pictures (`pose2d`)"
+    if math.isnan(gaps):
+        why = "a gap in its path is too long to bridge"
+        return f"{why}; cut the take to a part without it (`trim_s`), or film with more cameras"
+    return "its table has no value"
 
 
 def true_path(row: dict) -> Warned | None:
