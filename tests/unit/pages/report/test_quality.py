@@ -124,3 +124,13 @@ def test_tables_scroll_by_themselves_and_escape():
 def test_all_limits_of_the_marks_are_stated():
     html = quality.limits()
     assert html.count("<tr>") == len(warnings.LIMITS) + 1
+
+
+def test_a_static_photo_has_no_count_of_matches(tmp_path):
+    study = report_made.study(tmp_path)
+    session = study["sessions"][0] | {"id": "quality-hall"}
+    facts = report_facts.of_session(session["files"])
+    unknown = {"shift_x_px": math.nan, "shift_y_px": math.nan, "zoom_percent": math.nan}
+    facts["static"] = [{"camera": "photographed", **unknown, "n_matches": 0}]
+    html = quality.session(session, facts, [], [])
+    assert cells(html, "photographed") == ["–", "–", "–"]

@@ -292,3 +292,14 @@ def test_a_session_is_judged_by_the_calibration_of_its_takes():
     assert warned.of_session(facts, "known8", **limits) == []
     assert len(warned.of_session(facts, "file", **limits)) == 1
     assert warned.of_session(facts, None, **limits) == []
+
+
+def test_a_static_photo_is_no_fault():
+    unknown = dict.fromkeys(("shift_x_px", "shift_y_px", "zoom_percent"), math.nan)
+    facts = {"static": [STILL | unknown | {"n_matches": 0}], "quality": {}, "model": {}}
+    (found,) = warned.of_session(facts, None, max_shift_px=1.0, max_zoom_percent=0.2)
+    assert found.level == warned.GOOD
+    assert "left: its static recording is a photo" in found.text
+    moved = facts | {"static": [STILL | {"shift_x_px": 3.0}]}
+    (found,) = warned.of_session(moved, None, max_shift_px=1.0, max_zoom_percent=0.2)
+    assert found.level == warned.DOUBT

@@ -75,7 +75,7 @@ def of_session(
     `facts` are of `facts.of_session`, `used` is the calibration of its takes, the limits are as for
     `of_take`.
     """
-    found = [moved(row, max_shift_px, max_zoom_percent) for row in facts["static"]]
+    found = [stood_still(row, max_shift_px, max_zoom_percent) for row in facts["static"]]
     found += calibration(used, facts["quality"][used]) if used and used in facts["quality"] else []
     found += [registered(facts["model"])] if facts["model"] else []
     return sorted(filter(None, found), key=lambda item: -item.level)
@@ -91,6 +91,17 @@ def moved(row: dict, max_shift_px: float, max_zoom_percent: float) -> Warned | N
     level = _level_of("moved", share)
     text = f"it moved by {shift:.2g} px and zoomed by {row['zoom_percent']:.2g} %"
     return Warned(level, f"Camera {row['camera']}: {text}.") if level else None
+
+
+def stood_still(row: dict, max_shift_px: float, max_zoom_percent: float) -> Warned | None:
+    """Return a warning if a camera moved within its static recording, as `moved` has it.
+
+    This is measured wherever there are pictures enough: it is unknown of a photo alone.
+    """
+    if math.isnan(row["zoom_percent"]):
+        text = "its static recording is a photo or one or two frames, which show no movement"
+        return Warned(GOOD, f"Camera {row['camera']}: {text}.")
+    return moved(row, max_shift_px, max_zoom_percent)
 
 
 def shaken(line: str) -> Warned:
