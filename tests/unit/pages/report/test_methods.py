@@ -70,6 +70,28 @@ def test_only_the_methods_that_were_used_are_cited(study):
     assert "Lowe" not in html and "Winter" not in html and "Bazarevsky" not in html
 
 
+def test_no_clicks_are_told_where_none_were_used(study):
+    study["sessions"].append({**study["sessions"][0], "name": "door"})
+    html = re.sub(r"\s+", " ", methods_text(study))
+    assert "The cameras of hall and door were calibrated" in html
+    assert "(at 3840 px width), a tie point of 2.0 robust" in html
+    study["sessions"][1]["clicked"] = False
+    html = re.sub(r"\s+", " ", methods_text(study))
+    assert "of a walk and of the clicked court points (<code>sfm-n40</code>)" in html
+    assert "The cameras of door were calibrated by one bundle adjustment" in html
+    assert "of a walk alone, without a court: scale and axes are arbitrary" in html
+    del study["sessions"][0]
+    html = re.sub(r"\s+", " ", methods_text(study))
+    assert "click" not in html
+    assert "In the adjustment, a tie point has a standard deviation of 2.0 robust" in html
+
+
+def test_features_are_not_said_to_be_at_most_so_many(study):
+    """A point with several orientations is several features."""
+    html = re.sub(r"\s+", " ", methods_text(study))
+    assert "the largest until a picture has 4096 points, some in several orientations" in html
+
+
 def test_joints_of_another_program_are_not_said_to_be_found_by_a_network(study):
     study["sessions"][0] |= {"model": "body25b", "imported": True}
     html = methods_text(study)

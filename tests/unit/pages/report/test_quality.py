@@ -126,6 +126,20 @@ def test_all_limits_of_the_marks_are_stated():
     assert html.count("<tr>") == len(warnings.LIMITS) + 1
 
 
+def test_cameras_without_left_out_points_rest_on_no_clicks(tmp_path):
+    quality_of = report_made.QUALITY
+    free = {key: value for key, value in quality_of.items() if key != "left_out"}
+    assert quality.clicked({"sfm-n40": quality_of}) and quality.clicked({})
+    assert quality.clicked({"file": free}) and not quality.clicked({"sfm-n40": free})
+    study = report_made.study(tmp_path)
+    session = study["sessions"][0] | {"id": "quality-hall"}
+    facts = report_facts.of_session(session["files"]) | {"quality": {"sfm-n40": free}}
+    take = session["takes"][0]
+    takes = [(take, report_facts.of_take(take["files"]), [])]
+    html = re.sub(r"\s+", " ", quality.session(session, facts, [], takes))
+    assert "pictures of a walk alone, without a court" in html and "clicked" not in html
+
+
 def test_a_static_photo_has_no_count_of_matches(tmp_path):
     study = report_made.study(tmp_path)
     session = study["sessions"][0] | {"id": "quality-hall"}

@@ -1,5 +1,6 @@
 """The whole report, read by a parser: nothing outside, links have targets, text is escaped."""
 
+import json
 from html.parser import HTMLParser
 
 import pytest
@@ -95,3 +96,11 @@ def test_the_report_states_what_lacks_consent(study):
     page = report.build({**study, "figures": []})
     assert "Left out: nothing is made of take rally: p2 has not agreed to analysis." in page
     assert 'href="#session.hall"' in page
+
+
+def test_methods_tell_of_clicks_as_the_quality_of_the_cameras_does(study, tmp_path):
+    assert "the clicked court points" in report.build(study)
+    free = {key: value for key, value in report_made.QUALITY.items() if key != "left_out"}
+    (tmp_path / "free.json").write_text(json.dumps(free))
+    study["sessions"][0]["files"]["quality"] = {"sfm-n40": str(tmp_path / "free.json")}
+    assert "clicked court points" not in report.build(study)

@@ -44,6 +44,10 @@ CALIBRATED = {  # by the kind of a calibration
     "people": "calibrated in another way and refined by the people in takes, where people and "
     "points that the adjustment did not see say that this is better",
 }
+UNCLICKED = (  # of the kind `sfm`
+    "calibrated by one bundle adjustment of structure from motion over the pictures of a walk "
+    "alone, without a court: scale and axes are arbitrary"
+)
 FUSED = {  # by the rule of a fusion
     "robust": "views are weighted, and those that contradict the others lose their weight",
     "dlt": "all views have the same weight (DLT)",
@@ -60,7 +64,8 @@ def paragraphs(
     """Return the methods as HTML: paragraphs, then the sources that they cite.
 
     `parameters` are the study's steps as configured: `match_images`, `adjust_network` ... Each of
-    `sessions` has `name`, `calibration` (of its takes), `mapper`, `n_images`, `fusion`, `model`,
+    `sessions` has `name`, `calibration` (of its takes), `clicked` (whether court points were used
+    there; true if left out), `mapper`, `n_images`, `fusion`, `model`,
     `imported` (whether another program found the joints), `virtual`, `overrides` ({step: {key:
     value}}), `takes`. `used_hz` are the cut-offs of the filter by session and take, as used.
     """
@@ -78,8 +83,9 @@ def paragraphs(
         step=parameters,
         real=[session["name"] for session in sessions if not session["virtual"]],
         simulated=[session["name"] for session in sessions if session["virtual"]],
-        calibrations=[_calibrated(name, sessions) for name in _different(sessions, "calibration")],
+        calibrations=_calibrations(sessions),
         mapped=mapped,
+        clicked=any(session["mapper"] and _clicked(session) for session in sessions),
         networks=networks,
         imported=[
             (name, _users(imported, "model", name)) for name in _different(imported, "model")
@@ -108,10 +114,23 @@ def _different(sessions: Iterable[dict], key: str) -> list[str]:
     return list(dict.fromkeys(session[key] for session in sessions if session[key]))
 
 
-def _calibrated(name: str, sessions: Iterable[dict]) -> tuple[str, str, list[str]]:
-    """Return a calibration, what it is in words, and the sessions that use it."""
-    users = _users(sessions, "calibration", name)
-    return name, CALIBRATED[Calibration.parse(name).kind], users
+def calibrated(kind: str, clicked: bool) -> str:
+    """Return in words what a kind of calibration is, of court points that were clicked or not."""
+    return UNCLICKED if kind == "sfm" and not clicked else CALIBRATED[kind]
+
+
+def _calibrations(sessions: Iterable[dict]) -> list[tuple[str, str, list[str]]]:
+    """Return each calibration, what it is in words, and the sessions that use it."""
+    found: dict[tuple[str, str], list[str]] = {}
+    for session in sessions:
+        if name := session["calibration"]:
+            words = calibrated(Calibration.parse(name).kind, _clicked(session))
+            found.setdefault((name, words), []).append(session["name"])
+    return [(*one, users) for one, users in found.items()]
+
+
+def _clicked(session: dict) -> bool:
+    return session.get("clicked", True)
 
 
 def _users(sessions: Iterable[dict], key: str, value: str) -> list[str]:

@@ -76,7 +76,8 @@ def _used(name: str | None, known: dict[str, dict]) -> dict | None:
     if not name or name not in known:
         return None
     content, way = known[name], Calibration.parse(name)
-    found: dict = {"name": name, "words": methods.CALIBRATED[way.kind], "base": way.base}
+    words = methods.calibrated(way.kind, clicked({name: content}))
+    found: dict = {"name": name, "words": words, "base": way.base}
     found["expected_cm"] = content.get("expected_volume_rms_cm")
     found["unknown"] = NO_VOLUME if way.has_covariance else NO_COVARIANCE
     if way.base:
@@ -84,8 +85,22 @@ def _used(name: str | None, known: dict[str, dict]) -> dict | None:
         found |= {"line": line, "wrong": wrong, "before_cm": content.get("expected_before_cm")}
         told = [*content["warnings"], *content["remarks"]]
         found["others"] = [one for one in told if not one.endswith((line, *wrong))]
-        found |= {"of_base": methods.CALIBRATED[Calibration.parse(way.base).kind]}
+        base = {key: value for key, value in known.items() if key == way.base}
+        found |= {"of_base": methods.calibrated(Calibration.parse(way.base).kind, clicked(base))}
     return found
+
+
+def clicked(qualities: dict[str, dict]) -> bool:
+    """Return whether a session's cameras rest on clicked points, by the files of their quality.
+
+    Those of structure from motion without a court leave no point out.
+    """
+    alone = [
+        "left_out" not in content
+        for name, content in qualities.items()
+        if Calibration.parse(name).kind == "sfm"
+    ]
+    return not alone or not all(alone)
 
 
 def limits() -> Markup:

@@ -81,7 +81,11 @@ def _methods(study: dict, known: list[dict]) -> Markup:
         for session in known
         for take, facts, _ in session["takes"]
     }
-    return methods.paragraphs(study["parameters"], study["sessions"], used_hz)
+    told = [
+        session["configured"] | {"clicked": quality.clicked(session["facts"]["quality"])}
+        for session in known
+    ]
+    return methods.paragraphs(study["parameters"], told, used_hz)
 
 
 def _figures(grouped: figures.Groups) -> tuple[Markup, dict[str, tuple[bytes, str]]]:
