@@ -1,5 +1,6 @@
 """Calibrate fixed cameras in the court's frame: ties, clicks, lines -> cameras, covariance."""
 
+from courtside.calibration import arrangement
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court import joint_adjustment, quality
 from courtside.calibration.court_lines import walk_and_lines
@@ -66,7 +67,10 @@ def calibrate(record, clicks_csv, court_yaml, **options):
 
 def solve(record, clicks_csv, court_yaml, *, pictures, search=None, **options):
     if not court_yaml:
-        return joint_adjustment.free(record.ties), quality.check_maps(*record.n_maps)
+        found = joint_adjustment.free(record.ties)
+        covariance = camera_covariance.of_network(list(record.ties.cameras), found.covariance)
+        expected = arrangement.expected(found.cameras, covariance)
+        return found, quality.check_maps(*record.n_maps) | expected
     court = court_files.read(court_yaml)
     marked = clicks.read(clicks_csv, list(record.ties.cameras), list(court.points))
     if not pictures:

@@ -4,6 +4,8 @@ import json
 import math
 import re
 
+import pytest
+
 from courtside.pages import page as pages
 from courtside.pages.report import facts as report_facts
 from courtside.pages.report import quality, warnings
@@ -148,3 +150,18 @@ def test_a_static_photo_has_no_count_of_matches(tmp_path):
     facts["static"] = [{"camera": "photographed", **unknown, "n_matches": 0}]
     html = quality.session(session, facts, [], [])
     assert cells(html, "photographed") == ["–", "–", "–"]
+
+
+@pytest.mark.parametrize("places", [{}, {"expected_extent_percent": 0.124}])
+def test_cameras_without_a_court_have_expected_errors_without_a_scale(tmp_path, places):
+    free = {"warnings": [], "tie_residual_px": 0.19, "expected_angle_deg": 0.2176, **places}
+    session = report_made.study(tmp_path)["sessions"][0] | {"id": "quality-hall"}
+    facts = report_facts.of_session(session["files"])
+    page_of = {
+        one: facts | {"quality": {"sfm-n40": one_of}}
+        for one, one_of in (("free", free), ("court", report_made.QUALITY))
+    }
+    html = re.sub(r"\s+", " ", quality.session(session, page_of["free"], [], []))
+    assert "from the tie points alone: 0.22 degrees in the rotation between two of them" in html
+    assert ("0.12 % of their largest distance in their places" in html) == bool(places)
+    assert "arbitrary" not in quality.session(session, page_of["court"], [], [])
