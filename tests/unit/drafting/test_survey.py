@@ -89,6 +89,19 @@ def test_folders_of_keypoints_are_found(tmp_path):
     assert "points, found nobody;" in found["pose/nobody_json"].note
 
 
+def test_an_empty_folder_is_told(tmp_path):
+    """Of keypoints, it is one camera less; here nothing was copied."""
+    for name in ("pose/cam1_json", "pose/cam2_json", ".hidden"):
+        (tmp_path / name).mkdir(parents=True)
+    for at in range(3):
+        (tmp_path / "pose" / "cam1_json" / f"{at}.json").write_text('{"people": []}')
+    found = {r.path: r for r in survey.survey(tmp_path, root=tmp_path)}
+    assert sorted(found) == ["pose/cam1_json", "pose/cam2_json"]
+    assert found["pose/cam2_json"].kind == "unusable"
+    assert found["pose/cam2_json"].note.startswith("an empty folder; copy")
+    assert survey.survey(tmp_path / "pose" / "cam2_json", root=tmp_path) == []
+
+
 @pytest.mark.parametrize("beside", [None, "left.mp4", "more"])
 def test_photos_in_the_folder_itself_are_a_walk_if_nothing_else_is_there(tmp_path, beside):
     folder = tmp_path / "data" / "door"
@@ -105,7 +118,7 @@ def test_photos_in_the_folder_itself_are_a_walk_if_nothing_else_is_there(tmp_pat
         assert (photos.kind, photos.n_photos, photos.path) == ("photos", 3, "data/door")
         assert photos.parts == ("door",)
     else:
-        assert [one.kind for one in found if one.kind != "video"] == ["photo"] * 3
+        assert [one.kind for one in found if one.kind not in ("video", "unusable")] == ["photo"] * 3
 
 
 def test_a_folder_elsewhere_gives_absolute_paths(gym, tmp_path):

@@ -23,6 +23,7 @@ BAGS = {".bag", ".db3"}
 CALIBRATIONS = {".toml", ".txt", ".xml", ".xcp", ".mcal"}
 CLICKED = {"camera", "x_px", "y_px"}
 RACKET = {"take", "camera", "frame_idx", "end"}
+EMPTY = "an empty folder; copy its recordings into it, or delete it"
 
 
 def survey(folder: StrPath, *, root: StrPath) -> list[Recording]:
@@ -49,6 +50,8 @@ def survey(folder: StrPath, *, root: StrPath) -> list[Recording]:
         together = len(photos) > 1 and (Path(at) != folder or alone)
         if together:
             found.append(_described(Path(at), folder, root, _photos))
+        if not names and not inner and Path(at) != folder:
+            found.append(_described(Path(at), folder, root, _empty))
         if sum(path.suffix == ".json" for path in files) > 1 and Path(at) != folder:
             found.append(_described(Path(at), folder, root, _keypoints))
         for path in files:
@@ -82,6 +85,10 @@ def written(path: Path, root: StrPath) -> str:
     """Return a path as a session names it: relative to `root` if below it, else absolute."""
     whole, start = path.absolute(), Path(root).absolute()
     return (whole.relative_to(start) if whole.is_relative_to(start) else whole).as_posix()
+
+
+def _empty(_: Path) -> dict[str, Any]:
+    return {"kind": "unusable", "note": EMPTY}
 
 
 def _video(path: Path) -> dict[str, Any]:
