@@ -93,6 +93,20 @@ def test_the_default_unit_is_remarked(folder):
     assert "0.001 m assumed" in found.remarks[0]
 
 
+def test_a_folder_is_known_by_its_names_also_if_it_is_not_complete(folder, tmp_path):
+    assert depth_folder.is_one(folder)
+    (folder / "cameras.toml").rename(tmp_path / "cameras.toml")
+    assert depth_folder.is_one(folder) and not depth_folder.is_one(tmp_path / "none")
+    (folder / "colour.mp4").unlink()
+    assert not depth_folder.is_one(folder)
+    (tmp_path / "cameras.toml").rename(folder / "cameras.toml")
+    assert depth_folder.is_one(folder)
+    (folder / "cameras.toml").write_text("[left]\nname = 'left'\n")
+    assert not depth_folder.is_one(folder)
+    (folder / "cameras.toml").write_bytes(b"\xff\xfe")
+    assert not depth_folder.is_one(folder)
+
+
 def unlink(name):
     return lambda folder: (folder / name).unlink()
 

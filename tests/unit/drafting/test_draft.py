@@ -455,6 +455,19 @@ def test_devices_alone_make_a_session():
     assert not any(line.startswith(("Odd", "No walk", "Court")) for line in lines)
 
 
+def test_a_single_view_is_a_take_of_devices():
+    film = recording("data/room/balance_webcam.mp4", note="frames come at irregular times")
+    suit = recording("data/room/balance_mocopi.bvh", "bvh", size=None)
+    guess, _, content = draft(film, suit, folder="data/room")
+    assert (content["cameras"], content["court"]) == ({}, "none") and "walks" not in content
+    assert content["takes"] == {
+        "balance": {"devices": {"webcam": {"file": film.path}, "mocopi": {"file": suit.path}}}
+    }
+    lines = session_draft.to_check(guess, "room.yaml", None, "n.yaml")
+    assert f"Odd: {film.path}: {film.note}" in lines
+    assert not any(line.startswith(("No walk", "Court", "Cameras")) for line in lines)
+
+
 def test_cameras_without_names_are_marked():
     videos = [recording(f"data/north/IMG_{n}.MOV") for n in ("0007", "1234")]
     _, text, content = draft(*videos)

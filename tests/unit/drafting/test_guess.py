@@ -327,6 +327,52 @@ def test_takes_of_devices_are_spelled_as_their_files():
     assert list(found.takes) == ["single_depth_color_640x480", "jump-2"]
 
 
+def devices(found):
+    """Return the devices of each take, as their files are called."""
+    return {
+        take: {device: r.path.removeprefix("gym/") for of, device, r in found.devices if of == take}
+        for take in found.takes
+    }
+
+
+def test_one_video_beside_files_of_devices_is_a_device_of_their_take():
+    names = {"webcam": "balance_webcam.mp4", "mocopi": "balance_mocopi.bvh"}
+    found = guess(*names.values())
+    assert devices(found) == {"balance": names}
+    assert not (found.walks or found.cameras or found.static)
+    names = {"webcam": "IMG_0007.mov", "mocopi": "arm-raise.bvh", "rgbd": "arm-raise_depth"}
+    assert devices(guess(*names.values(), **{"arm-raise_depth": "depth"})) == {"arm-raise": names}
+    assert devices(guess("IMG_0007.mov", "mocopi.bvh")) == {
+        "take1": {"webcam": "IMG_0007.mov", "mocopi": "mocopi.bvh"}
+    }
+
+
+def test_videos_that_say_that_they_are_of_a_webcam_are_takes():
+    names = [
+        f"{take}/{take}_{ending}"
+        for take in ("jump", "sit")
+        for ending in ("webcam.mp4", "mocopi.bvh")
+    ]
+    assert devices(guess(*names)) == {
+        take: {"webcam": f"{take}/{take}_webcam.mp4", "mocopi": f"{take}/{take}_mocopi.bvh"}
+        for take in ("jump", "sit")
+    }
+    folders = [f"{take}/{name}" for take in ("jump", "sit") for name in ("webcam.mp4", "suit.bvh")]
+    assert set(devices(guess(*folders, "jump/mocopi.bvh"))) == {"jump", "sit", "suit"}
+
+
+@pytest.mark.parametrize("other", ["walk.mp4", "hall", "left_empty.jpg", "cam2_balance.mp4"])
+def test_a_video_beside_those_of_a_session_is_no_device(other):
+    found = guess("cam1_balance.mp4", "balance.bvh", other)
+    assert [device for _, device, _ in found.devices] == ["mocopi"]
+
+
+def test_a_folder_of_depth_goes_to_the_take_of_its_name():
+    films = [f"{take}_cam{k}.mp4" for take in ("serve", "lob") for k in (1, 2)]
+    found = guess(*films, "lob_depth", lob_depth="depth")
+    assert [(take, device) for take, device, _ in found.devices] == [("lob", "rgbd")]
+
+
 def keypoints(*paths):
     """Return the kinds of recordings: folders of keypoints of these names."""
     return dict.fromkeys((PurePosixPath(path).name for path in paths), "keypoints")

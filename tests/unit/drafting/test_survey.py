@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import cv2
+import numpy as np
 import pytest
 import yaml
 
@@ -87,6 +88,18 @@ def test_folders_of_keypoints_are_found(tmp_path):
     assert one.parts == ("pose", "cam1_json")
     assert "points, found 7;" in found["pose/odd_json"].note
     assert "points, found nobody;" in found["pose/nobody_json"].note
+
+
+def test_a_folder_of_depth_is_one_recording(tmp_path):
+    folder = tmp_path / "room" / "claps_depth"
+    (folder / "depth").mkdir(parents=True)
+    cv2.imwrite(str(folder / "depth" / "0.png"), np.zeros((4, 4), np.uint16))
+    video_files.write(str(folder / "colour.mp4"), n=5, rate=10)
+    (folder / "cameras.toml").write_text("[colour]\n[depth]\n")
+    (one,) = survey.survey(tmp_path / "room", root=tmp_path)
+    assert (one.path, one.kind, one.parts) == ("room/claps_depth", "depth", ("claps_depth",))
+    (one,) = survey.survey(folder, root=tmp_path)
+    assert (one.path, one.kind, one.parts) == ("room/claps_depth", "depth", ("claps_depth",))
 
 
 def test_an_empty_folder_is_told(tmp_path):

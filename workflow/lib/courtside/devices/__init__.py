@@ -5,7 +5,7 @@ mocopi, nuitrack: `read`: the motion of one person as a `DeviceMotion`
 openpose: `read`: keypoints of one camera; `skeletons`; `link`: persons followed through frames
 frame_numbers: `matched`, `common`: which frames the files of a folder are of
 open_depth: `read`: colour and depth of any form as a `DepthRecording`; `baseline`
-depth_folder: `read`: colour and depth from a folder of plain files
+depth_folder: `read`: colour and depth from a folder of plain files; `is_one`
 depth_recording: `DepthRecording`
 plausible: units of a file, by the size of a body and the rate; stray and reset times
 

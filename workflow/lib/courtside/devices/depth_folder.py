@@ -43,7 +43,7 @@ from courtside.devices.depth_recording import DEFAULT_UNIT_M, STANDING_STILL, De
 from courtside.geometry import camera as camera_models
 from courtside.geometry import camera_fields, rotations
 from courtside.records.cameras.frame_times import FrameTimes
-from courtside.study.errors import InputError, StrPath, reading
+from courtside.study.errors import RAISED_BY_READERS, InputError, StrPath, reading
 from courtside.video import images, reader
 
 VIDEOS = (".mp4", ".mkv", ".mov", ".avi")
@@ -111,8 +111,28 @@ def _metadata(toml: Path) -> tuple[float, float, tuple[str, ...]]:
     return depth_unit_m, float(baseline_m), remarks
 
 
+def is_one(path: StrPath) -> bool:
+    """Return whether a folder is meant as such, by the names in it; it need not be complete.
+
+    It has cameras named colour and depth, or a colour video beside a folder of depth pictures.
+    """
+    folder = Path(path)
+    if _films(folder) and (folder / "depth").is_dir():
+        return True
+    try:
+        found = tomllib.loads((folder / "cameras.toml").read_text(encoding="utf-8-sig"))
+    except RAISED_BY_READERS:
+        return False
+    tables = [(key, table) for key, table in found.items() if isinstance(table, dict)]
+    return {"colour", "depth"} <= {str(table.get("name", key)) for key, table in tables}
+
+
+def _films(folder: Path) -> list[Path]:
+    return [path for path in sorted(folder.glob("colour.*")) if path.suffix.lower() in VIDEOS]
+
+
 def _film(folder: Path) -> Path:
-    found = [path for path in sorted(folder.glob("colour.*")) if path.suffix.lower() in VIDEOS]
+    found = _films(folder)
     if len(found) != 1:
         names = [path.name for path in found]
         raise InputError(

@@ -451,7 +451,7 @@ def _odd(guess: Guess) -> Iterator[str]:
     for name, take in guess.takes.items():
         yield from _odd_take(name, take)
     filmed = [recording for take in guess.takes.values() for recording in take.values()]
-    for recording in [*guess.walks.values(), *filmed]:
+    for recording in [*guess.walks.values(), *filmed, *(r for *_, r in guess.devices)]:
         if recording.note:
             yield f"{recording.path}: {recording.note}"
 

@@ -25,6 +25,10 @@ FOLDERS |= {"recording", "recordings", "cam", "camera", "kamera"}
 FOLDERS |= {"json", "pose", "poses", "pose2d", "keypoints", "openpose", "alphapose", "rtmlib"}
 # Words of folders in which Pose2Sim keeps keypoints that it has changed itself.
 CHANGED = {"associated", "sync", "filtered"}
+DEVICES = {"bvh": "mocopi", "bag": "realsense", "depth": "rgbd"}  # by kind
+WEBCAM = "webcam"
+# Words at the end or the start of a name that say what recorded it, not what was recorded.
+RECORDERS = {*DEVICES.values(), WEBCAM, "depth"}
 CAMERA = re.compile(
     r"(cam|camera|c|gopro|gp|view|kamera|phone|iphone|pixel|dslr|miqus|oqus|arqus)[0-9]+"
     r"|(left|right|centre|center|middle|back|front|side|rear|oblique|mirror|links|rechts|mitte)[0-9]*"
@@ -38,8 +42,8 @@ class Recording:
     path: str  # as a session's file names it
     # Folders below the one that was searched, and the name without its suffix
     parts: tuple[str, ...]
-    # `video`, `photo`, `photos`, `keypoints` (a folder of JSON), `bvh`, `bag`, `court_points`,
-    # `racket`, `calibration`, or `unusable`
+    # `video`, `photo`, `photos`, `keypoints` (a folder of JSON), `bvh`, `bag`, `depth` (a folder
+    # of plain files), `court_points`, `racket`, `calibration`, or `unusable`
     kind: str
     size: tuple[int, int] | None = None  # of its pictures, px
     rate_hz: float | None = None  # of a video
@@ -113,6 +117,9 @@ def guess(recordings: Sequence[Recording]) -> Guess:
     found = Guess()
     recordings = _without_later_chapters(found, recordings)
     recordings = _without_changed_keypoints(found, recordings)
+    if alone := _single_views(recordings):
+        _place_single_views(found, alone)
+        recordings = [recording for recording in recordings if recording not in alone]
     filmed = any(r.kind == "video" for r in recordings)
     videos = [r for r in recordings if r.kind == ("video" if filmed else "keypoints")]
     own = _own_words(recordings, videos)
@@ -157,6 +164,50 @@ def _without_changed_keypoints(found: Guess, recordings: Sequence[Recording]) ->
     why = "keypoints that another program changed; the study needs them as they were detected"
     found.unused += [(recording, why) for recording in changed]
     return [recording for recording in recordings if recording not in changed]
+
+
+def _single_views(recordings: Sequence[Recording]) -> list[Recording]:
+    """Return videos and files of devices that are single views, where there is nothing else.
+
+    Beside files of devices one video is a device's, and so are several that all say so, each with a
+    name of its own.
+    """
+    videos = [r for r in recordings if r.kind == "video"]
+    others = [r for r in recordings if r.kind in DEVICES]
+    used = {*DEVICES, "video", "racket", "unusable"}
+    if not videos or not others or any(r.kind not in used for r in recordings):
+        return []
+    if any(_has(video, WALK | STATIC) for video in videos):
+        return []
+    said = all(WEBCAM in video.words for video in videos)
+    apart = len({_take_of(video) for video in videos}) == len(videos)
+    return [*videos, *others] if len(videos) == 1 or (said and apart) else []
+
+
+def _place_single_views(found: Guess, recordings: Iterable[Recording]) -> None:
+    """Make files of one name one take; those without a name belong to the only take, if any."""
+    named = [(recording, _take_of(recording)) for recording in recordings]
+    takes = list(dict.fromkeys(take for _, take in named if take))
+    only = takes[0] if len(takes) == 1 else "take1"
+    for recording, take in named:
+        found.takes.setdefault(take or only, {})
+        device = DEVICES.get(recording.kind, WEBCAM)
+        found.devices.append((take or only, device, recording))
+
+
+def _take_of(recording: Recording) -> str:
+    """Return what a device recorded, by the words of its name, else of its folder."""
+    said = recording.device
+    own = words_of(recording.parts[-1:] if said is None else (said.before, said.after))
+    for words in (own, words_of(recording.parts[-2:-1])):
+        left = list(words)
+        while left and left[-1] in RECORDERS:
+            left.pop()
+        while left and left[0] in RECORDERS:
+            left.pop(0)
+        if left and not set(left) <= FOLDERS:
+            return "_".join(left)
+    return ""
 
 
 def _place_keypoints(
@@ -387,6 +438,8 @@ def _stand_in(found: Guess) -> None:
 
 def _sort_others(found: Guess, recordings: Iterable[Recording], own: Words) -> None:
     alone = not found.takes and not found.walks and not found.static
+    if alone:  # a session of devices
+        _place_single_views(found, [r for r in recordings if r.kind in DEVICES])
     for recording in recordings:
         if recording.kind in ("court_points", "calibration"):
             if getattr(found, recording.kind) is None:
@@ -394,16 +447,11 @@ def _sort_others(found: Guess, recordings: Iterable[Recording], own: Words) -> N
             else:
                 kind = recording.kind.replace("_", " ")
                 found.unused.append((recording, f"there is another {kind} file"))
-        elif recording.kind in ("bvh", "bag"):
+        elif recording.kind in DEVICES and not alone:
             words = set(own[recording.path])
             near = [t for t in found.takes if set(words_of([t])) & words]
-            only = list(found.takes) if len(found.takes) == 1 and not alone else [""]
-            if alone:  # a session of devices: files of one name are one take
-                only = ["_".join(words_of(recording.parts[-1:])) or "take1"]
-                found.takes.setdefault(only[0], {})
-                near = []
-            device = {"bvh": "mocopi", "bag": "realsense"}[recording.kind]
-            found.devices.append(((near or only)[0], device, recording))
+            only = list(found.takes) if len(found.takes) == 1 else [""]
+            found.devices.append(((near or only)[0], DEVICES[recording.kind], recording))
         elif recording.kind in ("racket", "unusable"):
             found.unused.append((recording, recording.note or "clicked racket ends"))
 
@@ -427,7 +475,8 @@ def _rename(found: Guess) -> None:
     found.serials = {cameras[c]: serial for c, serial in found.serials.items()}
     takes: dict[str, str] = {}
     for at, (take, films) in enumerate(found.takes.items(), start=1):
-        shown = [*films.values()] or [r for name, _, r in found.devices if name == take]
+        own = [r for name, _, r in found.devices if name == take == _take_of(r)]
+        shown = [*films.values()] or own
         takes[take] = distinct(_named(take, shown, f"take{at}"), takes.values())
     found.takes, found.keypoints = (
         {takes[key]: {cameras[c]: r for c, r in take.items()} for key, take in kind.items()}

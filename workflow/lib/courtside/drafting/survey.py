@@ -3,12 +3,12 @@
 import csv
 import math
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from courtside.calibration import file_formats
-from courtside.devices import frame_numbers, openpose
+from courtside.devices import depth_folder, frame_numbers, openpose
 from courtside.drafting.guess import Recording
 from courtside.records.cameras import clicks
 from courtside.study.errors import InputError, StrPath
@@ -16,6 +16,7 @@ from courtside.study.execution.files import PHOTOS
 from courtside.video import reader as video
 from courtside.video import walk_frames
 
+Reader = Callable[[Path], dict[str, Any] | None]  # what keys of a `Recording` a path has, if any
 VIDEOS = {".mp4", ".mov", ".m4v", ".avi", ".mkv", ".mts", ".m2ts", ".ts", ".mpg", ".mpeg"}
 VIDEOS |= {".webm", ".wmv", ".3gp"}
 BAGS = {".bag", ".db3"}
@@ -42,32 +43,46 @@ def survey(folder: StrPath, *, root: StrPath) -> list[Recording]:
     found = []
     for at, inner, names in os.walk(folder):
         inner[:] = sorted(name for name in inner if not name.startswith("."))
-        files = [Path(at) / name for name in sorted(names) if not name.startswith(".")]
-        files = [path for path in files if path.is_file()]  # reading a pipe would block
-        photos = [path for path in files if READERS.get(path.suffix.lower()) is _photos]
-        # Beside videos, photos in the folder itself are of its cameras.
-        alone = not inner and not any(_reads_no_photo(path) for path in files)
-        together = len(photos) > 1 and (Path(at) != folder or alone)
-        if together:
-            found.append(_described(Path(at), folder, root, _photos))
-        if not names and not inner and Path(at) != folder:
-            found.append(_described(Path(at), folder, root, _empty))
-        if sum(path.suffix == ".json" for path in files) > 1 and Path(at) != folder:
-            found.append(_described(Path(at), folder, root, _keypoints))
-        for path in files:
-            reader = READERS.get(path.suffix.lower())
-            if reader and not (together and path in photos):
-                found.append(_described(path, folder, root, reader))
+        if depth_folder.is_one(at):
+            found.append(_described(Path(at), folder, root, _depth))
+            inner[:] = []
+            continue
+        names = sorted(name for name in names if not name.startswith("."))
+        for path, reader in _readers(Path(at), inner, names, below=Path(at) != folder):
+            found.append(_described(path, folder, root, reader))
     return [recording for recording in found if recording]
+
+
+def _readers(
+    at: Path, inner: Sequence[str], names: Sequence[str], *, below: bool
+) -> Iterator[tuple[Path, Reader]]:
+    """Yield what there is to describe in a folder, itself or files, and by what.
+
+    `inner` are the folders in it, `names` its files, and it lies `below` the folder that is looked
+    through.
+    """
+    files = [at / name for name in names if (at / name).is_file()]  # reading a pipe would block
+    photos = [path for path in files if READERS.get(path.suffix.lower()) is _photos]
+    # Beside videos, photos in the folder itself are of its cameras.
+    alone = not inner and not any(_reads_no_photo(path) for path in files)
+    together = len(photos) > 1 and (below or alone)
+    if together:
+        yield at, _photos
+    if below and not names and not inner:
+        yield at, _empty
+    if below and sum(path.suffix == ".json" for path in files) > 1:
+        yield at, _keypoints
+    for path in files:
+        reader = READERS.get(path.suffix.lower())
+        if reader and not (together and path in photos):
+            yield path, reader
 
 
 def _reads_no_photo(path: Path) -> bool:
     return READERS.get(path.suffix.lower(), _photos) is not _photos
 
 
-def _described(
-    path: Path, folder: Path, root: StrPath, reader: Callable[[Path], dict[str, Any] | None]
-) -> Recording | None:
+def _described(path: Path, folder: Path, root: StrPath, reader: Reader) -> Recording | None:
     """Return the `Recording` of a file; None if it is none."""
     inside = path.relative_to(folder)
     parts = (*inside.parts[:-1], inside.stem or path.resolve().name)
@@ -85,6 +100,10 @@ def written(path: Path, root: StrPath) -> str:
     """Return a path as a session names it: relative to `root` if below it, else absolute."""
     whole, start = path.absolute(), Path(root).absolute()
     return (whole.relative_to(start) if whole.is_relative_to(start) else whole).as_posix()
+
+
+def _depth(_: Path) -> dict[str, Any]:
+    return {"kind": "depth"}
 
 
 def _empty(_: Path) -> dict[str, Any]:
@@ -141,7 +160,7 @@ def _calibration(path: Path) -> dict[str, Any] | None:
     return {"kind": "calibration", "cameras": sizes}
 
 
-READERS: dict[str, Callable[[Path], dict[str, Any] | None]] = {  # by the ending of a file
+READERS: dict[str, Reader] = {  # by the ending of a file
     **dict.fromkeys(VIDEOS, _video),
     **dict.fromkeys((*PHOTOS, *walk_frames.UNREADABLE), _photos),
     **dict.fromkeys(CALIBRATIONS, _calibration),
