@@ -9,6 +9,7 @@ import pytest
 from courtside.figures.devices import skeleton_plates
 from courtside.figures.style import joint_map, source_styles
 from courtside.records.keypoints import derived_joints, skeleton
+from fixtures import drawings
 from fixtures.people import swung_arms
 
 CONFIG = Path(__file__).parents[4] / "config"
@@ -68,8 +69,10 @@ def test_without_a_tpose_a_frame_of_the_take_is_drawn_and_named(rows):
     nobody = replace(body, following=np.full_like(body.following, np.nan))
     found = skeleton_plates.plates([nobody], SKELETONS, OF)
     assert np.isnan(found[0].xyz).all()
-    title = skeleton_plates.draw(found, rows).subfigs[0].axes[0].get_title()
-    assert title.endswith("no frame with both arms")
+    drawing = skeleton_plates.draw(found, rows)
+    title = drawing.subfigs[0].axes[0].get_title()
+    assert " ".join(title.split()).endswith("no T-pose, and no frame with both arms")
+    assert drawings.cut(drawing) == []
 
 
 def test_front_and_side_are_drawn_with_numbers_of_common_joints_only(found, rows):

@@ -6,6 +6,7 @@ import pytest
 
 from courtside.figures.devices import thesis_fig3
 from courtside.figures.style import source_styles
+from fixtures import drawings
 from fixtures.people import swung_arms
 
 FLAT = "d415-rgb"
@@ -83,6 +84,12 @@ def test_any_number_of_sources_is_drawn(count):
     shown = [axis for axis in drawing.axes if axis.axison]
     assert len(shown) == count
     assert all(axis.get_xlabel() for axis in shown[-min(3, count) :])
+
+
+def test_the_legend_of_one_source_is_not_cut_off():
+    own, off = (rows[rows["source"] == "mocopi"] for rows in (PATHS, DISTORTION))
+    assert drawings.cut(thesis_fig3.draw_all(own, off)) == []
+    assert drawings.cut(thesis_fig3.draw(own, off, "cameras")) == []
 
 
 def test_a_source_without_arcs_says_so_in_its_panel():

@@ -9,6 +9,7 @@ import pytest
 from courtside.events import detect
 from courtside.figures.devices import wrist_distance
 from courtside.records import tables
+from fixtures import drawings
 from fixtures.recordings import device_takes
 
 HELD_M = 0.08
@@ -116,6 +117,13 @@ def test_a_take_without_events_states_the_reason(tmp_path):
     drawing.draw_without_rendering()
     assert len(drawing.subfigs) == 2
     assert drawing.subfigs[1].texts[0].get_text() == why
+
+
+@pytest.mark.parametrize("aligned", [True, False])
+def test_the_label_of_one_source_is_not_cut_off(aligned):
+    own, events = wrists({"mocopi": 0.0}), pd.DataFrame([spell("mocopi")[0]])
+    rows = wrist_distance.table(own, events, aligned=aligned)
+    assert drawings.cut(wrist_distance.draw(own, rows, aligned=aligned)) == []
 
 
 def test_reading_keeps_text_and_empty_reasons(tmp_path):

@@ -1,5 +1,6 @@
 """All sources' skeletons in the T-pose, from front and side, and one map of their joints."""
 
+import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -19,6 +20,7 @@ ASIDE = 1.75  # units: the side view stands that far to the right of the front v
 ARM_UNITS = 0.25  # numbers of joints higher than that stand above them, of others outwards
 LEFT, RIGHT, TOP = -1.3, 2.2, 1.12  # shown at least to the right
 LOWEST, ROOM = -1.45, 0.25  # of the feet, at least; below them, for words
+WRAP = 60  # characters of a title, in half of a page
 AXES = (((0, 1), 0.0, "from the front"), ((2, 1), ASIDE, "from the right"))
 TPOSE, SCHEMATIC = "T-pose", "schematic"
 COLUMNS = [
@@ -152,7 +154,8 @@ def _draw_plate(axis: Axes, plate: Plate, numbered: Sequence[int]) -> None:
     axis.set_aspect("equal")
     size = f"{plate.skeleton.name}, {len(plate.skeleton.joints)} joints"
     pose = "" if plate.pose in (TPOSE, SCHEMATIC) else f"; {plate.pose}"
-    axis.set_title(f"{plate.source or 'no recording, schematic'}: {size}{pose}", pad=2)
+    title = f"{plate.source or 'no recording, schematic'}: {size}{pose}"
+    axis.set_title(textwrap.fill(title, WRAP), pad=2)
 
 
 def _draw_map(axis: Axes, rows: pd.DataFrame) -> None:

@@ -58,7 +58,7 @@ def draw(
     axis.set(**_limits([own, true]), ylabel="z, forwards (units)")
     axis.set_xlabel("x, from the right hand to the left (units; 1 is half the wrist span)")
     axis.set_title(f"{source}: {_title(own, off)}")
-    drawing.legend(handles=_marks(look.colour, true), loc="outside lower center", ncols=4)
+    _legend(drawing, _marks(look.colour, true))
     return drawing
 
 
@@ -89,8 +89,13 @@ def draw_all(
         axis.tick_params(labelbottom=True)
         axis.set_xlabel("x, to the left hand (units)")
     marks = _marks(style.MIDDLE, truth if truth is not None else paths.iloc[:0])
-    drawing.legend(handles=marks, loc="outside lower center", ncols=4)
+    _legend(drawing, marks)
     return drawing
+
+
+def _legend(drawing: Figure, marks: list[Line2D]) -> None:
+    """Write marks below the figure in two rows; as four columns, six of them are too wide."""
+    drawing.legend(handles=marks, loc="outside lower center", ncols=-(-len(marks) // 2))
 
 
 def _of(rows: pd.DataFrame | None, source: str) -> pd.DataFrame | None:

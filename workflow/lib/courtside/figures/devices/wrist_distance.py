@@ -17,6 +17,7 @@ from courtside.records import tables
 from courtside.study.errors import StrPath
 
 ROW_MM, TICKS_MM, ZOOM_MM, LINE_MM = 19, 4, 48, 3.4
+LABEL_MM = 44  # the rows' common label needs as much
 N_COLUMNS, MOST_PANELS, MOST_NOTES = 3, 9, 18
 SAME_S = 0.5  # ASSUME: claps of different sources closer than this are one clap
 BEFORE_S, AFTER_S = 0.15, 0.3  # shown about a clap
@@ -70,7 +71,8 @@ def draw(
     notes, panels = _notes(events), _panels(events)
     n_rows = -(-len(panels) // N_COLUMNS)
     row_mm = ROW_MM + (0 if aligned else TICKS_MM)
-    heights = [12 + row_mm * len(looks), ZOOM_MM * n_rows, 4 + LINE_MM * len(notes)]
+    rows_mm = max(12 + row_mm * len(looks), LABEL_MM)
+    heights = [rows_mm, ZOOM_MM * n_rows, 4 + LINE_MM * len(notes)]
     wanted = [True, n_rows > 0, bool(notes)]
     heights = [height for height, want in zip(heights, wanted, strict=True) if want]
     drawing = style.figure(sum(heights) + 12)
