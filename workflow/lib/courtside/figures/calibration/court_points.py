@@ -7,12 +7,18 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
 from courtside.calibration.court.court import Court
 from courtside.figures.style import court_plan, style
 
 ROOM = 0.067  # around the plan, of its longer side
+WIDE_ROOM = 0.11  # above and below a plan wider than high, of its width: for the numbers
+BELOW_MM = 9.2  # from the plan to the legend, for the numbers and the label of the axis
+FLOOR, BOTH, ABOVE = "on the floor", "on the floor, and one above it", "above the floor"
+LEVELS = {FLOOR: style.LEFT, BOTH: style.RIGHT, ABOVE: style.CYCLE[2]}
+FRAME = "origin, end of x, end of y"
 DETAIL_M = 0.16  # half the side of an enlarged detail
 DETAILS = 5  # enlarged, at most
 LINE_LENGTH = 62  # characters of the list
@@ -52,35 +58,55 @@ def _groups(court: Court) -> list[tuple[list[str], str]]:
 
 def _draw_plan(axis: Axes, court: Court) -> None:
     court_plan.draw(axis, court)
-    for place in np.unique(court.xyz[:, :2], axis=0):
+    places = np.unique(court.xyz[:, :2], axis=0)
+    marks: dict[str, tuple[str, str]] = {}  # colour and sign, by words
+    for place in places:
         here = [n for n in range(len(court.points)) if (court.xyz[n, :2] == place).all()]
         few = any(court.points[n] in court.sets.get(FEW, ()) for n in here)
-        raised = not court.on_floor[here].all()
-        look = {"marker": "s" if few else "o", "markersize": 5 if few else 4}
-        axis.plot(*place, color=style.RIGHT if raised else style.LEFT, zorder=4, **look)
+        colour, words = _level(court.on_floor[here])
+        look = {"marker": "s" if few else "o", "markersize": 5 if few else 4, "color": colour}
+        axis.plot(*place, zorder=4, **look)
+        marks |= {words: (colour, "o")} | ({FRAME: (colour, "s")} if few else {})
         _number(axis, court, place, ", ".join(court.points[n] for n in here))
-    low, high = (edge(court.xyz[:, :2], axis=0) for edge in (np.min, np.max))
-    room = ROOM * court.size_m[1]
+    low, high = _extent(np.concatenate([places, court.lines_m.reshape(-1, 2)]))
+    room = ROOM * (high - low).max()
+    above = max(room, WIDE_ROOM * (high - low)[0])
     axis.set(xlim=(low[0] - 2.8 * room, high[0] + 2.8 * room), xlabel="x (m)", ylabel="y (m)")
-    axis.set(ylim=(low[1] - room, high[1] + room), anchor="N")
-    for colour, words, marker in (
-        (style.LEFT, "on the floor", "o"),
-        (style.RIGHT, "on the floor, and one above it", "o"),
-        (style.LEFT, "origin, end of x, end of y", "s"),
-    ):
+    axis.set(ylim=(low[1] - above, high[1] + above), anchor="N")
+    for words in (word for word in (*LEVELS, FRAME) if word in marks):
+        colour, marker = marks[words]
         axis.plot([], [], marker, color=colour, markersize=4, label=words)
-    axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.09), ncols=1)
+    inches = axis.get_figure(root=True).dpi_scale_trans
+    below = axis.transAxes + ScaledTranslation(0, -BELOW_MM / style.MM_PER_INCH, inches)
+    axis.legend(loc="upper center", bbox_to_anchor=(0.5, 0), bbox_transform=below, ncols=1)
     axis.set_title(f"{court.description}\nlines {1000 * court.line_width_m:.0f} mm, to scale")
 
 
+def _level(on_floor: NDArray) -> tuple[str, str]:
+    """Return colour and words of points above each other, by which of them are on the floor."""
+    words = FLOOR if on_floor.all() else BOTH if on_floor.any() else ABOVE
+    return LEVELS[words], words
+
+
+def _extent(places: NDArray) -> tuple[NDArray, NDArray]:
+    """Return the least and the largest x and y."""
+    return places.min(axis=0), places.max(axis=0)
+
+
 def _number(axis: Axes, court: Court, place: NDArray, text: str) -> None:
-    """Write a point's name beside it: outside the court, away from its neighbours."""
-    size = np.asarray(court.size_m)
-    aside = np.sign(place - size / 2)
-    on_end = not 0 < place[1] < size[1]
-    right = aside[0] <= 0 if on_end and 0 < place[0] < size[0] else aside[0] >= 0
+    """Write a point's name beside it: outside the court, away from its neighbours.
+
+    Where most points are not of the court's rectangle, outside of all points.
+    """
+    low, high = np.zeros(2), np.asarray(court.size_m, dtype=float)
+    every = court.xyz[:, :2]
+    if ((every >= low) & (every <= high)).all(axis=1).mean() < 0.5:
+        low, high = _extent(every)
+    aside = np.sign(place - (low + high) / 2)
+    on_end = not low[1] < place[1] < high[1]
+    right = aside[0] <= 0 if on_end and low[0] < place[0] < high[0] else aside[0] >= 0
     away = (AWAY_PT if right else -AWAY_PT, AWAY_PT * aside[1] * (1.4 if on_end else 1))
-    where = {"textcoords": "offset points", "va": "center", "fontsize": 7.5, "zorder": 5}
+    where = {"textcoords": "offset points", "va": "center", "fontsize": 7.5, "zorder": 3}
     box = {"facecolor": "white", "edgecolor": "none", "pad": 0.6}
     axis.annotate(text, place, away, ha="left" if right else "right", bbox=box, **where)
 
