@@ -21,7 +21,7 @@ def expected(cameras: Sequence[Camera], covariance: CameraCovariance) -> dict[st
     """
     if len(cameras) < 2:
         return {}
-    centres = np.array([-c.cam_from_world[:, :3].T @ c.cam_from_world[:, 3] for c in cameras])
+    centres = np.array([camera.centre_in_world for camera in cameras])
     by_pose = _by_pose(cameras)
     errors = by_pose @ covariance.covariance @ by_pose.T
     found = {"expected_angle_deg": _rounded(np.degrees(_between(errors, len(cameras))))}
