@@ -53,6 +53,17 @@ def test_mirrored_places_are_told(placed, advice):
     assert advice in said
 
 
+@pytest.mark.parametrize("placed", [True, False])
+def test_y_px_counted_from_the_bottom_is_told_by_the_camera_that_would_hang_upside_down(placed):
+    said = refused(PLACES, clicks() * [1, -1] + [0, SIZE[1] - 1], placed)
+    assert said.startswith("mirrored, they fit by 0.")
+    assert (
+        " px, but the camera hangs upside down: y_px must be counted from the top: subtract it "
+        "from the picture's height minus 1"
+    ) in said
+    assert ("if z_m points down" in said) == placed
+
+
 def test_exchanged_columns_are_told():
     said = refused(PLACES, clicks()[:, ::-1])
     assert said.startswith("with x_px and y_px exchanged, they fit by 0.")

@@ -138,16 +138,21 @@ SPREAD = np.linspace(2, 5, 20)
     ("height_m", "turned", "z"),
     [
         (6, False, 0),  # on stands, points on the floor
-        (6, True, 0),  # hung upside down
         (0.1, False, 0),  # on the floor: the error of its height may be larger
         (-0.1, False, 0),
         (1.5, False, SPREAD),  # on a tripod, points on a wall
-        (1.5, True, SPREAD),
         (106, False, 100),  # survey coordinates
     ],
 )
 def test_cameras_that_can_stand_where_they_are_pass(height_m, turned, z):
     assert checked(rig(height_m, turned, np.median(z)), z) == []
+
+
+@pytest.mark.parametrize(("height_m", "z"), [(6, 0), (1.5, SPREAD)])
+def test_cameras_that_hang_upside_down_are_doubted_and_not_refused(height_m, z):
+    (line,) = checked(rig(height_m, True, np.median(z)), z)
+    assert line.startswith("cameras a, b: expected them upright, found them upside down: right if")
+    assert "y_px must be counted from the top" in line and "right-handed with z up" in line
 
 
 def test_points_at_one_height_above_the_floor_may_be_seen_from_below():

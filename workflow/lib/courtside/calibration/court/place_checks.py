@@ -3,6 +3,8 @@
 All points of a camera may be wrong by one shift. The picture of this camera cannot show this,
 because shifted points only shift the camera. Points of other cameras at the same places show it.
 Points in one plane, such as a floor, fit their mirror image too: cameras below the floor show it.
+Points that are mirrored twice, themselves and in their pictures, fit any camera: it hangs upside
+down.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -40,6 +42,21 @@ OTHER_SIDE = (
 )
 FROM_BELOW = "y_px must be counted from the top: subtract it from the picture's height minus 1"
 RENAME = "exchange the names of these two columns"
+
+
+def mirrored(towards_z: float, placed: bool) -> str:
+    """Return what to do about points that fit a camera once mirrored, which is so far `up` then.
+
+    Mirrored places or videos leave the camera upright; pictures or heights turned over do not.
+    """
+    side = LEFT_HANDED if placed else OTHER_SIDE
+    if towards_z > -UPRIGHT:
+        return f": the points are mirrored; {side}"
+    heights = ", or, if z_m points down, change its sign in all rows" if placed else ""
+    return (
+        f", but the camera hangs upside down: {FROM_BELOW}{heights}; only if it is mounted so, the "
+        f"points are mirrored: {side}"
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,17 +178,18 @@ def check_cameras(court: Court, cameras: Sequence[Camera], clicked: ClickedPoint
     below; points at several heights fit no mirror image.
     """
     high, below, level = {}, {}, {}
+    hanging: list[str] = []
     for camera in cameras:
         z = court.xyz[np.isfinite(clicked[camera.name]).all(axis=1), 2]
         if not len(z):
             continue
         above_m = float(camera.centre_in_world[2] - np.median(z))
+        hanging += [camera.name] * (up(camera) < -UPRIGHT)
         if above_m > HIGHEST_M:
             high[camera.name] = above_m
         elif above_m < -LOWEST_M:
             on_floor, flat = np.median(np.abs(z)) <= RAISED_M, np.ptp(z) <= RAISED_M
-            upside_down = up(camera) < -UPRIGHT
-            if on_floor or (flat and upside_down):
+            if on_floor or (flat and camera.name in hanging):
                 below[camera.name] = -above_m
             elif flat:
                 level[camera.name] = -above_m
@@ -182,7 +200,7 @@ def check_cameras(court: Court, cameras: Sequence[Camera], clicked: ClickedPoint
             f"found them {_range(below)} m below: points or clicks are mirrored; "
             f"{_mend(towards_z, court.placed)}"
         )
-    return [*_level(level), *_too_high(high)]
+    return [*_level(level), *_too_high(high), *_hanging(hanging, court.placed)]
 
 
 def _level(below_m: Mapping[str, float]) -> Iterator[str]:
@@ -201,6 +219,16 @@ def _too_high(above_m: Mapping[str, float]) -> Iterator[str]:
         yield (
             f"cameras {', '.join(above_m)}: expected them at most {HIGHEST_M:.0f} m above their "
             f"points, found {_range(above_m)} m; check the unit of the places, which is m"
+        )
+
+
+def _hanging(names: Sequence[str], placed: bool) -> Iterator[str]:
+    """Yield a warning of cameras that hang upside down: whether they do, nothing else tells."""
+    if names:
+        yield (
+            f"cameras {', '.join(names)}: expected them upright, found them upside down: right if "
+            f"they are mounted so; if not, {FROM_BELOW}, and the points are mirrored too: "
+            f"{LEFT_HANDED if placed else OTHER_SIDE}"
         )
 
 
