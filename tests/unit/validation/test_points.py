@@ -1,5 +1,6 @@
 """Clicked points before any job: their file, their pictures, their number."""
 
+import numpy as np
 import pytest
 
 PLACES = [(x, y) for x in (-9, 0, 9) for y in (-4.5, 0, 4.5)]
@@ -18,11 +19,12 @@ def placed(hall):
         cameras=hall.content["cameras"],
         header=HEADER,
         moved_m=0.0,
+        times=1,
     ):
         rows = [
             (camera, *change(camera, 290 - 30 * k, 20 + 15 * k), x, y + moved_m * (not at), 0)
             for at, camera in enumerate(cameras)
-            for k, (x, y) in enumerate(PLACES)
+            for k, (x, y) in enumerate(times * np.array(PLACES))
         ]
         text = "\n".join([header, *(",".join(map(str, row)) for row in rows), ""])
         hall.path.write_text(text.replace(",", ";") if ";" in header else text)
@@ -74,6 +76,14 @@ def test_places_of_a_camera_that_are_shifted_are_told(placed):
     said = hall.fault()
     assert said.startswith(f"{hall.path}: camera left: expected its 9 points")
     assert "y_m is 0.50 m too large" in said
+
+
+def test_places_that_are_small_in_another_unit_give_a_remark(placed):
+    hall = placed(times=20)
+    faults, (remark,) = hall.said()
+    assert faults == []
+    assert remark.startswith(f"{hall.path}: camera left: its points are 402 m apart: right on a ")
+    assert "likely in cm (4.02 m apart" in remark
 
 
 def test_other_cameras_are_left_out_with_a_remark(placed):

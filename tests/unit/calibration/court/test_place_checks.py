@@ -61,14 +61,42 @@ def test_points_with_coordinates_are_read_as_a_court_unless_a_camera_s_are_shift
 
 
 @pytest.mark.parametrize(
-    ("unit", "times", "by"), [("mm", 1000, "0.001"), ("cm", 100, "0.01"), ("in", 39.37, "0.0254")]
+    ("times", "likely"),
+    [
+        (1000, "mm (31.8 m apart: multiply them by 0.001)"),
+        (100, "cm (31.8 m apart: multiply them by 0.01) or mm (3.18 m apart: multiply them by 0"),
+        (25, "cm (7.94 m apart: multiply them by 0.01) or inches (20.2 m apart: multiply them by"),
+        (39.37, "cm (12.5 m apart: multiply them by 0.01) or inches (31.8 m apart: multiply"),
+    ],
 )
-def test_places_in_another_unit_are_told_with_the_way_to_metres(tmp_path, unit, times, by):
+def test_places_in_another_unit_are_told_with_each_way_to_metres(tmp_path, times, likely):
     with pytest.raises(InputError, match=r"points.csv: camera a: expected points in m") as caught:
         read(tmp_path, {"b": (0, -0.5, 0)}, times)
-    line = f"found {31.8 * times:.0f}"[:8], f"likely in {unit}: multiply them by {by}"
-    assert all(part in str(caught.value) for part in line), str(caught.value)
-    assert "\n" not in str(caught.value)
+    said = str(caught.value)
+    assert f"found {np.hypot(28, 15) * times:.0f} m" in said
+    assert f"; x_m, y_m and z_m are likely in {likely}" in said and "\n" not in said
+
+
+def test_places_in_no_unit_that_fits_are_told(tmp_path):
+    with pytest.raises(InputError, match=r"found 31765 m between them; x_m"):
+        read(tmp_path, {}, 1000)
+    with pytest.raises(InputError, match=r"m between them; give x_m, y_m and z_m in m$"):
+        read(tmp_path, {}, 1e7)
+
+
+def test_points_farther_apart_than_a_pitch_is_long_are_doubted(tmp_path):
+    assert [*place_checks.unit_doubt(*placed_at(5))] == [
+        "camera a: its points are 159 m apart: right on a field of that size; if not, x_m, y_m and "
+        "z_m are likely in inches (4.03 m apart: multiply them by 0.0254) or feet (48.4 m apart: "
+        "multiply them by 0.3048)"
+    ]
+    assert [*place_checks.unit_doubt(*placed_at(4))] == []
+    assert [*place_checks.unit_doubt(PLACES, {"a": np.full((20, 2), np.nan)})] == []
+
+
+def placed_at(times):
+    """Return places that are so many times as large, and clicks of one camera on all."""
+    return times * PLACES, {"a": np.ones((20, 2))}
 
 
 def test_right_places_are_left_alone():

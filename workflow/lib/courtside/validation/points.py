@@ -25,10 +25,12 @@ def check(session: Session, court_yaml: Path | None, sizes: Sizes) -> tuple[list
     path, cameras = session.court_points, list(session.cameras)
     if path is None or not is_there(Path(path)) or not (session.placed or court_yaml):
         return [], []
+    remarks: list[str] = []
     try:
         if session.placed:
             points = placed_points.read(path, cameras)
             clicks, others = place_checks.as_court(path, points)[1], points.left_out
+            remarks += place_checks.unit_doubt(points.xyz, clicks)
         else:
             clicks, others = place_checks.read(path, court_yaml or "", cameras, False)[1], ()
     except InputError as error:
@@ -37,7 +39,7 @@ def check(session: Session, court_yaml: Path | None, sizes: Sizes) -> tuple[list
     faults = [*_outside(seen, sizes)]
     if session.placed and "known" in session.calibrations():
         faults += _few(seen, others)
-    remarks = [*_in_a_quarter(seen, sizes)]
+    remarks += _in_a_quarter(seen, sizes)
     if others:
         remarks.append(f"rows of {', '.join(others)} are left out: the session has no such cameras")
     return [f"{path}: {line}" for line in faults], [f"{path}: {line}" for line in remarks]

@@ -25,9 +25,13 @@ NEAR_M = 0.1  # ASSUME: places meant to be one differ by less, rounding of one o
 MOVED = 0.8  # ASSUME: of a camera's points: so many must meet others once they are moved
 LEFT = 1 / 3  # ASSUME: and no more than so many as they are
 FEWEST = 4  # ASSUME: points that meet others after one shift; fewer may do so by chance
-# ASSUME: points that one camera sees are nearer to each other, even in a stadium; the extent of
-# points that a unit is guessed by is that of a hall.
-LARGEST_M, USUAL_M = 500.0, 20.0
+# ASSUME: points that one camera sees are nearer to each other, even in a stadium; those of most
+# fields of play, at most a football pitch, are within `PITCH_M`.
+LARGEST_M, PITCH_M = 500.0, 130.0
+# ASSUME: extents by which a unit is guessed: from that of a corner of a room to that of a hall with
+# three courts.
+USUAL_M = (2.0, 60.0)
+IN_WORDS = {"in": "inches", "ft": "feet"}  # units whose short name is another word
 # ASSUME: cameras that film people stand higher above the floor, and lower than roofs of halls and
 # stands of stadiums.
 LOWEST_M, HIGHEST_M = 0.3, 60.0
@@ -150,24 +154,44 @@ def as_court(path: StrPath, points: PlacedPoints) -> tuple[Court, ClickedPoints]
 
 def _in_other_units(placed: PlacedPoints) -> Iterator[str]:
     """Yield whether the points of a camera are too far apart for metres: those farthest apart."""
-    extent = {
-        name: float(np.linalg.norm(np.ptp(placed.xyz[at], axis=0)))
-        for name in placed.clicks
-        if len(at := placed.of(name))
-    }
-    camera = max(extent, key=lambda name: extent[name], default=None)
-    if camera is not None and extent[camera] > LARGEST_M:
+    camera, extent = _widest(placed.xyz, placed.clicks)
+    if extent > LARGEST_M:
         yield (
             f"camera {camera}: expected points in m, less than {LARGEST_M:.0f} m apart, found "
-            f"{extent[camera]:.0f} m between them; {_conversion(extent[camera])}"
+            f"{extent:.0f} m between them; {_conversion(extent)}"
         )
 
 
+def unit_doubt(xyz: NDArray, clicks: ClickedPoints) -> Iterator[str]:
+    """Yield whether points at places (P, 3) of a camera are farther apart than a pitch is long."""
+    camera, extent = _widest(xyz, clicks)
+    if PITCH_M < extent <= LARGEST_M:
+        yield (
+            f"camera {camera}: its points are {extent:.0f} m apart: right on a field of that size; "
+            f"if not, {_conversion(extent)}"
+        )
+
+
+def _widest(xyz: NDArray, clicks: ClickedPoints) -> tuple[str, float]:
+    """Return the camera that sees the points farthest apart, and their extent; 0 without any."""
+    extent = {
+        name: float(np.linalg.norm(np.ptp(xyz[seen], axis=0)))
+        for name, xy in clicks.items()
+        if (seen := np.isfinite(xy).all(axis=1)).any()
+    }
+    return max(extent.items(), key=lambda one: one[1], default=("", 0.0))
+
+
 def _conversion(extent: float) -> str:
-    """Return how places of such an extent, in another unit, become m."""
-    apart = {unit: abs(np.log(extent * metres / USUAL_M)) for unit, metres in METRES.items()}
-    unit = min(apart, key=lambda name: apart[name])
-    return f"x_m, y_m and z_m are likely in {unit}: multiply them by {METRES[unit]:g}"
+    """Return in which units such an extent is a usual one, and how places become m."""
+    fits = [
+        f"{IN_WORDS.get(unit, unit)} ({extent * metres:.3g} m apart: multiply them by {metres:g})"
+        for unit, metres in METRES.items()
+        if USUAL_M[0] <= extent * metres <= USUAL_M[1]
+    ]
+    if not fits:
+        return "give x_m, y_m and z_m in m"
+    return f"x_m, y_m and z_m are likely in {' or '.join(fits)}"
 
 
 def check_cameras(court: Court, cameras: Sequence[Camera], clicked: ClickedPoints) -> list[str]:
@@ -200,7 +224,8 @@ def check_cameras(court: Court, cameras: Sequence[Camera], clicked: ClickedPoint
             f"found them {_range(below)} m below: points or clicks are mirrored; "
             f"{_mend(towards_z, court.placed)}"
         )
-    return [*_level(level), *_too_high(high), *_hanging(hanging, court.placed)]
+    unit = [*unit_doubt(court.xyz, clicked)] if court.placed else []
+    return [*_level(level), *_too_high(high), *unit, *_hanging(hanging, court.placed)]
 
 
 def _level(below_m: Mapping[str, float]) -> Iterator[str]:
