@@ -1,6 +1,7 @@
 """Mapping: exact matches give the exact model, the door its measured cameras, noise nothing."""
 
-from contextlib import ExitStack
+import sqlite3
+from contextlib import ExitStack, closing
 
 import numpy as np
 import pycolmap
@@ -8,13 +9,14 @@ import pytest
 import scipy.io
 
 from courtside.geometry import similarity
-from courtside.sfm import features, mapping, matching, model
+from courtside.sfm import database, features, mapping, matching, model
 from courtside.study.errors import InputError
 from fixtures.cameras import sfm_made
 from fixtures.recordings.real_data import REAL, needs_real
 from fixtures.study.small_disk import limited_to
 
 DOOR = REAL / "sfm-door"
+PAIR = 2147483647  # COLMAP's number of a pair: the smaller id times this, and the other id
 both_mappers = pytest.mark.parametrize("mapper", ["global", "incremental"])
 
 
@@ -268,6 +270,52 @@ def test_of_models_that_differ_the_one_with_most_observations_is_kept(
     summary = mapping.map_images(path, names, tmp_path / "a", **options, attempts=3)
     assert [seed for seed, _ in asked] == [7, 8, 9] and summary["seed"] == 9
     assert (summary["n_attempts"], summary["n_agreeing"]) == (3, 1)
+
+
+def of_another_place(path, own, name):
+    """Write a copy of a database in which no match of an image is verified."""
+    with database.new(path, own) as temporary:
+        at = database.image_ids(temporary)[name]
+        with closing(sqlite3.connect(temporary)) as opened:
+            for table in ("matches", "two_view_geometries"):
+                opened.execute(
+                    f"DELETE FROM {table} WHERE pair_id % {PAIR} = {at} OR pair_id / {PAIR} = {at}"
+                )
+            opened.commit()
+    return path
+
+
+def test_an_image_of_another_place_costs_no_attempts_and_no_agreement(
+    synthetic, tmp_path, monkeypatch
+):
+    own, truth = synthetic
+    names = sorted(sfm_made.centres(truth))
+    path = of_another_place(tmp_path / "matches.db", own, names[2])
+    asked = spoil(monkeypatch, lambda number, found: found)
+    summary = mapping.map_images(path, names, tmp_path / "a", mapper="global", seed=7, attempts=6)
+    assert (summary["n_images"], summary["n_registered"], len(asked)) == (6, 5, 2)
+    assert (summary["n_attempts"], summary["n_agreeing"]) == (2, 2)
+
+
+@pytest.mark.parametrize(("lost", "agreeing"), [(1, 4), (3, 1)])
+def test_maps_of_nearly_the_same_images_are_compared(
+    synthetic, tmp_path, monkeypatch, lost, agreeing
+):
+    """No map has the last image, and all but the first lack some others or none."""
+    path, truth = synthetic
+    names = sorted(sfm_made.centres(truth))
+    monkeypatch.setattr(mapping, "NEARLY", 0.75)
+
+    def partial(number, found):
+        for name in names[-1:] if number == 1 else names[-lost:]:
+            image = found.model.find_image_with_name(name)
+            found.model.deregister_frame(image.frame_id)
+        return found
+
+    spoil(monkeypatch, partial)
+    summary = mapping.map_images(path, names, tmp_path / "a", mapper="global", seed=7, attempts=4)
+    assert (summary["n_registered"], summary["n_attempts"]) == (5, 4)
+    assert summary["n_agreeing"] == agreeing
 
 
 @pytest.mark.parametrize(("mapper", "held"), [("global", True), ("incremental", False)])

@@ -55,6 +55,22 @@ def test_cameras_behind_what_they_saw_explain_nothing(synthetic):
     assert (found.share, found.pair_share) == (0.0, 0.0)
 
 
+@pytest.mark.parametrize(
+    ("pairs", "joined"),
+    [
+        (["ab", "bc", "cd"], "abcd"),
+        (["ac", "ad"], "acd"),
+        (["ab", "ac", "de"], "abc"),  # two pictures of another place match each other
+        (["de", "cd", "ab"], "cde"),
+        ([], "abcde"),
+    ],
+)
+def test_images_that_matches_join_are_one_group(pairs, joined):
+    matches = {tuple(pair): np.zeros((20, 2), int) for pair in pairs}
+    found = two_views.joined(two_views.Verified(tuple("abcde"), {}, matches))
+    assert "".join(found) == joined
+
+
 def test_an_image_that_is_not_in_the_map_explains_nothing(synthetic):
     path, names, views = synthetic
     found = explained(path, names, views[1:])

@@ -38,6 +38,8 @@ LONE_GAIN = 0.05
 # Of the extent of the images, root mean square: models of good sessions differ by 0 to 0.5 % from
 # seed to seed, one whose focal lengths have diverged to two thirds or to twice by more.
 AGREE = 0.01
+# ASSUME: of the images of a map that lacks some: another that places so many of them confirms it.
+NEARLY = 0.9
 
 
 class _Attempt(NamedTuple):
@@ -76,7 +78,8 @@ def map_images(
 
     Raises `InputError` if the disk refuses the model.
 
-    A model is whole if each image sees enough points and its reprojection error is small. The
+    A model is whole if each image sees enough points and its reprojection error is small. Images
+    that no verified matches join with the others, of another place, are not missed. The
     global mapper starts from random places: sometimes its adjustment diverges or ends in a worse
     minimum. From the third attempt on its lenses stay without distortion as long as no model was
     whole. The model with most images is kept; of those, one that fits, then one that most others
@@ -132,16 +135,17 @@ def map_images(
 def _explaining(matches_db, images, mapper, seed, options, attempts) -> _Found:
     """Map, and again with known lenses while the best model is doubtful; return the best."""
     verified = two_views.read(matches_db, images)
+    joined = two_views.joined(verified)
 
     def mapped(database, mapper, options) -> _Found:
-        best, *counts = _agreed(database, images, mapper, seed, options, attempts)
+        best, *counts = _agreed(database, images, joined, mapper, seed, options, attempts)
         support = two_views.explained(verified, model.views(best.model))
         return _Found(best, support, *counts)
 
     found, copy = mapped(matches_db, mapper, options), None
     with contextlib.ExitStack() as open_copy:
         for other, least_share in AGAIN.get(mapper, {}).items():
-            if not (found.is_doubtful(least_share) and _is_whole(found.best, images)):
+            if not (found.is_doubtful(least_share) and _is_whole(found.best, joined)):
                 break
             copy = copy or open_copy.enter_context(
                 two_views.with_known_lenses(matches_db, images, seed=seed)
@@ -170,25 +174,27 @@ def _is_better(again: _Found, found: _Found) -> bool:
     return ranks[0] > ranks[1]
 
 
-def _agreed(matches_db, images, mapper, seed, options, attempts) -> tuple[_Attempt, int, int]:
+def _agreed(
+    matches_db, images, joined, mapper, seed, options, attempts
+) -> tuple[_Attempt, int, int]:
     """Map until two whole models agree; return the best, how many agree with it, how many tried."""
     tried: list[_Attempt] = []
     for at in range(max(attempts, 1)):
-        held = _held(tried, images, mapper, options)
+        held = _held(tried, joined, mapper, options)
         found = _map(matches_db, images, mapper, seed + at, options | held)._replace(held=held)
-        confirmed = any(_confirms(each, found, images) for each in tried)
+        confirmed = any(_confirms(each, found, joined) for each in tried)
         tried.append(found)
-        if confirmed and _is_whole(found, images):
+        if confirmed and _is_whole(found, joined):
             break
-    agreeing = [1 + sum(_confirms(each, found, images) for each in tried) for found in tried]
+    agreeing = [1 + sum(_confirms(each, found, joined) for each in tried) for found in tried]
     ranks = [_rank(*each) for each in zip(tried, agreeing, strict=True)]
     chosen = ranks.index(max(ranks))  # the first of equals
     return tried[chosen], agreeing[chosen], len(tried)
 
 
-def _held(tried, images, mapper, options) -> dict[str, Any]:
+def _held(tried, joined, mapper, options) -> dict[str, Any]:
     """Return options that hold distortion, once `HELD_FROM` attempts gave no whole model."""
-    if len(tried) < HELD_FROM or any(_is_whole(each, images) for each in tried):
+    if len(tried) < HELD_FROM or any(_is_whole(each, joined) for each in tried):
         return {}
     return {name: on for name, on in HELD.get(mapper, {}).items() if name not in options}
 
@@ -230,8 +236,8 @@ def _rank(attempt: _Attempt, n_agreeing: int) -> tuple[int, bool, int, float]:
     return len(_places(attempt)), fits, n_agreeing, last
 
 
-def _is_whole(attempt: _Attempt, images: Sequence[str]) -> bool:
-    return len(_places(attempt)) == len(images) and _error_px(attempt) <= SOUND_PX
+def _is_whole(attempt: _Attempt, joined: Sequence[str]) -> bool:
+    return _places(attempt).keys() >= set(joined) and _error_px(attempt) <= SOUND_PX
 
 
 def _places(attempt: _Attempt) -> dict[str, NDArray]:
@@ -240,12 +246,18 @@ def _places(attempt: _Attempt) -> dict[str, NDArray]:
     return {i.name: i.projection_center() for i in images if i.num_points3D >= LEAST_POINTS}
 
 
-def _confirms(attempt: _Attempt, other: _Attempt, images: Sequence[str]) -> bool:
-    """Return whether a whole model places the images as another one does, up to a similarity."""
-    if attempt is other or not _is_whole(attempt, images):
+def _confirms(attempt: _Attempt, other: _Attempt, joined: Sequence[str]) -> bool:
+    """Return whether a sound model places the images as another one does, up to a similarity.
+
+    It has all images that the other one has, or nearly all if that lacks some.
+    """
+    if attempt is other or _error_px(attempt) > SOUND_PX:
         return False
     places = _places(attempt), _places(other)
     common = sorted(places[0].keys() & places[1].keys())
+    least = (1.0 if places[1].keys() >= set(joined) else NEARLY) * len(places[1])
+    if len(common) < least:
+        return False
     ours, theirs = (np.array([found[name] for name in common]) for found in places)
     if len(common) < 3 or similarity.is_collinear(ours) or similarity.is_collinear(theirs):
         return False

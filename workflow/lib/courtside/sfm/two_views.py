@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pycolmap
+import scipy
 from numpy.typing import NDArray
 
 from courtside.calibration.records.support import Support
@@ -43,6 +44,22 @@ def read(matches_db: StrPath, images: Sequence[str]) -> Verified:
             for name, image in chosen.items()
         }
         return Verified(tuple(images), places, dict(_verified(opened, chosen)))
+
+
+def joined(verified: Verified) -> tuple[str, ...]:
+    """Return the images of the largest group that verified matches join, all where none are.
+
+    The others, such as a picture of another place, can be in no map with these.
+    """
+    number = {name: at for at, name in enumerate(verified.images)}
+    pairs = [(number[one], number[other]) for one, other in verified.matches]
+    if not pairs:
+        return verified.images
+    ones, others = np.transpose(pairs)
+    links = scipy.sparse.coo_array((np.ones(len(pairs)), (ones, others)), (len(number),) * 2)
+    group = scipy.sparse.csgraph.connected_components(links, directed=False)[1]
+    largest = np.bincount(group).argmax()
+    return tuple(name for name, at in number.items() if group[at] == largest)
 
 
 def explained(verified: Verified, views: Sequence[Camera]) -> Support:

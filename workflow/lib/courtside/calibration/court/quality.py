@@ -133,9 +133,9 @@ def check_maps(n_agreeing: int, n_maps: int) -> dict[str, Any]:
     warnings = ["no court: scale and frame are arbitrary"]
     if n_agreeing == 1 < n_maps:
         warnings.append(
-            f"walk: expected maps of its images to agree, found {n_maps} that all differ by more "
-            "than 1 % of their extent: angles and proportions are that uncertain; take more "
-            "bridging images, or name a court"
+            "walk: expected maps of its images to agree within 1 % of their extent, found that "
+            f"none of {n_maps - 1} others agrees with the best: angles and proportions are that "
+            "uncertain; take more bridging images, or name a court"
         )
     return {"warnings": warnings}
 
