@@ -150,7 +150,9 @@ def compare(results, session, count, map_minutes=None):
     whole = grid.read({"walk": root / "frames" / "walk.csv"})
     taken = np.array(whole.choose(count, 0, "even"))
     everything = np.ones(len(taken), dtype=bool)
-    walked = grid.Grid(np.full(len(taken), "walk"), taken, everything, everything * 1.0)
+    blank = np.full(len(taken), "")
+    walk = np.full(len(taken), "walk")
+    walked = grid.Grid(walk, taken, everything, everything * 1.0, blank, blank)
     fixed = [image_names.static(name) for name in names]
     groups = [features.Group(n, (f,)) for n, f in zip(names, fixed, strict=True)]
     groups.append(features.Group("walk", tuple(taken.tolist())))

@@ -395,7 +395,7 @@ def test_photos_without_a_focal_length_are_named_with_the_guess(tmp_path, caplog
     (made.folder / "frames" / "walk").mkdir()
     cv2.imwrite(str(made.folder / "frames" / "walk" / "000000.png"), noise((160, 96)))
     row = {"frame_idx": 0, "time_s": 0.0, "name": "000000.png", "sharpness": 1.0, "kept": 1}
-    pd.DataFrame([{**row, "reason": ""}]).to_csv(made.frames["walk"], index=False)
+    pd.DataFrame([{**row, "reason": "", "photo": "a.jpg"}]).to_csv(made.frames["walk"], index=False)
     with caplog.at_level(logging.INFO, log.logger.name):
         made.extract(focal_factor=0.8)
     messages = [line for line in caplog.messages if "no focal length" in line]

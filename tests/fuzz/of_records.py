@@ -109,6 +109,7 @@ def frames(folder):
         "frame_idx": [0, 6, 12, 18], "time_s": [0.0, 0.2, 0.4, np.nan],
         "sharpness": [100.5, 20.25, 99.0, 1.0], "name": [f"{k:06d}.png" for k in (0, 6, 12, 18)],
         "kept": [True, False, False, True], "reason": ["", "blurred", "duplicate", ""],
+        "photo": ["", "", "", "IMG 4, 2.jpg"],
     }  # fmt: skip
     frame_table.write(folder / "walk.csv", pd.DataFrame(rows))
 

@@ -15,7 +15,8 @@ def main(video_path, folder, table_csv, *, every_s=None, every_frame=None):
     walk = Path(table_csv).stem
     with atomic_folder(folder) as beside:
         found = walk_frames.frames(video_path, every_s=every_s, every_frame=every_frame)
-        table, small = walk_frames.extract(log.progress(found, None, f"{walk}: frames"), beside)
+        shown = log.progress(found, None, f"{walk}: frames")
+        table, small = walk_frames.extract(shown, beside, walk_frames.photo_paths(video_path))
         kept, reason = usable.judge(table, small)
         if not kept.any():
             raise InputError(

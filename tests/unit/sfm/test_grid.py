@@ -10,7 +10,7 @@ from courtside.sfm import grid
 from courtside.study.errors import InputError
 
 
-def table(path, count, dropped=()):
+def table(path, count, dropped=(), photos=False):
     rows = pd.DataFrame(
         {
             "frame_idx": range(0, 5 * count, 5),
@@ -19,6 +19,7 @@ def table(path, count, dropped=()):
             "sharpness": [100.0 + at for at in range(count)],
             "kept": [at not in dropped for at in range(count)],
             "reason": ["blurred" if at in dropped else "" for at in range(count)],
+            "photo": [f"IMG_{at}.jpg" if photos else "" for at in range(count)],
         }
     )
     frame_table.write(path, rows)
@@ -39,6 +40,32 @@ def test_walks_follow_each_other_in_the_order_given(tmp_path):
     assert found.kept.tolist() == [True, False, True, True, True]
     assert found.sharpness.tolist() == [100, 101, 102, 100, 101]
     assert found.of_walk("zig") == (zig[0], zig[2]) and found.of_walk("ant") == tuple(ant)
+
+
+def test_too_few_usable_photos_are_named_with_the_reason(tmp_path):
+    photos = grid.read({"walk": table(tmp_path / "walk.csv", 9, [1, 2, 3, 4], photos=True)})
+    blurred = "is far less sharp than the photos around it (blurred, or of another place)"
+    with pytest.raises(InputError) as caught:
+        photos.choose(9, 0, "even")
+    assert str(caught.value).startswith(
+        "walk: expected at least 9 usable photos, found 5 of 9 (" + f"IMG_1.jpg {blurred}, "
+        f"IMG_2.jpg {blurred}, IMG_3.jpg {blurred} and 1 more): take more, sharp and"
+    )
+    assert "n_images: [5]" in str(caught.value) and "film" not in str(caught.value)
+    with pytest.raises(InputError, match=r"found 9 of 9: take more"):
+        grid.read({"walk": table(tmp_path / "walk.csv", 9, photos=True)}).choose(10, 0, "even")
+    tables = {"a": table(tmp_path / "a.csv", 3, photos=True), "b": table(tmp_path / "b.csv", 3)}
+    with pytest.raises(InputError, match=r"a, b: expected at least 9 usable frames, .*: film lo"):
+        grid.read(tables).choose(9, 0, "even")
+
+
+def test_photos_are_called_by_their_own_names(tmp_path):
+    tables = {"a": table(tmp_path / "a.csv", 2, photos=True), "b": table(tmp_path / "b.csv", 2)}
+    found = grid.read(tables)
+    assert found.called("frames/a/000001.png") == "IMG_1.jpg (frames/a/000001.png)"
+    assert found.called("frames/b/000001.png") == "frames/b/000001.png"
+    assert found.called("static/left.png") == "static/left.png"
+    assert list(found.own_names().values()) == ["IMG_0.jpg", "IMG_1.jpg"]
 
 
 def test_fixed_cameras_are_matched_with_all_and_dropped_frames_with_none(tmp_path):

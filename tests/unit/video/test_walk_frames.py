@@ -80,7 +80,16 @@ def test_extracted_files_are_the_frames(clip, tmp_path):
     ):
         np.testing.assert_array_equal(cv2.imread(str(tmp_path / name)), image)
     assert [image.shape for image in small] == [(120, 160)] * 3
-    assert (table["sharpness"] > 0).all()
+    assert (table["sharpness"] > 0).all() and (table["photo"] == "").all()
+
+
+def test_extracted_photos_keep_their_own_names_in_the_table(tmp_path):
+    for at, name in enumerate(("IMG_10.jpg", "IMG_9.jpg")):
+        photo(tmp_path, name, at)
+    paths = walk_frames.photo_paths(tmp_path)
+    table, _ = walk_frames.extract(walk_frames.frames(tmp_path), tmp_path / "out", paths)
+    assert table["name"].tolist() == ["000000.png", "000001.png"]
+    assert table["photo"].tolist() == ["IMG_9.jpg", "IMG_10.jpg"]
 
 
 def test_small_pictures_are_averages(tmp_path):

@@ -7,7 +7,7 @@ import pytest
 from courtside.records.cameras import frame_table
 from courtside.study.errors import InputError
 
-HEADER = "frame_idx,time_s,name,sharpness,kept,reason\n"
+HEADER = "frame_idx,time_s,name,sharpness,kept,reason,photo\n"
 
 
 def a_table():
@@ -19,6 +19,7 @@ def a_table():
             "name": ["000000.png", "000006.png", "000012.png", "000018.png"],
             "kept": [True, False, False, True],
             "reason": ["", "blurred", "duplicate", ""],
+            "photo": ["", "", "", "IMG 4, 2.jpg"],
         }
     )
 
@@ -31,8 +32,8 @@ def test_a_written_table_is_read_exactly(tmp_path):
     )
     assert path.read_text().splitlines()[:3] == [
         HEADER.strip(),
-        "0,0.0,000000.png,100.5,1,",
-        "6,0.2,000006.png,20.25,0,blurred",
+        "0,0.0,000000.png,100.5,1,,",
+        "6,0.2,000006.png,20.25,0,blurred,",
     ]
     assert frame_table.read(path)["kept"].dtype == bool
 
@@ -48,16 +49,16 @@ def test_photos_have_no_times_and_all_may_be_kept(tmp_path):
     ("text", "reason"),
     [
         ("", "No columns"),
-        ("frame_idx,time_s,name\n0,0,a\n", "no column sharpness, kept, reason"),
+        ("frame_idx,time_s,name\n0,0,a\n", "no column sharpness, kept, reason, photo"),
         (HEADER, "found no frames"),
-        (HEADER + "1,0,a,1,1,\n0,0,b,1,1,\n", "not each once in order"),
-        (HEADER + "0,0,a,1,1,\n1,0,a,1,1,\n", "not each once in order"),
-        (HEADER + "0,0,a,1,2,\n", "kept other than 0 and 1"),
-        (HEADER + "0,0,a,1,0,ugly\n", "a reason not of dark, blurred, duplicate"),
-        (HEADER + "0,0,a,1,0,\n", "none beside another"),
-        (HEADER + "0,0,a,1,1,blurred\n", "a reason beside a kept frame"),
-        (HEADER + "x,0,a,1,1,\n1,0,b,1,1,\n", "a number"),
-        (HEADER + "0,0,a,sharp,1,\n", "a number"),
+        (HEADER + "1,0,a,1,1,,\n0,0,b,1,1,,\n", "not each once in order"),
+        (HEADER + "0,0,a,1,1,,\n1,0,a,1,1,,\n", "not each once in order"),
+        (HEADER + "0,0,a,1,2,,\n", "kept other than 0 and 1"),
+        (HEADER + "0,0,a,1,0,ugly,\n", "a reason not of dark, blurred, duplicate"),
+        (HEADER + "0,0,a,1,0,,\n", "none beside another"),
+        (HEADER + "0,0,a,1,1,blurred,\n", "a reason beside a kept frame"),
+        (HEADER + "x,0,a,1,1,,\n1,0,b,1,1,,\n", "a number"),
+        (HEADER + "0,0,a,sharp,1,,\n", "a number"),
     ],
 )
 def test_faults_are_one_line(tmp_path, text, reason):

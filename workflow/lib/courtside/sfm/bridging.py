@@ -4,6 +4,8 @@ Places in the grid are counted from 0 to G - 1, one per row of the walk's frame 
 knows where the camera was.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -16,6 +18,7 @@ from courtside.study.methods import OFFSETS
 # multiple is then always nearer than the next image.
 COARSE = 0.4
 CLEARLY = 1.25  # ASSUME: times as sharp as the nearest usable frame: worth moving there
+N_NAMED = 3  # photos in a line
 GAP_COST = 1e6  # of a gap above `STRIDES`: above the sum of all other costs of a walk's grid
 
 
@@ -28,6 +31,7 @@ def choose(
     rule: str = "even",
     *,
     walk: str = "walk",
+    not_kept: Sequence[str] | None = None,
 ) -> NDArray:
     """Choose the bridging images, ascending places, among the usable frames of a walk's grid.
 
@@ -48,6 +52,7 @@ def choose(
     sharpness : (G,) float; of every frame of the grid
     rule : "even": evenly spaced over the grid, sharper neighbours preferred; or "interval": every
         d-th usable frame, d = floor(K / n), as published
+    not_kept : of photos, in words which are not usable and why; None for frames of a video
     """
     kept_idx = np.asarray(kept_idx, dtype=int)
     if n < 2 or not 0 <= offset_idx < OFFSETS or rule not in ("even", "interval"):
@@ -55,15 +60,24 @@ def choose(
     if np.any(np.diff(kept_idx) <= 0) or np.any((kept_idx < 0) | (kept_idx >= n_grid)):
         raise ValueError("kept_idx must ascend from 0 to below n_grid")
     if len(kept_idx) < n:
-        raise InputError(
-            f"{walk}: expected at least {n} usable frames, found {len(kept_idx)} of {n_grid} "
-            "(the others are dark, blurred or duplicates): film longer, or ask for fewer by "
-            f"`{methods.fewer_images(len(kept_idx))}` in the session file"
-        )
+        raise InputError(f"{walk}: {_too_few(len(kept_idx), n_grid, n, not_kept)}")
     if rule == "interval":
         every = len(kept_idx) // n
         return kept_idx[every * offset_idx // OFFSETS + every * np.arange(n)]
     return _choose_even(kept_idx, n_grid, n, offset_idx, np.asarray(sharpness, dtype=float))
+
+
+def _too_few(n_kept: int, n_grid: int, n: int, not_kept: Sequence[str] | None) -> str:
+    what = "frames" if not_kept is None else "photos"
+    others = " (the others are dark, blurred or duplicates)" if not_kept is None else ""
+    if not_kept:
+        more = f" and {len(not_kept) - N_NAMED} more" * (len(not_kept) > N_NAMED)
+        others = f" ({', '.join(not_kept[:N_NAMED])}{more})"
+    mend = "film longer" if not_kept is None else "take more, sharp and with an overlap"
+    return (
+        f"expected at least {n} usable {what}, found {n_kept} of {n_grid}{others}: {mend}, or ask "
+        f"for fewer by `{methods.fewer_images(n_kept)}` in the session file"
+    )
 
 
 def _choose_even(kept_idx, n_grid, n, offset_idx, sharpness) -> NDArray:

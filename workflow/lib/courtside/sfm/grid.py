@@ -21,6 +21,8 @@ class Grid:
     names: NDArray  # (G,) str: of the images, from the image root
     kept: NDArray  # (G,) bool: whether a frame may become a bridging image
     sharpness: NDArray  # (G,)
+    why: NDArray  # (G,) str: why a frame is not kept, empty if it is
+    photos: NDArray  # (G,) str: own file name of a frame that is a photo, empty of a video's
 
     def of_walk(self, walk: str) -> tuple[str, ...]:
         """Return the names of a walk's usable frames, in order."""
@@ -31,9 +33,33 @@ class Grid:
         usable, n_grid = np.flatnonzero(self.kept), len(self.names)
         walk = ", ".join(dict.fromkeys(self.walks.tolist()))
         chosen = bridging.choose(
-            usable, n_grid, n_images, offset_idx, self.sharpness, rule, walk=walk
+            usable,
+            n_grid,
+            n_images,
+            offset_idx,
+            self.sharpness,
+            rule,
+            walk=walk,
+            not_kept=self._not_kept(),
         )
         return self.names[chosen].tolist()
+
+    def _not_kept(self) -> list[str] | None:
+        """Return the photos that are not kept, each with the reason; None if some are no photos."""
+        if not self.photos.all():
+            return None
+        lost = zip(self.photos[~self.kept], self.why[~self.kept], strict=True)
+        return [f"{photo} is {frame_table.OF_PHOTOS[why]}" for photo, why in lost]
+
+    def called(self, name: str) -> str:
+        """Return what to call an image: a photo by its own name, with that of the image."""
+        own = self.own_names().get(name)
+        return f"{own} ({name})" if own else name
+
+    def own_names(self) -> dict[str, str]:
+        """Return the own file names of images that are photos, by image name."""
+        every = zip(self.names.tolist(), self.photos.tolist(), strict=True)
+        return {name: photo for name, photo in every if photo}
 
     def pairs(self, fixed: Sequence[str]) -> list[tuple[str, str]]:
         """Return the pairs of images to match: those of the fixed cameras with all others."""
@@ -52,7 +78,7 @@ def read(tables: Mapping[str, StrPath]) -> Grid:
 
     Raises `InputError` if a file is missing or no frame table.
     """
-    parts = [pd.DataFrame(columns=["walk", "path", "kept", "sharpness"])] if not tables else []
+    parts = [pd.DataFrame(columns=["walk", "path", *frame_table.COLUMNS])] if not tables else []
     for walk, path in tables.items():
         table = frame_table.read(path)
         paths = [image_names.frame(walk, name) for name in table["name"]]
@@ -63,6 +89,8 @@ def read(tables: Mapping[str, StrPath]) -> Grid:
         whole["path"].to_numpy(str),
         whole["kept"].to_numpy(bool),
         whole["sharpness"].to_numpy(float),
+        whole["reason"].to_numpy(str),
+        whole["photo"].to_numpy(str),
     )
 
 

@@ -69,20 +69,23 @@ def _evenly(there: range, n_wanted: int) -> list[int]:
 
 
 def extract(
-    found: Iterable[tuple[int, float, NDArray]], folder: StrPath
+    found: Iterable[tuple[int, float, NDArray]], folder: StrPath, photos: Sequence[Path] = ()
 ) -> tuple[pd.DataFrame, list[NDArray]]:
     """Write frames, from `frames`, as PNG files named `%06d.png` by the frame's index.
 
-    Return a table with one row per frame (`frame_idx`, `time_s`, `name`, `sharpness`) and the same
-    frames, grey, reduced by averaging to a width of 320 px (not enlarged).
+    Return a table with one row per frame (`frame_idx`, `time_s`, `name`, `sharpness`, `photo`) and
+    the same frames, grey, reduced by averaging to a width of 320 px (not enlarged). `photos` are
+    those of `photo_paths`, whose own names the table gives.
     """
     rows, small = [], []
     for frame_idx, time_s, image in found:
         name = f"{frame_idx:06d}.png"
         reader.write_png(Path(folder) / name, image)
-        rows.append((frame_idx, time_s, name, reader.sharpness(image)))
+        own = photos[frame_idx].name if photos else ""
+        rows.append((frame_idx, time_s, name, reader.sharpness(image), own))
         small.append(_small(image))
-    return pd.DataFrame(rows, columns=["frame_idx", "time_s", "name", "sharpness"]), small
+    columns = ["frame_idx", "time_s", "name", "sharpness", "photo"]
+    return pd.DataFrame(rows, columns=columns), small
 
 
 def photo_paths(source: Source) -> list[Path]:

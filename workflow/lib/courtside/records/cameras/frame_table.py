@@ -6,9 +6,14 @@ import pandas as pd
 from courtside.records import tables
 from courtside.study.errors import StrPath
 
-COLUMNS = ("frame_idx", "time_s", "name", "sharpness", "kept", "reason")
+COLUMNS = ("frame_idx", "time_s", "name", "sharpness", "kept", "reason", "photo")
 NUMBERS = ("frame_idx", "time_s", "sharpness", "kept")
 REASONS = ("", "dark", "blurred", "duplicate")  # why a frame is not kept; empty if it is
+OF_PHOTOS = {  # what they mean of a photo, which has no film around it
+    "dark": "dark",
+    "blurred": "far less sharp than the photos around it (blurred, or of another place)",
+    "duplicate": "as the one before it",
+}
 
 
 def write(path: StrPath, table: pd.DataFrame) -> None:
@@ -16,7 +21,8 @@ def write(path: StrPath, table: pd.DataFrame) -> None:
 
     One row per extracted frame: `frame_idx` (of the video; of photos, the place in name order),
     `time_s` (since the video's first frame; NaN for photos), `name` (of the PNG file), `sharpness`
-    (variance of the Laplacian, squared grey levels), `kept` (bool), `reason` ("" where kept).
+    (variance of the Laplacian, squared grey levels), `kept` (bool), `reason` ("" where kept),
+    `photo` (a photo's own file name; "" for frames of a video).
     """
     fault = _fault(table)
     if fault:
