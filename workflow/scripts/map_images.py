@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from courtside.sfm import grid, mapping
+from courtside.sfm import grid, mapping, registration
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json
 from courtside.study.execution.script import run
@@ -27,7 +27,12 @@ def main(
     folder = Path(summary_json).parent
     summary = mapping.map_images(matches_db, fixed + chosen, folder, mapper=mapper, **options)
     summary["bridging_images"] = chosen
+    unregistered, unmatched = summary.pop("unregistered"), summary.pop("unmatched")
     log.logger.info("registered %(n_registered)d of %(n_images)d images", summary)
+    for line in registration.lost(unregistered, unmatched, frames.called):
+        log.logger.warning("%s", line)
+    own_names = frames.own_names()
+    summary["unregistered"] = {name: own_names.get(name, "") for name in unregistered}
     write_json(summary_json, summary)
 
 

@@ -295,6 +295,7 @@ def test_an_image_of_another_place_costs_no_attempts_and_no_agreement(
     summary = mapping.map_images(path, names, tmp_path / "a", mapper="global", seed=7, attempts=6)
     assert (summary["n_images"], summary["n_registered"], len(asked)) == (6, 5, 2)
     assert (summary["n_attempts"], summary["n_agreeing"]) == (2, 2)
+    assert summary["unregistered"] == summary["unmatched"] == [names[2]]
 
 
 @pytest.mark.parametrize(("lost", "agreeing"), [(1, 4), (3, 1)])

@@ -56,6 +56,19 @@ def test_all_lost_cameras_are_named_with_what_each_sees():
     found = outcome(network(n_side=4), images)
     assert found.startswith("cameras side, back: expected 10 points or more")
     assert "found 4 points (side), it unregistered (back);" in found
+    assert found.endswith("if a static picture shows another place, give the right one")
+
+
+def test_images_that_a_model_lacks_are_called_by_name_with_the_likely_reason():
+    called = {"4.png": "06.jpg (4.png)"}
+    names = [f"{at}.png" for at in range(9)]
+    alone, others = registration.lost(names, ["4.png"], lambda name: called.get(name, name))
+    assert alone == (
+        "not in the model: 06.jpg (4.png): no match joins it with the others; leave it out if it "
+        "shows another place, or add pictures in between"
+    )
+    assert others.startswith("not in the model: 0.png, 1.png, 2.png, 3.png, 5.png and 3 more: too")
+    assert registration.lost([], ["4.png"], str) == []
 
 
 def test_a_model_without_images_is_a_fault_of_the_walk():

@@ -2,10 +2,12 @@
 
 import json
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
+from courtside.study import paths
 from courtside.study.errors import InputError
 from courtside.study.execution import verdicts
 from courtside.study.provenance import run
@@ -180,6 +182,28 @@ def test_pictures_that_a_model_of_photos_lost_are_told(study, tmp_path, monkeypa
     summary.write_text(json.dumps({"n_images": 12, "n_registered": 6}))
     (line,) = run.lost_pictures(study)
     assert line.startswith("plain-tiny: 6 of 12 pictures are not in the model global-n12-o0:")
+
+
+def test_photos_that_a_model_of_fixed_cameras_lost_are_named(study, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    session = study.sessions["plain-tiny"]
+    study = replace(study, sessions={"plain-tiny": session})
+    variants = [vars(variant) for variant in session.variants()]
+    models = [Path(paths.SFM_SUMMARY.format(session="plain-tiny", **one)) for one in variants]
+
+    def told(own_name):
+        lost = {"frames/walk/000004.png": own_name}
+        for model in models:
+            model.parent.mkdir(parents=True, exist_ok=True)
+            model.write_text(json.dumps({"n_images": 13, "n_registered": 12, "unregistered": lost}))
+        return run.lost_pictures(study)
+
+    (line,) = told("06.jpg")
+    assert line.startswith(
+        f"plain-tiny: 1 of 13 pictures are not in the model {models[0].parts[-2]}"
+    )
+    assert "another place (06.jpg is frames/walk/000004.png), see" in line
+    assert told("") == []  # a frame of a video
 
 
 def test_what_is_left_out_for_want_of_consent_is_told_with_what_remains(

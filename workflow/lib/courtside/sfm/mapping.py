@@ -59,6 +59,7 @@ class _Found(NamedTuple):
     support: Support
     n_agreeing: int
     n_attempts: int
+    joined: tuple[str, ...]  # images that verified matches join
 
     def is_doubtful(self, least_share: float) -> bool:
         return self.support.image_share < least_share or self.n_agreeing == 1 < self.n_attempts
@@ -106,15 +107,17 @@ def map_images(
     summary : of the model: pycolmap's version, the mapper and the seed that gave it, which of
         COLMAP's options were `held` against a diverging lens, n_models, n_images, n_registered,
         n_points3d, reprojection_px, track_length; `explained`, how much of the verified matches it
-        explains, as a `Support`; n_attempts, and n_agreeing, the number of whole models that agree
-        with it, itself included
+        explains, as a `Support`; `unregistered`, the images that it lacks, and `unmatched`, those
+        that no verified matches join with the most others; n_attempts, and n_agreeing, the number
+        of sound models that agree with it, itself included
     """
-    best, support, n_agreeing, n_attempts = _explaining(
+    best, support, n_agreeing, n_attempts, joined = _explaining(
         matches_db, images, mapper, seed, dict(options or {}), attempts
     )
     Path(folder).mkdir(parents=True, exist_ok=True)
     best.model.write_binary(str(folder))
     _check_whole(best.model, Path(folder))
+    registered = {best.model.images[at].name for at in best.model.reg_image_ids()}
     return {
         "mapper": best.mapper,
         "seed": best.seed,
@@ -127,6 +130,8 @@ def map_images(
         "reprojection_px": _error_px(best),
         "track_length": best.model.compute_mean_track_length(),
         "explained": support._asdict(),
+        "unregistered": [name for name in images if name not in registered],
+        "unmatched": [name for name in images if name not in joined],
         "n_attempts": n_attempts,
         "n_agreeing": n_agreeing,
     }
@@ -138,9 +143,11 @@ def _explaining(matches_db, images, mapper, seed, options, attempts) -> _Found:
     joined = two_views.joined(verified)
 
     def mapped(database, mapper, options) -> _Found:
-        best, *counts = _agreed(database, images, joined, mapper, seed, options, attempts)
+        best, n_agreeing, n_tried = _agreed(
+            database, images, joined, mapper, seed, options, attempts
+        )
         support = two_views.explained(verified, model.views(best.model))
-        return _Found(best, support, *counts)
+        return _Found(best, support, n_agreeing, n_tried, joined)
 
     found, copy = mapped(matches_db, mapper, options), None
     with contextlib.ExitStack() as open_copy:

@@ -1,10 +1,12 @@
 """Whether structure from motion placed the fixed cameras, and what to film again if not."""
 
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 
 import numpy as np
 
 from courtside.calibration.bundle.problem import Network
+
+N_NAMED = 5  # images in a line
 
 
 def outcome(
@@ -50,8 +52,31 @@ def outcome(
     return (
         f"{names}: expected {min_points} points or more in common with the walk, found "
         f"{', '.join(found)}{apart}; film the walk from close beside each such camera, slowly, "
-        "aimed as it is, or take more bridging images"
+        "aimed as it is, or take more bridging images; if a static picture shows another place, "
+        "give the right one"
     )
+
+
+def lost(
+    unregistered: Sequence[str], unmatched: Container[str], called: Callable[[str], str]
+) -> list[str]:
+    """Return in lines which images a model lacks, those that match no others first.
+
+    `called` gives the name to call an image by.
+    """
+    alone = [name for name in unregistered if name in unmatched]
+    others = [name for name in unregistered if name not in unmatched]
+    told = (
+        (alone, "no match joins it with the others; leave it out if it shows another place, or"),
+        (others, "too few of its matches agree with the model;"),
+    )
+    found = []
+    for names, why in told:
+        listed = ", ".join(called(name) for name in names[:N_NAMED])
+        more = f" and {len(names) - N_NAMED} more" * (len(names) > N_NAMED)
+        if names:
+            found.append(f"not in the model: {listed}{more}: {why} add pictures in between")
+    return found
 
 
 def n_seen(network: Network, images: Sequence[str], image: str) -> int:

@@ -2,7 +2,7 @@
 
 import json
 import shlex
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from courtside.study.provenance import environment, provenance
 from courtside.study.targets.calibration import warning_files
 
 N_WARNINGS = 3  # of one calibration, on the terminal
+N_NAMED = 3  # photos, or models, in a line
 
 
 def record(
@@ -128,21 +129,40 @@ def waiting_for_clicks(study: Study) -> list[str]:
 
 
 def lost_pictures(study: Study) -> list[str]:
-    """Return one line for each session of photos whose model lacks some that were made by now."""
+    """Return a line for each session on the photos that a model which was made by now lacks.
+
+    Models that lack the same photos share a line. Frames of a video beside fixed cameras are not
+    told.
+    """
     found = []
     for session in study.sessions.values():
-        variants = session.variants() if session.walks and not session.cameras else []
-        for variant in variants:
+        models: dict[tuple[int, int, str], list[str]] = {}
+        for variant in session.variants() if session.walks else []:
             path = Path(paths.SFM_SUMMARY.format(session=session.name, **vars(variant)))
-            summary = files.read_json(path) if path.is_file() else {}
-            lost = summary.get("n_images", 0) - summary.get("n_registered", 0)
-            if lost:
-                found.append(
-                    f"{session.name}: {lost} of {summary['n_images']} pictures are not in the "
-                    f"model {variant.name}: they overlap too little with the others, see "
-                    f"{paths.MATCH_TABLE.format(session=session.name)}; add pictures in between"
-                )
+            lost = _lost(session, files.read_json(path)) if path.is_file() else (0, 0, "")
+            models.setdefault(lost, []).append(variant.name)
+        found += [
+            f"{session.name}: {n_lost} of {n_images} pictures are not in the model {_few(names)}: "
+            f"they overlap too little with the others, or show another place{photos}, see "
+            f"{paths.MATCH_TABLE.format(session=session.name)}; add pictures in between, or leave "
+            "them out"
+            for (n_lost, n_images, photos), names in models.items()
+            if n_lost
+        ]
     return found
+
+
+def _lost(session: Session, summary: Mapping[str, Any]) -> tuple[int, int, str]:
+    """Return how many pictures a model lacks, of how many, and in words which photos they are."""
+    unregistered = summary.get("unregistered", {})
+    photos = [f"{own} is {name}" for name, own in unregistered.items() if own]
+    n_lost = len(photos) if session.cameras else summary["n_images"] - summary["n_registered"]
+    return n_lost, summary["n_images"], f" ({_few(photos)})" if photos else ""
+
+
+def _few(names: Sequence[str]) -> str:
+    more = f" and {len(names) - N_NAMED} more" if len(names) > N_NAMED else ""
+    return ", ".join(names[:N_NAMED]) + more
 
 
 def warnings(study: Study) -> list[str]:
