@@ -171,7 +171,11 @@ def change(content, keys, value):
         (("sets", "eight"), "p01", ["eight", "list"]),
         (("lines_m",), [], ["lines_m"]),
         (("lines_m",), [[0, 0, 1]], ["lines_m.0", "at least 4", "x1"]),
-        (("lines_m",), [[0, 0, 7, 0.04]], ["lines_m", "6.1x13.4"]),
+        (
+            ("lines_m",),
+            [[0, 0, 6, 0.04], [0, 0, 7, 0.04], [-1, 0, 0, 1]],
+            ["0, 0 to 6.1, 13.4 (size_m), found line 2 [0.0, 0.0, 7.0, 0.04] and 1 more beyond"],
+        ),
         (("net", "y_m"), KeyError, ["net", "y_m"]),
         (("net", "x_m"), 3, ["net", "x_m"]),
     ],

@@ -98,7 +98,11 @@ def test_line_centres_are_said_where_the_shift_is_certain(inwards, n_warnings):
 
 def test_without_a_court_maps_that_disagree_are_a_warning():
     assert len(quality.check_maps(2, 3)["warnings"]) == 1
-    assert len(quality.check_maps(1, 1)["warnings"]) == 1
+    (unscaled,) = quality.check_maps(1, 1)["warnings"]
+    assert unscaled.startswith(
+        "no court: scale and frame are arbitrary, and lengths have no unit; "
+    )
+    assert "click three of its points or more" in unscaled
     _, warning = quality.check_maps(1, 6)["warnings"]
     assert "found that none of 5 others agrees with the best" in warning and "\n" not in warning
 

@@ -153,7 +153,10 @@ def test_good_sessions_have_no_fault(root, content):
         ),
         (
             RECORDED | {"court_points": "placed.csv"},
-            ["court_points: expected points of the court by their names beside `walks`"],
+            [
+                "court_points: expected points of the court by their names beside `walks`",
+                "write these places into a court file of your own, config/courts/<court>.yaml",
+            ],
         ),
         (
             ALONE | {"cameras": {"a": {"static": "a.mp4"}, "b": {}}},

@@ -8,7 +8,6 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.geometry import camera_fields
 from courtside.study.configuration import schemas
 from courtside.study.errors import InputError, StrPath
 
@@ -133,11 +132,15 @@ def _check(path: StrPath, court: Court) -> None:
             f"{court.points[first]} and {court.points[second]} {apart_m[first, second]:g} m apart; "
             "correct them"
         )
-    corners = court.lines_m.reshape(-1, 2)
-    if (corners < -ON_EDGE_M).any() or (corners > court.size_m + ON_EDGE_M).any():
+    low, high = court.line_corners()
+    beyond = ((low < -ON_EDGE_M) | (high > court.size_m + ON_EDGE_M)).any(axis=1)
+    if beyond.any():
+        x, y = court.size_m
+        found = [f"line {at + 1} {court.lines_m[at].tolist()}" for at in np.flatnonzero(beyond)]
+        more = f" and {len(found) - 1} more" if len(found) > 1 else ""
         raise InputError(
-            f"{path}: expected lines_m inside the court of {camera_fields.times(court.size_m)} m, "
-            "found a line beyond it; correct it"
+            f"{path}: lines_m: expected lines inside the court, from its corner at 0, 0 to {x:g}, "
+            f"{y:g} (size_m), found {found[0]}{more} beyond it; correct the line or size_m"
         )
 
 

@@ -130,7 +130,11 @@ def _variance_factors(solved: joint_adjustment.Solution) -> dict[str, Any]:
 
 def check_maps(n_agreeing: int, n_maps: int) -> dict[str, Any]:
     """Return the quality of cameras without a court: how many maps of the same images agree."""
-    warnings = ["no court: scale and frame are arbitrary"]
+    warnings = [
+        "no court: scale and frame are arbitrary, and lengths have no unit; for metres name a "
+        "`court`, or describe the place as one of your own, and click three of its points or more "
+        "(config/README.md, A court of your own)"
+    ]
     if n_agreeing == 1 < n_maps:
         warnings.append(
             "walk: expected maps of its images to agree within 1 % of their extent, found that "

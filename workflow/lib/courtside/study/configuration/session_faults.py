@@ -20,6 +20,7 @@ UNSCALED = (
     "expected `height_m` of every person of one take or more, for the calibration `people`, found "
     "no such take; state the heights, or `known_lengths`: nothing else defines the scale"
 )
+OWN_COURT = "config/README.md, A court of your own"
 # What else to do where nobody has clicked the points of a court yet.
 BY_CLICKS = ", or give every camera `static`, and the study makes a page to click them on"
 
@@ -146,7 +147,8 @@ def _static_point_faults(file: Path, content: Content) -> Iterator[str]:
         yield (
             f"{file}: known_lengths: expected `static_points` with their ends, and `people` in "
             "override.calibrations, found only one or neither; add both: only this calibration "
-            "uses known lengths"
+            "uses known lengths; a walk gets metres from clicked points of a court, such as one of "
+            f"your own ({OWN_COURT})"
         )
 
 
@@ -351,7 +353,9 @@ def _point_faults(file: Path, content: Content, root: Path) -> Iterator[str]:
     if placed and walks:
         yield (
             f"{file}: court_points: expected points of the court by their names beside `walks`, "
-            "found places x_m, y_m, z_m; name the points, or remove the walks"
+            "found places x_m, y_m, z_m; write these places into a court file of your own, "
+            f"config/courts/<court>.yaml, give `court` and the points by its names ({OWN_COURT}), "
+            "or remove the walks"
         )
     known = "known" in content.get("override", {}).get("calibrations", [])
     if there and not walks and (known or "calibration" not in content):
