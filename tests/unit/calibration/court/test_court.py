@@ -7,7 +7,7 @@ import pytest
 import yaml
 
 from courtside.calibration.court import court as court_files
-from courtside.calibration.court import sfm_alignment
+from courtside.calibration.court import line_edges, sfm_alignment
 from courtside.calibration.court_lines import walk_and_lines
 from courtside.study.errors import InputError
 
@@ -169,7 +169,7 @@ def change(content, keys, value):
         (("sets", "eight"), ["p01", "p99"], ["eight", "p99"]),
         (("sets", "eight"), ["p01", "p01"], ["eight", "differ", "'p01' again"]),
         (("sets", "eight"), "p01", ["eight", "list"]),
-        (("lines_m",), [], ["lines_m"]),
+        (("lines_m",), 3, ["lines_m"]),
         (("lines_m",), [[0, 0, 1]], ["lines_m.0", "at least 4", "x1"]),
         (
             ("lines_m",),
@@ -190,6 +190,18 @@ def test_a_fault_is_one_line_that_names_it(tmp_path, keys, value, named):
     message = str(caught.value)
     assert "\n" not in message
     assert [word for word in [str(path), *named] if word not in message] == []
+
+
+def test_a_place_may_have_no_lines(tmp_path):
+    content = yaml.safe_load((FOLDER / "rectangle-10x5.yaml").read_text()) | {"lines_m": []}
+    path = tmp_path / "bare.yaml"
+    path.write_text(yaml.safe_dump(content))
+    found = court_files.read(path)
+    assert found.lines_m.shape == (0, 4) and not found.placed
+    assert not court_files.to_line_centres(found).any()
+    assert not line_edges.on_lines(found).any()
+    line, ends = line_edges.stretches(found, 1.0)
+    assert line.shape == (0,) and ends.shape == (0, 2, 3)
 
 
 def test_floor_points_a_centimetre_high_are_floor_for_all_that_uses_them(tmp_path):

@@ -1,12 +1,14 @@
 """What is said of calibrated cameras without the truth, where the truth is known."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from courtside.calibration.court import court, quality
+from courtside.calibration.records.covariance import CameraCovariance
 from courtside.calibration.records.support import Support
 from courtside.geometry import camera as camera_models
 from courtside.study.errors import InputError
@@ -115,6 +117,15 @@ def test_a_map_that_contradicts_a_pair_is_doubtful(above):
     warning = quality.map_warning(support._replace(pair_share=0.244))
     assert warning.startswith("map doubtful: expected 30 % or more of the matches of static/side")
     assert "000003.png" in warning and warning.endswith("found 24 %; take more bridging images")
+
+
+def test_the_volume_of_a_court_without_lines_begins_in_its_corner_too():
+    cameras = fixed()
+    spread = CameraCovariance([one.name for one in cameras], np.eye(28) * 1e-4)
+    bare = replace(COURT, lines_m=np.zeros((0, 4)), xyz=np.add(COURT.xyz, (1, 2, 0)))
+    assert quality.expected_volume(bare, cameras, spread) == quality.expected_volume(
+        COURT, cameras, spread
+    )
 
 
 def test_the_volume_is_a_grid_over_the_court():

@@ -1,9 +1,12 @@
 """Cameras found in drawn pictures of a court, with nothing known of them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from courtside.calibration.court_lines import floor_frames, search, views
+from courtside.calibration.click_proposals import proposals
+from courtside.calibration.court_lines import floor_frames, search, verdict, views
 from courtside.geometry import camera as cameras
 from fixtures.cameras import court_pictures
 
@@ -53,6 +56,16 @@ def test_lenses_are_tried_until_one_is_accepted_and_all_of_them_twice(court, mon
     first_round = [(barrel, 0) for barrel in search.BARREL]
     assert tried == [*first_round, (search.BARREL[0], 1), accepted]
     assert search.fault(found.candidates[0], court) == ""
+
+
+def test_a_court_without_lines_is_not_searched_for(court):
+    camera, bare = court_pictures.pair()[0], replace(court, lines_m=np.zeros((0, 4)))
+    image = court_pictures.draw(camera, court)
+    limits = {"search_share": 0.006, "max_sigma_px": 1.0}
+    judged, proposed = verdict.examine(image, bare, "a", lines="light", **limits)
+    assert (judged.outcome, judged.reason) == (verdict.NOT_FOUND, proposals.NO_LINES)
+    assert np.isnan(proposed.xy).all()
+    assert set(proposals.propose(camera, image, bare, search_px=6.0).reason) == {proposals.NO_LINES}
 
 
 def test_a_picture_without_lines_has_no_candidates(few, court):

@@ -33,6 +33,13 @@ def test_without_errors_everything_is_in_its_place(path):
     assert (made.net is None) == (court.net is None)
 
 
+def test_a_place_without_lines_keeps_its_points():
+    bare = dataclasses.replace(BADMINTON, lines_m=np.zeros((0, 4)), net=None)
+    made = paint_court(court=bare)
+    assert made.lines_m.shape == (0, 4)
+    np.testing.assert_array_equal(made.court_xyz, bare.xyz)
+
+
 def test_points_are_on_the_edges_that_they_name():
     made = paint_court()
     lines = made.lines_m

@@ -128,7 +128,7 @@ def _shift(
 ) -> float:
     """Return the error along an axis of the line whose edge or middle a place is on; else 0."""
     # A line may end at the far edge of another line.
-    slack = 0.6 * (high - low).min()
+    slack = 0.6 * (high - low).min(initial=np.inf)
     inside = (place >= low - slack) & (place <= high + slack)
     near = (across == axis) & inside.all(axis=1)
     if besides >= 0:

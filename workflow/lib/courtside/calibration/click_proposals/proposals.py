@@ -26,6 +26,7 @@ CAMERA_PX = 0.6  # of a point on the floor by the moved camera: paint is some mm
 HEIGHT_M = 0.03  # of one above the floor: lines on the floor determine heights badly
 OFF_SIGMA = 4.0  # an edge farther from where the camera expects it is another one
 PAINT_PX = 0.1  # error not in the fit of a profile: codec, neighbouring paint
+NO_LINES = "the court file has no painted lines"
 _Found = tuple[NDArray, NDArray, float, str]
 
 
@@ -77,6 +78,8 @@ def propose(
 def register(view: View, search_px: float) -> tuple[View, str]:
     """Move a view's camera so that the lines fit; also return why not, empty if it was moved."""
     line, ends = line_edges.stretches(view.court, STRETCH_M)
+    if not len(line):
+        return view, NO_LINES
     middle = ends.mean(axis=1)
     for share in SHARES:
         reach = max(share * search_px, LEAST_PX)

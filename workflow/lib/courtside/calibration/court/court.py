@@ -88,7 +88,7 @@ def read(path: StrPath) -> Court:
         edges=tuple(point["edges"] for point in content["points"].values()),
         sigma_m=np.where(is_raised(xyz), sigma_m["raised"], sigma_m["floor"]).astype(float),
         sets={name: tuple(members) for name, members in content["sets"].items()} | {"all": points},
-        lines_m=np.array(content["lines_m"], dtype=float),
+        lines_m=np.array(content["lines_m"], dtype=float).reshape(-1, 4),
         net=net and {key: np.array(value, dtype=float).tolist() for key, value in net.items()},
     )
     _check(path, court)

@@ -122,7 +122,8 @@ def stretches(court: Court, length_m: float) -> tuple[NDArray, NDArray]:
         n = max(1, round(float(np.linalg.norm(ends[1] - ends[0])) / length_m))
         cuts = ends[0] + np.linspace(0, 1, n + 1)[:, np.newaxis] * (ends[1] - ends[0])
         found += [(line, cuts[at : at + 2]) for at in range(n)]
-    return np.array([line for line, _ in found], dtype=int), np.array([ends for _, ends in found])
+    rows, ends_m = [line for line, _ in found], [ends for _, ends in found]
+    return np.array(rows, dtype=int), np.array(ends_m).reshape(-1, 2, 3)
 
 
 @dataclass(frozen=True)

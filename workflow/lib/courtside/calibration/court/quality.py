@@ -225,7 +225,7 @@ def expected_volume(
     no lines: their frame begins anywhere.
     """
     grid = volume(court)
-    if not len(court.lines_m):
+    if court.placed and not len(court.lines_m):
         grid[:, :2] += court.xyz[:, :2].min(axis=0)
     expected, share = expected_cm(cameras, covariance, grid)
     return {"expected_volume_rms_cm": _number(expected), "volume_seen": _number(share)}

@@ -71,6 +71,8 @@ def find(image: NDArray, court: Court, lines: str = "light", *, seed: int = 0) -
         image = cv2.resize(image, size, interpolation=cv2.INTER_AREA)
     seen = evidence.fields(ridges.find(image, lines))
     found: list[Candidate] = []
+    if not len(court.lines_m):
+        return Found(found, seen, image, scale)
     for draw, barrel in itertools.product(range(DRAWS), BARREL):
         found += _of_lens(seen, court, barrel, seed + draw)
         found = _different(found, court, seen.width)

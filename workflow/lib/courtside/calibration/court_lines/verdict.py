@@ -64,7 +64,7 @@ def judge(found: Found, court: Court, name: str, size: tuple[int, int], lines: s
     """
     symmetric = views.is_symmetric(court)
     if not found.candidates:
-        reason = "no lines that fit the court"
+        reason = "no lines that fit the court" if len(court.lines_m) else proposals.NO_LINES
         return Verdict(NOT_FOUND, reason, None, 0.0, 0.0, None, symmetric)
     paint = np.ones(len(found.candidates))
     if lines == "light":

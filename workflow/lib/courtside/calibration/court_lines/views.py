@@ -106,7 +106,7 @@ def is_symmetric(court: Court) -> bool:
     rows = np.column_stack([low, high])
     turned = np.column_stack([court.size_m - high, court.size_m - low])
     apart = np.abs(rows[:, None] - turned).max(axis=2)
-    return bool((apart.min(axis=1) < ALIKE_M).all())
+    return bool((apart.min(axis=1, initial=np.inf) < ALIKE_M).all())
 
 
 def half_turned(view: Views, court: Court) -> Views:
