@@ -388,7 +388,7 @@ def test_a_walk_in_the_dark_is_refused(tmp_path):
     assert not (tmp_path / "walk.csv").exists()
 
 
-def test_photos_without_a_focal_length_are_named_with_the_guess(tmp_path, caplog):
+def test_the_first_guess_of_a_focal_length_is_told(tmp_path, caplog):
     made = Session(tmp_path / "session")
     for path in made.static.values():
         cv2.imwrite(str(path), noise((160, 96)))
@@ -398,8 +398,8 @@ def test_photos_without_a_focal_length_are_named_with_the_guess(tmp_path, caplog
     pd.DataFrame([{**row, "reason": "", "photo": "a.jpg"}]).to_csv(made.frames["walk"], index=False)
     with caplog.at_level(logging.INFO, log.logger.name):
         made.extract(focal_factor=0.8)
-    messages = [line for line in caplog.messages if "no focal length" in line]
+    messages = [line for line in caplog.messages if "focal length" in line]
     assert messages == [
-        f"{group}: no focal length in its pictures, first guess 0.8 picture widths"
+        f"{group}: focal length not known, first guess 0.8 of its pictures' longer side"
         for group in (*CAMERAS, "walk")
     ]

@@ -20,8 +20,8 @@ def main(static_png, frames_csv, features_db, table_csv, *, cameras, walks, thre
     groups += [features.Group(walk, frames.of_walk(walk)) for walk in walks]
     counts, guessed = features.extract(features_db, root, groups, threads=threads, **options)
     for group in guessed:
-        guess = f"{options['focal_factor']:g} picture widths"
-        log.logger.info("%s: no focal length in its pictures, first guess %s", group, guess)
+        guess = f"{options['focal_factor']:g} of its pictures' longer side"
+        log.logger.info("%s: focal length not known, first guess %s", group, guess)
     table = pd.DataFrame(
         [(g.name, name, counts[name]) for g in groups for name in g.images],
         columns=["source", "name", "n_features"],

@@ -46,7 +46,8 @@ def extract(
     max_features : per image
     first_octave : 0: the picture as it is; -1: doubled first, which finds finer features at four
         times the cost
-    focal_factor : focal length to start from, in picture widths, of images without EXIF data
+    focal_factor : focal length to start from, as a share of the longer side, of images without EXIF
+        data: those of a study have none
     """
     empty = [group.name for group in groups if not group.images]
     if empty:
