@@ -181,7 +181,7 @@ def test_pictures_that_a_model_of_photos_lost_are_told(study, tmp_path, monkeypa
     assert run.lost_pictures(study) == []
     summary.write_text(json.dumps({"n_images": 12, "n_registered": 6}))
     (line,) = run.lost_pictures(study)
-    assert line.startswith("plain-tiny: 6 of 12 pictures are not in the model global-n12-o0:")
+    assert line.startswith("plain-tiny: 6 of 12 pictures not in the model global-n12-o0:")
 
 
 def test_photos_that_a_model_of_fixed_cameras_lost_are_named(study, tmp_path, monkeypatch):
@@ -199,10 +199,9 @@ def test_photos_that_a_model_of_fixed_cameras_lost_are_named(study, tmp_path, mo
         return run.lost_pictures(study)
 
     (line,) = told("06.jpg")
-    assert line.startswith(
-        f"plain-tiny: 1 of 13 pictures are not in the model {models[0].parts[-2]}"
-    )
-    assert "another place (06.jpg is frames/walk/000004.png), see" in line
+    assert line.startswith(f"plain-tiny: 1 of 13 pictures not in the model {models[0].parts[-2]}")
+    assert " (06.jpg is frames/walk/000004.png): too little overlap" in line
+    assert line.endswith("; add pictures in between, or leave it out")
     assert told("") == []  # a frame of a video
 
 

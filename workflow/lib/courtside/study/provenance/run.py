@@ -142,10 +142,10 @@ def lost_pictures(study: Study) -> list[str]:
             lost = _lost(session, files.read_json(path)) if path.is_file() else (0, 0, "")
             models.setdefault(lost, []).append(variant.name)
         found += [
-            f"{session.name}: {n_lost} of {n_images} pictures are not in the model {_few(names)}: "
-            f"they overlap too little with the others, or show another place{photos}, see "
+            f"{session.name}: {n_lost} of {n_images} pictures not in the model {_few(names)}"
+            f"{photos}: too little overlap with the others, or another place, see "
             f"{paths.MATCH_TABLE.format(session=session.name)}; add pictures in between, or leave "
-            "them out"
+            f"{'it' if n_lost == 1 else 'them'} out"
             for (n_lost, n_images, photos), names in models.items()
             if n_lost
         ]
