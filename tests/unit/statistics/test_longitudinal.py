@@ -148,6 +148,19 @@ def test_rows_carry_their_labels(tmp_path):
     assert rows["definition"].tolist()[:2] == ["mid-shoulders", ""]
 
 
+def test_parts_of_distances_are_not_compared(tmp_path):
+    table = pd.read_csv(summary(tmp_path / "a.csv"))
+    parts = [
+        f"neck_{kind}distance_{part}"
+        for kind in ("", "ground_")
+        for part in ("in_gaps", "measured")
+    ]
+    more = pd.concat([table, *(table[:1].assign(measure=part) for part in parts)])
+    more.to_csv(tmp_path / "a.csv", index=False)
+    rows = longitudinal.read([tmp_path / "a.csv"], [LABEL])
+    assert rows["measure"].tolist() == table["measure"].tolist()
+
+
 def test_a_take_named_twice_and_a_table_without_units_are_refused(tmp_path):
     path = summary(tmp_path / "a.csv")
     with pytest.raises(InputError, match="found two of session s, take t1"):

@@ -47,7 +47,7 @@ def test_the_figure_draws_what_the_table_says():
     assert len(drawing.axes) == 3 * 2
     titles = [axis.get_title() for axis in drawing.axes if axis.get_title()]
     flags = "80 % of flags are right,\n40 % of large errors flagged"
-    assert titles == [f"{w}: 90 % ellipsoids hold 85 %\n{flags}" for w in ("raw", "corrected")]
+    assert titles == [f"{w}\n90 % ellipsoids hold 85 %\n{flags}" for w in ("raw", "corrected")]
     (line,) = (line for line in drawing.axes[0].lines if line.get_label() == "knee")
     at = counting.LEVELS.index(90)
     assert np.ravel(line.get_ydata())[at] == 85

@@ -23,6 +23,7 @@ CHANGES = [
 ]  # fmt: skip
 NEEDED = ["person", "measure", "value", "unit"]
 KEY = ["session", "take", "model", "calibration", "subject", "measure"]
+PARTS = ("_distance_measured", "_distance_in_gaps")  # ends of the names of parts of a distance
 COLUMNS = [
     "session", "take", "model", "calibration", "subject", "measure", "value", "sigma", "unit",
     "definition",
@@ -203,8 +204,12 @@ def of_study(table: pd.DataFrame, ways: Sequence[Mapping[str, str]]) -> pd.DataF
 
 
 def labelled(table: pd.DataFrame, label: Mapping[str, str]) -> pd.DataFrame:
-    """Return the rows of one take as `COLUMNS`, with its labels; both arguments as for `read`."""
-    rows = table.rename(columns={"person": "subject"}).assign(**label)
+    """Return the rows of one take as `COLUMNS`, with its labels; both arguments as for `read`.
+
+    Without the parts of a distance: they tell which frames are missing.
+    """
+    rows = table[~table["measure"].str.endswith(PARTS)]
+    rows = rows.rename(columns={"person": "subject"}).assign(**label)
     rows = rows.reindex(columns=COLUMNS)
     rows["sigma"] = rows["sigma"].astype(float)
     for name in ("unit", "definition"):

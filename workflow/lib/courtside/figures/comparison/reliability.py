@@ -72,7 +72,8 @@ def _held(rows: pd.DataFrame) -> np.ndarray:
 
 def _title(rows: pd.DataFrame, stage: str) -> str:
     whole = rows[(rows["session"] == EVERY) & (rows["by"] == "all")].iloc[0]
-    words = f"{players.STAGES[stage]}: 90 % ellipsoids hold {whole['held_90_percent']:.0f} %"
+    held = f"90 % ellipsoids hold {whole['held_90_percent']:.0f} %"
+    words = f"{players.STAGES[stage]}\n{held}"
     precision, recall = (whole[f"{name}_percent"] for name in ("precision", "recall"))
     if np.isnan([precision, recall]).any():
         return words
