@@ -77,6 +77,12 @@ def test_frames_without_the_wrist_lower_the_quality():
     rows = detect.table(points, {"p1": "right"})
     assert rows.quality[0] < 0.8
     assert (rows.quality[1:] == 1).all()
+    whole = detect.table(strokes_made.take(seed=1)[0], {"p1": "right"})
+    assert (rows.speed_m_s <= whole.speed_m_s).all()
+    points.reason[0, np.abs(points.time_s - hit_s) < 0.2, wrist] = 5
+    rows = detect.table(points, {"p1": "right"})
+    assert np.isnan(rows.speed_m_s[0])
+    assert rows.speed_m_s[1:].equals(whole.speed_m_s[1:])
 
 
 def test_a_person_who_was_never_seen_has_no_strokes():

@@ -27,6 +27,19 @@ def test_lengths_are_shares_of_arm_and_trunk():
     assert found.rate_hz == pytest.approx(30)
 
 
+def test_at_the_edge_of_a_gap_a_wrist_has_no_speed():
+    points = carried(1.0)
+    at = strokes_made.JOINTS.index("left_wrist")
+    points.reason[0, 20:24, at] = 1
+    points.xyz[0, 20:24, at] = np.nan
+    points.xyz[0, [18, 19], at, 2] += [0.05, -0.05]  # the parabola through them bends
+    arm = signals.of_person(points, 0).arms["left"]
+    speed = arm.speed(30.0)
+    assert np.nanmax(arm.wrist.speed) > 2
+    assert np.flatnonzero(np.isnan(speed)).tolist() == [0, 1, *range(18, 26), 43, 44]
+    np.testing.assert_allclose(speed[[5, 10, 30, 40]], 1.0, atol=1e-5)
+
+
 def test_a_wrist_that_was_not_seen_is_not_measured():
     points = carried(1.0)
     at = strokes_made.JOINTS.index("left_wrist")

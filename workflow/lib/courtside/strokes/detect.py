@@ -27,6 +27,7 @@ APART_S = 1.0  # between two strokes of one player
 TRAVEL_S, TRAVEL_M_S = 1.0, 0.8  # before a low stroke the trunk has moved this fast,
 STOPPED = 0.4  # and then moves slower than this share of it
 REACHED_S = (0.3, 0.1)  # before and after the trunk stops: where the median reach is far
+LEAST_MEASURED = 0.5  # ASSUME: share of a swing's frames that shows its largest speed
 SWING_S, SWING_M_S = 0.3, 2.0  # around an overhead stroke the wrist moves this fast
 PEAK_S = 0.1  # around an extremum: what a parabola is fitted to
 # Of the extremum after the hit, and its standard deviation, seconds; from virtual strokes of the
@@ -183,6 +184,9 @@ def table(points: Keypoints3D, hand_of: Mapping[str, str | None]) -> pd.DataFram
 def _row(found: Signals, stroke: Stroke) -> dict[str, object]:
     arm, rate_hz = found.arms[stroke.hand], found.rate_hz
     half = round(SWING_S * rate_hz)
+    swing = _around(stroke.frame, half, half, len(arm.measured))
+    speed, quality = arm.speed(rate_hz)[swing], arm.measured[swing].mean()
+    is_known = quality >= LEAST_MEASURED and np.isfinite(speed).any()
     x, y = found.trunk.place[stroke.frame, :2]
     return {
         "time_s": stroke.time_s,
@@ -192,6 +196,6 @@ def _row(found: Signals, stroke: Stroke) -> dict[str, object]:
         "height_m": arm.wrist.place[stroke.frame, 2],
         "x_m": x,
         "y_m": y,
-        "speed_m_s": _most(arm.wrist.speed, stroke.frame, rate_hz, SWING_S, SWING_S),
-        "quality": arm.measured[_around(stroke.frame, half, half, len(arm.measured))].mean(),
+        "speed_m_s": np.nanmax(speed) if is_known else np.nan,
+        "quality": quality,
     }

@@ -29,12 +29,17 @@ class Fit:
         return np.linalg.norm(self.velocity, axis=1)
 
 
+def half_width(rate_hz: float, half_s: float) -> int:
+    """Return how many frames a fit uses on each side."""
+    return max(round(half_s * rate_hz), 2)
+
+
 def fit(path: NDArray, rate_hz: float, half_s: float) -> Fit:
     """Fit a parabola to the frames within `half_s` of each frame of a path (T, n)."""
     if len(path) < FEWEST:
         nothing = np.full(path.shape, np.nan)
         return Fit(nothing, nothing, nothing, nothing[:, 0])
-    half = max(round(half_s * rate_hz), 2)
+    half = half_width(rate_hz, half_s)
     lags = np.arange(-half, half + 1) / rate_hz
     rows = np.stack([np.ones_like(lags), lags, lags**2 / 2], axis=1)
     padded = np.pad(path, ((half, half), (0, 0)), constant_values=np.nan)

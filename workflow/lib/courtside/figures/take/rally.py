@@ -55,7 +55,7 @@ def _draw_person(axis: Axes, own: pd.DataFrame, found: signals.Signals) -> None:
     axis.plot(found.time_s, found.trunk.speed, color=style.MIDDLE, linewidth=0.9, label="trunk")
     hand = own.hand.iloc[0] if len(own) else None
     if hand:
-        speed = found.arms[hand].wrist.speed
+        speed = found.arms[hand].speed(found.rate_hz)
         axis.plot(found.time_s, speed, color="#bbbbbb", linewidth=0.7, label="wrist that plays")
     for stroke in own.itertuples():
         words, colour = KINDS[bool(stroke.overhead)]

@@ -32,7 +32,7 @@ def table(strokes: pd.DataFrame, points: Keypoints3D) -> pd.DataFrame:
         found = signals.of_person(points, at)
         for number, stroke in enumerate(own.itertuples(), 1):
             arm = found.arms[stroke.hand]
-            lines = (arm.reach * found.size_m, arm.wrist.speed, found.trunk.speed)
+            lines = (arm.reach * found.size_m, arm.speed(found.rate_hz), found.trunk.speed)
             values = {
                 name: np.interp(stroke.time_s + phase, found.time_s, line, np.nan, np.nan)
                 for name, line in zip(LINES, lines, strict=True)
