@@ -107,6 +107,6 @@ def test_methods_tell_of_clicks_as_the_quality_of_the_cameras_does(study, tmp_pa
 
 
 def test_a_report_without_takes_promises_no_error_bars(study):
-    assert "Every number has a 90 % error bar" in report.build(study)
+    assert "Numbers have 90 % error bars" in report.build(study)
     study["sessions"][0]["takes"] = []
     assert "error bar" not in report.build(study).partition("<main>")[0]

@@ -229,7 +229,7 @@ SHOWN = {
         "walk + 18 clicks": "{sfm18}",
         "perfect cameras": "{perfect}",
         "walk + 18 clicks: error divided by that of perfect cameras": "{sfm18_ratio}",
-        "runs, failed": "{sfm18.n}, {sfm18.n_failed}",
+        "runs; failed: 8 known points, walk": "{sfm18.n}; {known8.n_failed}, {sfm18.n_failed}",
     },
     "published-walk": {
         "session: calibrated from": "{row}",

@@ -33,7 +33,7 @@ def read(pairs_csv: StrPath, table_csv: StrPath) -> tuple[pd.DataFrame, pd.DataF
 def choose(table: pd.DataFrame, count: int = SHOWN) -> list[str]:
     """Choose measures of a table of `agreement.compare`, evenly from best to worst agreement."""
     known = table[table["verdict"].isin(COLOURS)]
-    ratio = np.maximum(-known["lower"], known["upper"]) / known["detectable"]
+    ratio = (np.maximum(-known["lower"], known["upper"]) / known["detectable"]).fillna(0)  # 0 / 0
     order = known.assign(ratio=ratio).sort_values("ratio", kind="stable")["measure"]
     at = np.unique(np.linspace(0, len(order) - 1, min(count, len(order))).round().astype(int))
     return order.iloc[at].tolist()
