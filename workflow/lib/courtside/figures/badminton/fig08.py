@@ -130,12 +130,16 @@ def draw(numbers: pd.DataFrame, title: str, layout: str = "") -> Figure:
 
 
 def _sizes(numbers: pd.DataFrame) -> str:
-    """Return the number of trials behind a mark, in words."""
-    of = calibration.pick(numbers, method="sfm", quantity="xy_cm")
-    total = (of["n"] + of["n_failed"]).astype(int)
-    if of.empty:
-        return "no trials"
-    return f"{' to '.join(map(str, sorted({total.min(), total.max()})))} trials per mark"
+    """Return the number of trials behind a mark, in words: of walks, and of points alone."""
+    of = numbers[numbers["quantity"] == "xy_cm"]
+    words = []
+    for what, methods in {"walks": ["sfm"], "points alone (strong)": ["known", "dlt"]}.items():
+        mine = of[of["method"].isin(methods)]
+        total = (mine["n"] + mine["n_failed"]).astype(int)
+        if len(mine):
+            count = " to ".join(map(str, sorted({total.min(), total.max()})))
+            words.append(f"{what}: {count} trials per mark")
+    return ", ".join(words) or "no trials"
 
 
 def _draw_errors(axis: Axes, numbers: pd.DataFrame, quantity: str) -> None:

@@ -7,7 +7,6 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
 from courtside.calibration.court.court import Court
@@ -76,9 +75,7 @@ def _draw_plan(axis: Axes, court: Court) -> None:
     for words in (word for word in (*LEVELS, FRAME) if word in marks):
         colour, marker = marks[words]
         axis.plot([], [], marker, color=colour, markersize=4, label=words)
-    inches = axis.get_figure(root=True).dpi_scale_trans
-    below = axis.transAxes + ScaledTranslation(0, -BELOW_MM / style.MM_PER_INCH, inches)
-    axis.legend(loc="upper center", bbox_to_anchor=(0.5, 0), bbox_transform=below, ncols=1)
+    style.legend_below(axis, BELOW_MM, ncols=1)
     axis.set_title(f"{court.description}\nlines {1000 * court.line_width_m:.0f} mm, to scale")
 
 

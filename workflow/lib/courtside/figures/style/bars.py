@@ -6,7 +6,7 @@ import pandas as pd
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogFormatter
 from numpy.typing import NDArray
 
 
@@ -55,11 +55,11 @@ def ticks_at(axis: Axes, values: Sequence[float]) -> None:
 
 
 def plain_log(axis: Axes, which: str = "y") -> None:
-    """Make the y or x axis logarithmic, with numbers written out."""
+    """Make the y or x axis logarithmic, with numbers written out; few decades have more numbers."""
     axis.set(**{f"{which}scale": "log"})
     scale = axis.yaxis if which == "y" else axis.xaxis
     scale.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    scale.set_minor_formatter(NullFormatter())
+    scale.set_minor_formatter(LogFormatter(minor_thresholds=(1, 0.4)))
 
 
 def name_rows(axis: Axes, names: Sequence[str]) -> None:

@@ -1,10 +1,14 @@
 """One look for all figures, and saving them with the numbers drawn."""
 
+from typing import Any
+
 import matplotlib
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.transforms import ScaledTranslation
 
 from courtside.study.errors import StrPath
 from courtside.study.execution.files import atomic
@@ -58,6 +62,13 @@ def figure(height_mm: float) -> Figure:
     matplotlib.rcParams.update(SETTINGS)
     size = (WIDTH_MM / MM_PER_INCH, height_mm / MM_PER_INCH)
     return Figure(figsize=size, dpi=DOTS_PER_INCH, layout=RoundedLayout())
+
+
+def legend_below(axis: Axes, below_mm: float, **look: Any) -> None:
+    """Draw a legend so far below the panel, whatever its height: under ticks and label."""
+    inches = axis.get_figure(root=True).dpi_scale_trans
+    below = axis.transAxes + ScaledTranslation(0, -below_mm / MM_PER_INCH, inches)
+    axis.legend(loc="upper center", bbox_to_anchor=(0.5, 0), bbox_transform=below, **look)
 
 
 def side_colour(*joints: str) -> str:

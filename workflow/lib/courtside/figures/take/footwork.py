@@ -10,6 +10,7 @@ from courtside.figures.style import court_plan, style
 from courtside.records.footwork import FEET, Contacts
 
 ROW_MM = 105
+BELOW_MM = 10.5  # from the court to the legend, for the numbers and the label of the axis
 ROOM_M = 0.5  # around the feet
 COLOURS = {"left": style.LEFT, "right": style.RIGHT}
 MARKS = {"stand": ".", "step": "o", "lunge": "D", "split_step": "v", "jump": "^"}
@@ -56,7 +57,7 @@ def _draw_places(axis: Axes, own: pd.DataFrame, court: Court | None, person: str
     axis.set(xlabel="x (m)", ylabel="y (m)")
     axis.set_aspect("equal", adjustable="box" if court else "datalim")
     if len(own):
-        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=5, fontsize=7)
+        style.legend_below(axis, BELOW_MM, ncols=5, fontsize=7)
     if len(own) and court is not None:
         axis.set_xlim(min(0, own.x_m.min()) - ROOM_M, max(court.size_m[0], own.x_m.max()) + ROOM_M)
         axis.set_ylim(min(0, own.y_m.min()) - ROOM_M, own.y_m.max() + 2 * ROOM_M)
@@ -75,7 +76,8 @@ def _draw_stances(axis: Axes, own: pd.DataFrame, events: pd.DataFrame) -> None:
     shown = events[events.event != "step"]
     look: dict = {"fontsize": 6, "rotation": 90, "ha": "center", "va": "bottom"}
     for event in shown.itertuples():
-        axis.annotate(event.event.replace("_", " "), (event.stop_s, 1.45), **look)
+        colour = COLOURS.get(event.foot, "black")  # of both feet: black
+        axis.annotate(event.event.replace("_", " "), (event.stop_s, 1.45), color=colour, **look)
     axis.set_yticks(range(len(FEET)), [f"{foot} foot" for foot in reversed(FEET)])
     axis.set_ylim(-0.6, 2.3 if len(shown) else 1.6)
     axis.tick_params(labelbottom=False)

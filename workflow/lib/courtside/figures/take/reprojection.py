@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from courtside.figures.style import bars, style
 from courtside.records.keypoints.keypoints import Keypoints3D
 
-SMALLEST_PX = 0.5  # where the logarithmic axis begins
+SMALLEST_PX = 0.1  # where the logarithmic axis begins
 
 
 def table(points: Keypoints3D) -> pd.DataFrame:

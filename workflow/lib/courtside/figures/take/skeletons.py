@@ -17,6 +17,7 @@ from courtside.records.keypoints.skeleton import Skeleton
 PATHS = ("left_wrist", "right_wrist", "left_ankle", "right_ankle")
 PERCENTILES = (0.5, 99.5)  # of the joints' positions, shown: without gross outliers
 ARROW_M = 0.6
+BELOW_MM = 10.5  # from the panel to the legend, for the numbers and the label of the axis
 N_POSES = 5
 DEEP_M = 0.5  # the box of people on the floor begins so far below it; others are not on z = 0
 
@@ -110,7 +111,7 @@ def _draw_above(axis: Axes, points: Keypoints3D, cameras: list[Camera], skeleton
         )
     for label, colour in (("left", style.LEFT), ("right", style.RIGHT), ("middle", style.MIDDLE)):
         axis.plot([], [], color=colour, label=label)
-    axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=3)
+    style.legend_below(axis, BELOW_MM, ncols=3)
     axis.set(xlabel="x (m)", ylabel="y (m)", title="From above, with the cameras")
     axis.set_aspect("equal", adjustable="datalim")
     axis.margins(0.12)
