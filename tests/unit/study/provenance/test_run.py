@@ -217,7 +217,47 @@ def test_what_is_left_out_for_want_of_consent_is_told_with_what_remains(
     assert run.left_out(study) == [f"walk-4cams-tiny: {line}"]
     made = "results/walk-4cams-tiny/takes/balancing"
     (tmp_path / made).mkdir(parents=True)
-    assert run.left_out(study)[1] == f"walk-4cams-tiny: {made} was made before: delete it"
+    pages = "results/walk-4cams-tiny/pages"
+    (line,) = run.left_out(study)[1:]
+    assert line == (
+        f"walk-4cams-tiny: {made} was made before: delete it, {pages} and results/report.html, "
+        "which may show it"
+    )
+
+
+def test_takes_that_a_session_no_longer_has_are_told(study, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    study = replace(study, sessions={"plain-tiny": study.sessions["plain-tiny"]})
+    Path("results/plain-tiny/takes/old").mkdir(parents=True)
+    (line,) = run.left_out(study)
+    assert line.startswith("plain-tiny: results/plain-tiny/takes/old belongs to no take of")
+
+
+def test_files_that_persons_no_longer_agree_to_are_listed(study, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    session = study.sessions["walk-4cams-tiny"]
+    only = {name: replace(one, consent=("analysis",)) for name, one in session.subjects.items()}
+    study = replace(study, sessions={"walk-4cams-tiny": replace(session, subjects=only)})
+    n_told = len(run.left_out(study))
+    take = Path("results/walk-4cams-tiny/takes/balancing")
+    way = "file/all-robust/blazepose-full"
+    gone = [take / "pose3d" / f"{way}.p1.trc", take / "pages" / "people.html"]
+    gone += [take / "figures" / f"overlay.{way.replace('/', '.')}.png"]
+    gone += [take / "videos" / f"{way}.cam01.mp4"]
+    allowed = [take / "pose3d" / f"{way}.npz", take / "pages" / "viewer.blazepose-full.html"]
+    allowed += [take / "figures" / f"skeletons.{way.replace('/', '.')}.png"]
+    for path in (*gone, *allowed):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
+    *others, line = run.left_out(study)
+    assert len(others) == n_told
+    assert line.startswith("walk-4cams-tiny: 4 files that persons have not agreed to were made")
+    listed = Path("results/run/without_consent/walk-4cams-tiny.txt")
+    assert listed.read_text().splitlines() == sorted(path.as_posix() for path in gone)
+    for path in gone:
+        path.unlink()
+    assert len(run.left_out(study)) == n_told
+    assert not listed.exists()
 
 
 def test_takes_of_this_run_are_told_with_their_verdicts(tmp_path, monkeypatch):

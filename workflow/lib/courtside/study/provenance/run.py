@@ -13,6 +13,7 @@ from courtside.study.errors import InputError
 from courtside.study.execution import files, summary
 from courtside.study.execution import verdicts as verdict_files
 from courtside.study.provenance import environment, provenance
+from courtside.study.targets import remains
 from courtside.study.targets.calibration import warning_files
 
 N_WARNINGS = 3  # of one calibration, on the terminal
@@ -181,15 +182,30 @@ def warnings(study: Study) -> list[str]:
 
 
 def left_out(study: Study) -> list[str]:
-    """Return one line for each thing that is not made for want of consent, by session."""
+    """Return a line for each thing that is not made for want of consent, and on what remains."""
+    found = []
+    for session in study.sessions.values():
+        found += [f"{session.name}: {line}" for line in consent.left_out(session)]
+        found += [f"{session.name}: {line}" for line in _of_no_take(session)]
+        Path(paths.WITHOUT_CONSENT.format(session=session.name)).unlink(missing_ok=True)
+    for name, kept in remains.without_consent(study).items():
+        listed = Path(paths.WITHOUT_CONSENT.format(session=name))
+        listed.parent.mkdir(parents=True, exist_ok=True)
+        with files.atomic(listed) as temporary:
+            temporary.write_text("\n".join(kept) + "\n", encoding="utf-8")
+        found.append(
+            f"{name}: {len(kept)} files that persons have not agreed to were made before, such as "
+            f"{_few(kept)}: delete all that {listed.as_posix()} lists"
+        )
+    return found
+
+
+def _of_no_take(session: Session) -> list[str]:
+    """Return a line for each take that was measured before somebody withdrew, or it was removed."""
+    pages = Path(paths.QUALITY_PAGE.format(session=session.name)).parent.as_posix()
     return [
-        f"{session.name}: {line}"
-        for session in study.sessions.values()
-        for line in consent.left_out(session) + remains(session)
+        f"{folder} was made before: delete it, {pages} and {paths.REPORT}, which may show it"
+        if is_withheld
+        else f"{folder} belongs to no take of the session: delete it, or name the take again"
+        for folder, is_withheld in remains.of_takes(session).items()
     ]
-
-
-def remains(session: Session) -> list[str]:
-    """Return one line for each take that was measured before somebody in it withdrew."""
-    known = [paths.TAKE.format(session=session.name, take=take) for take in session.withheld]
-    return [f"{folder} was made before: delete it" for folder in known if Path(folder).exists()]

@@ -5,9 +5,10 @@ takes: exports, figures, measures and errors of each take
 devices: figures and errors of takes with devices of their own
 together: figures and tables of several takes
 pages: viewers, clicking pages, videos with skeletons, plans
+remains: results of takes that are no more, or that persons no longer agree to
 numbers: tables that the numbers of the documents come from
 """
 
-from courtside.study.targets import calibration, devices, numbers, pages, takes, together
+from courtside.study.targets import calibration, devices, numbers, pages, remains, takes, together
 
-__all__ = ["calibration", "devices", "numbers", "pages", "takes", "together"]
+__all__ = ["calibration", "devices", "numbers", "pages", "remains", "takes", "together"]

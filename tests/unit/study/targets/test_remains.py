@@ -1,0 +1,34 @@
+"""Results that the session files no longer ask for: found on the disk, by session."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from courtside.study.targets import remains, takes
+
+
+def test_folders_of_takes_that_are_not_measured_are_found(study, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    session = study.sessions["players-tiny"]
+    for take in (*session.takes, "old", "hers"):
+        (Path("results/players-tiny/takes") / take).mkdir(parents=True)
+    session = replace(session, withheld={"hers": ("p1",)})
+    folder = "results/players-tiny/takes"
+    assert remains.of_takes(session) == {f"{folder}/hers": True, f"{folder}/old": False}
+    assert remains.of_takes(study.sessions["plain-tiny"]) == {}
+
+
+def test_only_files_of_persons_who_refuse_are_found(study, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    made = takes.every_export(study)
+    for path in map(Path, made):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
+    session = study.sessions["walk-4cams-tiny"]
+    assert not any(name != "walk-4cams-tiny" for name in remains.without_consent(study))
+    person = next(iter(session.subjects))
+    refused = {person: replace(session.subjects[person], consent=("analysis", "pictures"))}
+    other = replace(session, subjects={**session.subjects, **refused})
+    study = replace(study, sessions={**study.sessions, "walk-4cams-tiny": other})
+    of_session = [path for path in made if path.startswith("results/walk-4cams-tiny/")]
+    found = remains.without_consent(study)["walk-4cams-tiny"]
+    assert found == sorted(path for path in of_session if f".{person}." in path)
