@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 from courtside.geometry import camera as camera_models
 from courtside.quality import seen as views
 from courtside.quality.seen import Seen
+from courtside.study.execution.verdicts import CALIBRATION
 
-DETECTION, IDENTITY, CLOCK, CALIBRATION = "detection", "identity", "clock", "calibration"
+DETECTION, IDENTITY, CLOCK = "detection", "identity", "clock"
 EXCHANGED, UNKNOWN = "exchanged", "unknown"
 # ASSUME: usual takes have 0.012 to 0.03 (`verdict.LIMITS`); another body is 0.3 away and more.
 FITS = 0.08

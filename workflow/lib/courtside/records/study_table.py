@@ -8,7 +8,7 @@ import pandas as pd
 from courtside.records import tables
 from courtside.study.errors import StrPath
 from courtside.study.execution import files, verdicts
-from courtside.study.execution.verdicts import ALL, WAY, WHOLE
+from courtside.study.execution.verdicts import ALL, CALIBRATION, ORDER, WAY, WHOLE
 
 KEY = ("session", "take", *WAY)
 MEASURED = ("person", "measure", "value", "sigma", "sigma_camera", "unit", "n", "definition")
@@ -42,14 +42,19 @@ def of_take(
 
 
 def _of_persons(quality_csv: StrPath, labels: Mapping[str, str]) -> dict[str, str]:
-    """Return the verdict on each person, measured in one way."""
-    return {
-        row["person"]: row["verdict"]
+    """Return the verdict on each person, measured in one way: no better than its calibration's."""
+    whole = [
+        row
         for row in verdicts.read(quality_csv)
         if row["measure"] == WHOLE
         and row["camera"] == ALL
-        and row["person"] != ALL
         and all(row[key] == labels[key] for key in WAY)
+    ]
+    least = [row["verdict"] for row in whole if row["cause"] == CALIBRATION]
+    return {
+        row["person"]: max([row["verdict"], *least], key=ORDER.index)
+        for row in whole
+        if row["person"] != ALL
     }
 
 
