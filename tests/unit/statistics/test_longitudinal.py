@@ -148,13 +148,14 @@ def test_rows_carry_their_labels(tmp_path):
     assert rows["definition"].tolist()[:2] == ["mid-shoulders", ""]
 
 
-def test_parts_of_distances_are_not_compared(tmp_path):
+def test_what_tells_of_the_record_is_not_compared(tmp_path):
     table = pd.read_csv(summary(tmp_path / "a.csv"))
     parts = [
         f"neck_{kind}distance_{part}"
         for kind in ("", "ground_")
         for part in ("in_gaps", "measured")
     ]
+    parts += ["neck_distance_noise_bias", "neck_noise_memory"]
     more = pd.concat([table, *(table[:1].assign(measure=part) for part in parts)])
     more.to_csv(tmp_path / "a.csv", index=False)
     rows = longitudinal.read([tmp_path / "a.csv"], [LABEL])

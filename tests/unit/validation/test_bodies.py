@@ -1,5 +1,7 @@
 """A mass in pounds is told before any job."""
 
+from dataclasses import replace
+
 import pytest
 
 from courtside.study.configuration.sessions import Subject
@@ -20,6 +22,17 @@ from courtside.validation import bodies
 def test_a_mass_that_does_not_go_with_the_height_is_told(mass_kg, height_m, words):
     said = list(bodies.remarks({"p": Subject(height_m=height_m, mass_kg=mass_kg)}))
     assert said == ([f"subjects.p: {words}"] if words else [])
+
+
+def test_other_consent_of_a_person_in_another_session_is_told(hall):
+    one = hall.session()
+    alike = replace(one, name="other")
+    assert list(bodies.unlike([one, alike])) == []
+    less = replace(alike, subjects={"p1": replace(one.subjects["p1"], consent=("analysis",))})
+    (line,) = bodies.unlike([one, less])
+    assert line.startswith(
+        "p1: consent differs between sessions (hall: [analysis, pictures], other: [analysis])"
+    )
 
 
 def test_a_remark_on_a_body_names_the_file(hall):

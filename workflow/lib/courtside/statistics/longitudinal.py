@@ -23,7 +23,11 @@ CHANGES = [
 ]  # fmt: skip
 NEEDED = ["person", "measure", "value", "unit"]
 KEY = ["session", "take", "model", "calibration", "subject", "measure"]
-PARTS = ("_distance_measured", "_distance_in_gaps")  # ends of the names of parts of a distance
+# Ends of the names of measures that tell of frames and their noise, not of movement.
+OF_THE_RECORD = (
+    "_distance_measured", "_distance_in_gaps", "_noise_bias", "_noise_bias_most", "_noise_memory",
+    "_noise_white_share", "_noise_scale",
+)  # fmt: skip
 COLUMNS = [
     "session", "take", "model", "calibration", "subject", "measure", "value", "sigma", "unit",
     "definition",
@@ -206,9 +210,9 @@ def of_study(table: pd.DataFrame, ways: Sequence[Mapping[str, str]]) -> pd.DataF
 def labelled(table: pd.DataFrame, label: Mapping[str, str]) -> pd.DataFrame:
     """Return the rows of one take as `COLUMNS`, with its labels; both arguments as for `read`.
 
-    Without the parts of a distance: they tell which frames are missing.
+    Without the measures that tell of the record, such as the noise of a path.
     """
-    rows = table[~table["measure"].str.endswith(PARTS)]
+    rows = table[~table["measure"].str.endswith(OF_THE_RECORD)]
     rows = rows.rename(columns={"person": "subject"}).assign(**label)
     rows = rows.reindex(columns=COLUMNS)
     rows["sigma"] = rows["sigma"].astype(float)

@@ -1,12 +1,30 @@
-"""Bodies that a session states: a mass that does not go with the height."""
+"""Persons that sessions state: a mass that does not go with the height, other words elsewhere."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
-from courtside.study.configuration.sessions import Subject
+from courtside.study.configuration.sessions import Session, Subject
 
 KG_OF_LB = 0.45359237
 # ASSUME: kg/m2 of a body; in pounds, a person of 18 or more kg/m2 seems to have 40 or more.
 BODY_KG_M2 = (12.0, 40.0)
+
+
+def unlike(sessions: Iterable[Session]) -> Iterator[str]:
+    """Yield one line for each person of several sessions who agrees to less in one of them.
+
+    The same pseudonym is the same person: sessions are compared by it.
+    """
+    stated: dict[str, dict[str, tuple[str, ...]]] = {}
+    for session in sessions:
+        for name, person in session.subjects.items():
+            stated.setdefault(name, {})[session.name] = person.consent
+    for name, words in stated.items():
+        if len({frozenset(each) for each in words.values()}) > 1:
+            each = ", ".join(f"{session}: [{', '.join(word)}]" for session, word in words.items())
+            yield (
+                f"{name}: consent differs between sessions ({each}): who withdraws must be changed "
+                "in the file of each session"
+            )
 
 
 def remarks(subjects: Mapping[str, Subject]) -> Iterator[str]:

@@ -39,6 +39,7 @@ def check(study: Study, remembered: Remembered) -> list[str]:
             found = _Session(session, study, remembered)
             faults += found.faults()
             remarks += found.remarks()
+    remarks += bodies.unlike(one for one in study.sessions.values() if not one.virtual)
     remembered.save()
     if faults:
         raise InputError(*dict.fromkeys(faults))
