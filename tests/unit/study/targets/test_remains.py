@@ -17,6 +17,19 @@ def test_folders_of_takes_that_are_not_measured_are_found(study, tmp_path, monke
     assert remains.of_takes(study.sessions["plain-tiny"]) == {}
 
 
+def test_files_of_persons_whom_a_take_no_longer_has_are_found(study, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    session = study.sessions["walk-4cams-tiny"]
+    take = "results/walk-4cams-tiny/takes/balancing"
+    for name in ("p1.trc", "old.trc", "old.osim", "npz", "covariance.csv"):
+        path = Path(take) / "pose3d" / "file" / "all-robust" / f"blazepose-full.{name}"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
+    (Path(take) / "motion" / "file").mkdir(parents=True)
+    (Path(take) / "motion" / "file" / "blazepose-full.older.glb").touch()
+    assert remains.of_nobody(session) == {take: ["old", "older"]}
+
+
 def test_only_files_of_persons_who_refuse_are_found(study, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     made = takes.every_export(study)

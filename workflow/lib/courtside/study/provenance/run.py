@@ -201,9 +201,13 @@ def left_out(study: Study) -> list[str]:
 
 
 def _of_no_take(session: Session) -> list[str]:
-    """Return a line for each take that was measured before somebody withdrew, or it was removed."""
+    """Return a line for each take with results of takes or persons that are no more."""
     pages = Path(paths.QUALITY_PAGE.format(session=session.name)).parent.as_posix()
-    return [
+    gone = [
+        f"{folder} has files of {', '.join(persons)}, whom this take does not have: delete them"
+        for folder, persons in remains.of_nobody(session).items()
+    ]
+    return gone + [
         f"{folder} was made before: delete it, {pages} and {paths.REPORT}, which may show it"
         if is_withheld
         else f"{folder} belongs to no take of the session: delete it, or name the take again"

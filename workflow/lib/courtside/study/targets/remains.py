@@ -10,6 +10,7 @@ from courtside.study.configuration.sessions import Session, Study
 from courtside.study.targets import devices, pages, takes
 
 WORDS = ("export", "pictures")
+OF_A_PERSON = (".trc", ".c3d", ".bvh", ".glb", ".mot", ".osim")  # after the model and the person
 
 
 def of_takes(session: Session) -> dict[str, bool]:
@@ -24,6 +25,20 @@ def of_takes(session: Session) -> dict[str, bool]:
         for each in there
         if each.name not in session.takes
     }
+
+
+def of_nobody(session: Session) -> dict[str, list[str]]:
+    """Return, by folder of a take, the persons of exported files there whom the take does not have.
+
+    The files of a person who was renamed stay beside the new ones.
+    """
+    found = {}
+    for name, take in session.takes.items():
+        folder = Path(paths.TAKE.format(session=session.name, take=name))
+        every = [*folder.glob("pose3d*/**/*"), *folder.glob("motion/**/*")]
+        persons = {path.name.split(".")[-2] for path in every if path.suffix in OF_A_PERSON}
+        found[folder.as_posix()] = sorted(persons - set(take.subjects))
+    return {folder: persons for folder, persons in found.items() if persons}
 
 
 def without_consent(study: Study) -> dict[str, list[str]]:
