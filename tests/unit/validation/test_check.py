@@ -1,6 +1,5 @@
 """Mistakes with recordings that users make: each gives one line that names file, camera or take."""
 
-import os
 import re
 import shutil
 from importlib import import_module
@@ -228,19 +227,6 @@ def test_walks_and_devices_are_looked_at(hall):
     hall.content["takes"]["lob"]["devices"] = {"webcam": {"file": str(webcam)}}
     faults, _ = hall.said()
     assert [line.split(":")[0] for line in faults] == [str(walk), str(webcam)]
-
-
-def test_a_recording_exchanged_for_an_older_one_is_told(hall):
-    assert hall.said() == ([], [])
-    path = hall.video("left")
-    date_s = path.stat().st_mtime - 100
-    hall.film("left", start=3)
-    os.utime(path, (date_s, date_s))
-    line = hall.fault()
-    assert line.startswith(f"{path}: expected the file of the last run, or a newer one, found")
-    assert line.endswith(f"touch {path}")
-    path.touch()
-    assert hall.said() == ([], [])
 
 
 def test_photos_of_a_walk_are_decoded(hall):

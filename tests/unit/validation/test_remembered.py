@@ -1,7 +1,6 @@
 """Looks are remembered while a file is unchanged; a damaged memory costs time only."""
 
 import json
-import os
 
 import numpy as np
 import pytest
@@ -63,26 +62,6 @@ def test_a_folder_is_read_again_if_a_file_in_it_changes(tmp_path):
     assert [look(), look()] == [2, 2]
     (folder / "depth" / "0.png").write_text("new")
     assert [look(), look()] == [3, 3]
-
-
-def test_a_file_exchanged_for_an_older_one_is_told_until_its_date_is_newer(tmp_path):
-    film, kept = tmp_path / "a.mp4", tmp_path / "looks.json"
-
-    def is_set_back(content, date_s):
-        film.write_text(content)
-        os.utime(film, (date_s, date_s))
-        looks = Remembered(kept)
-        found = looks.is_set_back(film)
-        looks.save()
-        return found
-
-    assert not is_set_back("first", 1000)
-    assert not is_set_back("first", 1000)
-    assert is_set_back("other one", 900)
-    assert is_set_back("other one", 900)
-    assert is_set_back("of the same date", 1000)
-    assert not is_set_back("other one", 2000)
-    assert not is_set_back("newest", 3000)
 
 
 def test_faults_are_not_remembered(tmp_path):

@@ -255,17 +255,6 @@ def test_recordings_are_those_of_the_user_wherever_they_are():
     assert "a.png" in found and "results/external/b.mp4" not in found
 
 
-def test_inputs_are_recordings_and_a_user_s_own_tables():
-    found = session(
-        walks={"w": "photos"},
-        calibration_file="results/external/calib.toml",
-        court_points="clicks.csv",
-        static_points="points.csv",
-    )
-    assert found.inputs() == [*found.recordings(), "clicks.csv", "points.csv"]
-    assert replace(found, calibration_file="calib.toml").inputs()[-3] == "calib.toml"
-
-
 def test_a_device_says_whether_it_is_a_suit_and_has_a_skeleton():
     found = {kind: sessions.Device(kind, "f", "p1") for kind in ("inertial", "nuitrack", "rgbd")}
     assert [kind for kind, device in found.items() if device.is_suit] == ["inertial"]

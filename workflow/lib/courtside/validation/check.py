@@ -118,7 +118,6 @@ class _Session:
         file = self._session.file
         yield from self._unreadable
         yield from self._devices
-        yield from self._set_back()
         for line in calibrated.faults(self._session, self._sizes()):
             yield line if line.startswith(tuple(self._paths())) else f"{file}: {line}"
         for name, take in self._session.takes.items():
@@ -128,17 +127,6 @@ class _Session:
         shared = [*self._shared_files()]
         yield from (f"{file}: {line}" for line in shared or self._board_faults())
         yield from (f"{file}: {line}" for line in self._few_pictures())
-
-    def _set_back(self) -> Iterator[str]:
-        """Yield the files that were exchanged for older ones: results of the others would stay."""
-        for path in filter(is_there, map(Path, self._session.inputs())):
-            for file in sorted(path.iterdir()) if path.is_dir() else [path]:
-                if file.is_file() and self._remembered.is_set_back(file):
-                    yield (
-                        f"{file.as_posix()}: expected the file of the last run, or a newer one, "
-                        "found another one of an older date: results of the last one would stay; "
-                        f"give it the date of today: touch {file.as_posix()}"
-                    )
 
     def remarks(self) -> Iterator[str]:
         """Yield what is worth a look."""

@@ -14,21 +14,19 @@ from courtside.study.errors import DAMAGED, InputError, StrPath
 from courtside.study.execution import files
 from courtside.video.glance import SMALL_PX, Glance, glance
 
-FORMAT = 3  # of the file: another one is not used
+FORMAT = 2  # of the file: another one is not used
 
 
 class Remembered:
     """Quick looks at recordings by path, size and date.
 
-    A missing or damaged JSON file `path` costs time only. Faults are not kept. The dates of files
-    are kept by path alone, to tell a file that was exchanged.
+    A missing or damaged JSON file `path` costs time only. Faults are not kept.
     """
 
     def __init__(self, path: StrPath) -> None:
         self._path = Path(path)
-        self._kept, self._dates = (_read(self._path, part) for part in ("looks", "dates"))
+        self._kept = _read(self._path)
         self._used: dict[str, Any] = {}
-        self._dated: dict[str, Any] = {}
 
     def look(self, path: StrPath, *, stop_s: float | None = None) -> Glance:
         """Look at a video or a photo, or remember it; raises as `glance`."""
@@ -51,25 +49,11 @@ class Remembered:
             read()
         self._used[key] = True
 
-    def is_set_back(self, path: StrPath) -> bool:
-        """Return whether a file is another one than at the last run, with an older date.
-
-        It stays so until its date is newer: a build by dates does not see such a change.
-        """
-        state = Path(path).stat()
-        found, key = [state.st_size, state.st_mtime_ns], str(Path(path).absolute())
-        last = self._dates.get(key)
-        is_older = last is not None and found != last and state.st_mtime_ns <= last[1]
-        self._dated[key] = last if is_older else found
-        return is_older
-
     def save(self) -> None:
         """Write what this run used, if it is new and the file may be written."""
-        dates = self._dates | self._dated
-        if set(self._used) - set(self._kept) or dates != self._dates:
-            content = {"format": FORMAT, "looks": self._kept | self._used, "dates": dates}
+        if set(self._used) - set(self._kept):
             with contextlib.suppress(OSError, InputError):
-                files.write_json(self._path, content)
+                files.write_json(self._path, {"format": FORMAT, "looks": self._kept | self._used})
 
 
 def _key(path: Path, stop_s: float | None) -> str:
@@ -80,13 +64,13 @@ def _key(path: Path, stop_s: float | None) -> str:
     return f"{path.absolute()} {state.st_size} {state.st_mtime_ns} {stop_s}"
 
 
-def _read(path: Path, part: str) -> dict[str, Any]:
+def _read(path: Path) -> dict[str, Any]:
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
-        found = content[part] if content["format"] == FORMAT else {}
+        looks = content["looks"] if content["format"] == FORMAT else {}
     except DAMAGED:
         return {}
-    return found if isinstance(found, dict) else {}
+    return looks if isinstance(looks, dict) else {}
 
 
 def _stored(found: Glance) -> dict[str, Any]:

@@ -268,12 +268,8 @@ class Session:
         takes = self.takes.values()
         filmed = [path for take in takes for path in take.videos.values()]
         devices = [device.file for take in takes for device in take.devices.values()]
-        return _own([*static, *self.walks.values(), *filmed, *devices])
-
-    def inputs(self) -> list[str]:
-        """Return the recordings, and a user's files of cameras and points."""
-        tables = _own([self.calibration_file, self.court_points, self.static_points])
-        return [*self.recordings(), *tables]
+        named = [*static, *self.walks.values(), *filmed, *devices]
+        return [path for path in named if path and not path.startswith(f"{paths.RESULTS}/")]
 
     def cameras_and_walks(self) -> list[str]:
         """Return the names of all cameras and walks."""
@@ -380,11 +376,6 @@ class Model:
 
 def _outputs(network: Network) -> dict[str, Any]:
     return {"outputs": network.outputs} if network.is_onnx and network.outputs else {}
-
-
-def _own(named: Iterable[str | None]) -> list[str]:
-    """Return the paths that are a user's: neither made nor fetched by the study."""
-    return [path for path in named if path and not path.startswith(f"{paths.RESULTS}/")]
 
 
 @dataclass(frozen=True)
