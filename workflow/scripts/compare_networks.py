@@ -21,6 +21,7 @@ def main(measures_csv, pose3d_npz, pairs_csv, table_csv, *, labels, joint_labels
     ]
     left_out = step.pop("left_out")
     rows = longitudinal.check_single(pd.concat(parts, ignore_index=True))
+    rows = longitudinal.of_movement(rows)
     for part in left_out:
         rows = rows[~rows["measure"].str.contains(part, regex=False)]
     pairs = agreement.pair(rows, networks)

@@ -148,18 +148,14 @@ def test_rows_carry_their_labels(tmp_path):
     assert rows["definition"].tolist()[:2] == ["mid-shoulders", ""]
 
 
-def test_what_tells_of_the_record_is_not_compared(tmp_path):
-    table = pd.read_csv(summary(tmp_path / "a.csv"))
-    parts = [
-        f"neck_{kind}distance_{part}"
-        for kind in ("", "ground_")
-        for part in ("in_gaps", "measured")
-    ]
-    parts += ["neck_distance_noise_bias", "neck_noise_memory"]
-    more = pd.concat([table, *(table[:1].assign(measure=part) for part in parts)])
-    more.to_csv(tmp_path / "a.csv", index=False)
-    rows = longitudinal.read([tmp_path / "a.csv"], [LABEL])
-    assert rows["measure"].tolist() == table["measure"].tolist()
+def test_what_tells_of_the_record_is_compared_only_if_it_is_named():
+    parts = ["neck_distance_in_gaps", "neck_ground_distance_measured", "neck_noise_memory"]
+    table = pd.concat(
+        [rows([("a", [1.0, 2.0], {})], measure=name) for name in ("neck_distance", *parts)]
+    )
+    assert set(longitudinal.of_subject(table, "p1")["measure"]) == {"neck_distance"}
+    assert set(longitudinal.of_subject(table, "p1", parts[:1])["measure"]) == {parts[0]}
+    assert set(longitudinal.of_movement(table)["measure"]) == {"neck_distance"}
 
 
 def test_a_take_named_twice_and_a_table_without_units_are_refused(tmp_path):

@@ -41,7 +41,7 @@ def of_subject(
     *,
     allow_mixed: bool = False,
 ) -> pd.DataFrame:
-    """Return the rows of `read` of one subject, of all measures or those named.
+    """Return the rows of `read` of one subject, of all measures `of_movement` or those named.
 
     `allow_mixed` lets values of different networks or kinds of calibration, or of one measure
     defined differently, stand in one table: `changes` marks them. `InputError` if there is no such
@@ -59,11 +59,15 @@ def of_subject(
             f"subject {subject}: expected values of {missing}, found "
             f"{sorted(rows['measure'].unique())}; choose some of these"
         )
-    if measures:
-        rows = rows[rows["measure"].isin(measures)]
+    rows = rows[rows["measure"].isin(measures)] if measures else of_movement(rows)
     if not allow_mixed:
         _refuse_mixed(rows, subject)
     return rows
+
+
+def of_movement(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows without measures that tell of the record, such as the noise of a path."""
+    return rows[~rows["measure"].str.endswith(OF_THE_RECORD)]
 
 
 def _refuse_mixed(rows: pd.DataFrame, subject: str) -> None:
@@ -208,12 +212,8 @@ def of_study(table: pd.DataFrame, ways: Sequence[Mapping[str, str]]) -> pd.DataF
 
 
 def labelled(table: pd.DataFrame, label: Mapping[str, str]) -> pd.DataFrame:
-    """Return the rows of one take as `COLUMNS`, with its labels; both arguments as for `read`.
-
-    Without the measures that tell of the record, such as the noise of a path.
-    """
-    rows = table[~table["measure"].str.endswith(OF_THE_RECORD)]
-    rows = rows.rename(columns={"person": "subject"}).assign(**label)
+    """Return the rows of one take as `COLUMNS`, with its labels; both arguments as for `read`."""
+    rows = table.rename(columns={"person": "subject"}).assign(**label)
     rows = rows.reindex(columns=COLUMNS)
     rows["sigma"] = rows["sigma"].astype(float)
     for name in ("unit", "definition"):
