@@ -157,8 +157,11 @@ def test_what_is_missing_is_named_in_one_line(folder, change, says):
 @pytest.mark.parametrize(
     ("picture", "says"),
     [
-        (np.zeros((24, 32), np.uint8), r"0003\.png: .* 16-bit .* one channel, found uint8 with 1"),
-        (np.zeros((24, 32, 3), np.uint16), r"0003\.png: .* found uint16 with 3; export"),
+        (
+            np.zeros((24, 32), np.uint8),
+            r"0003\.png: .* 16-bit .* one channel, found uint8, channels: 1",
+        ),
+        (np.zeros((24, 32, 3), np.uint16), r"0003\.png: .* found uint16, channels: 3; export"),
         (np.zeros((24, 30), np.uint16), r"0003\.png: expected 32x24 px, .* found 30x24; correct"),
         (None, r"0003\.png: expected a 16-bit picture"),
     ],

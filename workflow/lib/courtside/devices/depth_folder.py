@@ -195,7 +195,7 @@ def _depth(
         if image.dtype != np.uint16 or image.ndim != 2:
             n_channels = 1 if image.ndim == 2 else image.shape[2]
             raise InputError(
-                f"{path}: expected {what}, found {image.dtype} with {n_channels}; {EXPORT}"
+                f"{path}: expected {what}, found {image.dtype}, channels: {n_channels}; {EXPORT}"
             )
         if image.shape != size[::-1]:
             raise InputError(
