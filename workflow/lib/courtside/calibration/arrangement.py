@@ -53,7 +53,7 @@ def _by_pose(cameras: Sequence[Camera]) -> NDArray:
 def _without_similarity(centres: NDArray) -> NDArray:
     """Return what takes the best small similarity out of moves of centres (C, 3), (3 C, 3 C)."""
     arms = centres - centres.mean(axis=0)
-    moves = [np.hstack([np.eye(3), _cross(arm), arm[:, None]]) for arm in arms]
+    moves = [np.hstack([np.eye(3), np.cross(np.eye(3), arm), arm[:, None]]) for arm in arms]
     similarities = np.vstack(moves)
     return np.eye(len(similarities)) - similarities @ np.linalg.pinv(similarities)
 
@@ -65,10 +65,6 @@ def _between(errors: NDArray, n_cameras: int) -> float:
     pairs = list(combinations(range(n_cameras), 2))
     squares = [traces[a, a] + traces[b, b] - 2 * traces[a, b] for a, b in pairs]
     return float(np.sqrt(max(np.mean(squares), 0.0)))
-
-
-def _cross(v: NDArray) -> NDArray:
-    return np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
 
 
 def _rounded(value: float) -> float:
