@@ -11,7 +11,7 @@ import pytest
 import yaml
 
 from courtside.study import errors
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, few
 
 
 def test_a_plain_message_stays_as_it_is():
@@ -109,6 +109,11 @@ def test_content_of_another_type_is_damage():
     for read in (lambda: errors.require_type([1], dict), lambda: errors.require_scalar(None)):
         with pytest.raises(InputError, match=r"found: \w+ in place of "), errors.reading("a", "b"):
             read()
+
+
+def test_a_few_names_are_told_and_the_others_counted():
+    assert few(["a", "b"], 2) == "a, b"
+    assert few(["a", "b", "c", "d"], 2) == "a, b and 2 more"
 
 
 def test_lines_begin_with_the_file_that_they_are_about():

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from courtside.sfm.pairs import STRIDES
 from courtside.study import methods
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, few
 from courtside.study.methods import OFFSETS
 
 # ASSUME: places are multiples of a power of two that is at most this share of the spacing: a
@@ -71,8 +71,7 @@ def _too_few(n_kept: int, n_grid: int, n: int, not_kept: Sequence[str] | None) -
     what = "frames" if not_kept is None else "photos"
     others = " (the others are dark, blurred or duplicates)" if not_kept is None else ""
     if not_kept:
-        more = f" and {len(not_kept) - N_NAMED} more" * (len(not_kept) > N_NAMED)
-        others = f" ({', '.join(not_kept[:N_NAMED])}{more})"
+        others = f" ({few(not_kept, N_NAMED)})"
     mend = "film longer" if not_kept is None else "take more, sharp and with an overlap"
     return (
         f"expected at least {n} usable {what}, found {n_kept} of {n_grid}{others}: {mend}, or ask "

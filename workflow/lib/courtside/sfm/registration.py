@@ -5,6 +5,7 @@ from collections.abc import Callable, Container, Mapping, Sequence
 import numpy as np
 
 from courtside.calibration.bundle.problem import Network
+from courtside.study.errors import few
 
 N_NAMED = 5  # images in a line
 
@@ -72,10 +73,9 @@ def lost(
     )
     found = []
     for names, why in told:
-        listed = ", ".join(called(name) for name in names[:N_NAMED])
-        more = f" and {len(names) - N_NAMED} more" * (len(names) > N_NAMED)
         if names:
-            found.append(f"not in the model: {listed}{more}: {why} add pictures in between")
+            listed = few([called(name) for name in names], N_NAMED)
+            found.append(f"not in the model: {listed}: {why} add pictures in between")
     return found
 
 

@@ -10,7 +10,7 @@ import tarfile
 import tokenize
 import zipfile
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TypeAlias, TypeVar
 
 StrPath: TypeAlias = str | os.PathLike  # of a file or folder
@@ -56,6 +56,12 @@ def _shortened(text: str) -> str:
     if len(text) <= LONGEST:
         return text
     return f"{text[: LONGEST // 2]} ... {text[-LONGEST // 3 :]}"
+
+
+def few(names: Sequence[str], n_named: int) -> str:
+    """Return at most so many names in words; the others are counted."""
+    more = f" and {len(names) - n_named} more" if len(names) > n_named else ""
+    return ", ".join(names[:n_named]) + more
 
 
 def message(error: BaseException) -> str:

@@ -11,7 +11,7 @@ from courtside.calibration.boards.board import Board
 from courtside.calibration.boards.corners import Corners
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera, plain
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, few
 
 FEWEST_CORNERS = 6  # ASSUME: of a view that is to tell a pose by itself
 SHOWN = 20  # pictures of a list in a message
@@ -193,10 +193,9 @@ def _world(seen: Corners, views: dict[tuple[int, int], View], wanted: str | None
     names = [name for name in seen.pictures if _same(name, wanted)]
     if not names or seen.pictures.index(names[0]) not in posed:
         there = [seen.pictures[at].lstrip("0") or "0" for at in sorted(posed)]  # see `_same`
-        more = f" and {len(there) - SHOWN} more" if len(there) > SHOWN else ""
         raise InputError(
             f"board.floor: expected a picture that shows {FEWEST_CORNERS} corners of the board or "
-            f"more, found {wanted!r}; name one of those that do: {', '.join(there[:SHOWN])}{more}"
+            f"more, found {wanted!r}; name one of those that do: {few(there, SHOWN)}"
         )
     return seen.pictures.index(names[0])
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from courtside.study.errors import SPARE_MEMORY, StrPath
+from courtside.study.errors import SPARE_MEMORY, StrPath, few
 
 N_NAMED = 3  # folders or files that a line names; the rest are counted
 N_FAULTS = 20  # told with their reason
@@ -103,10 +103,7 @@ def _places(paths: list[str]) -> str:
     """Return the files themselves if few, their folders otherwise."""
     if len(paths) <= N_NAMED:
         return ", ".join(paths)
-    folders = list(dict.fromkeys(str(Path(path).parent) for path in paths))
-    rest = len(folders) - N_NAMED
-    named = ", ".join(f"{folder}/" for folder in folders[:N_NAMED])
-    return f"{named} and {rest} more" if rest > 0 else named
+    return few(list(dict.fromkeys(f"{Path(path).parent}/" for path in paths)), N_NAMED)
 
 
 def _last_fault(log: StrPath) -> str:

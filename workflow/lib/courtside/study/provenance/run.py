@@ -2,14 +2,14 @@
 
 import json
 import shlex
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from courtside.study import paths
 from courtside.study.configuration import consent
 from courtside.study.configuration.sessions import Session, Study
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, few
 from courtside.study.execution import files, summary
 from courtside.study.execution import verdicts as verdict_files
 from courtside.study.provenance import environment, provenance
@@ -17,7 +17,7 @@ from courtside.study.targets import remains
 from courtside.study.targets.calibration import warning_files
 
 N_WARNINGS = 3  # of one calibration, on the terminal
-N_NAMED = 3  # photos, or models, in a line
+N_NAMED = 3  # photos, models or files in a line
 
 
 def record(
@@ -143,10 +143,10 @@ def lost_pictures(study: Study) -> list[str]:
             lost = _lost(session, files.read_json(path)) if path.is_file() else (0, 0, "")
             models.setdefault(lost, []).append(variant.name)
         found += [
-            f"{session.name}: {n_lost} of {n_images} pictures not in the model {_few(names)}"
-            f"{photos}: too little overlap with the others, or another place, see "
-            f"{paths.MATCH_TABLE.format(session=session.name)}; add pictures in between, or leave "
-            f"{'it' if n_lost == 1 else 'them'} out"
+            f"{session.name}: {n_lost} of {n_images} pictures not in the model "
+            f"{few(names, N_NAMED)}{photos}: too little overlap with the others, or another place, "
+            f"see {paths.MATCH_TABLE.format(session=session.name)}; add pictures in between, or "
+            f"leave {'it' if n_lost == 1 else 'them'} out"
             for (n_lost, n_images, photos), names in models.items()
             if n_lost
         ]
@@ -158,12 +158,7 @@ def _lost(session: Session, summary: Mapping[str, Any]) -> tuple[int, int, str]:
     unregistered = summary.get("unregistered", {})
     photos = [f"{own} is {name}" for name, own in unregistered.items() if own]
     n_lost = len(photos) if session.cameras else summary["n_images"] - summary["n_registered"]
-    return n_lost, summary["n_images"], f" ({_few(photos)})" if photos else ""
-
-
-def _few(names: Sequence[str]) -> str:
-    more = f" and {len(names) - N_NAMED} more" if len(names) > N_NAMED else ""
-    return ", ".join(names[:N_NAMED]) + more
+    return n_lost, summary["n_images"], f" ({few(photos, N_NAMED)})" if photos else ""
 
 
 def warnings(study: Study) -> list[str]:
@@ -195,7 +190,7 @@ def left_out(study: Study) -> list[str]:
             temporary.write_text("\n".join(kept) + "\n", encoding="utf-8")
         found.append(
             f"{name}: {len(kept)} files that persons have not agreed to were made before, such as "
-            f"{_few(kept)}: delete all that {listed.as_posix()} lists"
+            f"{few(kept, N_NAMED)}: delete all that {listed.as_posix()} lists"
         )
     return found
 
