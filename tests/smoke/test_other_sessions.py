@@ -2,7 +2,9 @@
 
 import hashlib
 import json
+import os
 import shutil
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -128,6 +130,19 @@ def test_a_wand_calibrates_all_cameras(gym):
     assert (
         np.diag(covariance.read(results / "calibration/wand/covariance.npz").covariance)[:6] > 0
     ).all()
+    replace_by_an_older_one(folder / "wand.csv")
+    said = snakemake("-n", "--configfile", "config/mine.yaml", root=gym).stderr
+    assert "Error: data/wand: expected files as in the last run, or newer ones" in said
+    subprocess.run(said.strip().rpartition(": ")[2], shell=True, check=True, cwd=gym)
+    said = snakemake("-n", "--configfile", "config/mine.yaml", root=gym)
+    assert said.returncode == 0 and "calibrate_wand" in said.stdout + said.stderr
+
+
+def replace_by_an_older_one(path):
+    """Exchange a table for one without its last row, with a date before its own."""
+    old_ns = path.stat().st_mtime_ns - 10**9
+    path.write_text("".join(path.read_text().splitlines(keepends=True)[:-1]))
+    os.utime(path, ns=(old_ns, old_ns))
 
 
 @needs_real

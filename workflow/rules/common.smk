@@ -20,7 +20,7 @@ os.environ.update(OPENBLAS_NUM_THREADS="1")  # sums do not depend on the number 
 from courtside.study import methods, paths, targets
 from courtside.study.configuration import configuration, consent, plans
 from courtside.study.errors import InputError
-from courtside.study.execution import digest, files, future_dates, machine_resources
+from courtside.study.execution import digest, file_dates, files, machine_resources
 from courtside.study.jobs import (
     calibration,
     devices,
@@ -68,12 +68,16 @@ try:
         from courtside.validation.remembered import Remembered
 
         providers.check(STUDY)
+        # Settings are parameters of jobs, which Snakemake compares whatever the dates of their files.
+        settings = [*CONFIG.glob("*.yaml"), *map(files.seen_from, workflow.configfiles)]
+        apart = [paths.RESULTS, CONFIG / "sessions", CONFIG / "plans", *settings]
+        file_dates.check_exchanged(paths.CHECKSUMS, apart)
         looks = Remembered(Path(".snakemake") / "courtside" / "recordings.json")
         REMARKS = [f"Remark: {remark}" for remark in validation.check(STUDY, looks)]
         print(*REMARKS, sep="\n", end="\n" * bool(REMARKS), file=sys.stderr)
     own = [f"data/{name}" for name in STUDY.sessions]
     own += [path for session in STUDY.sessions.values() for path in session.recordings()]
-    future_dates.check([CONFIG, paths.EXTERNAL, *own])
+    file_dates.check_future([CONFIG, paths.EXTERNAL, *own])
 except InputError as error:
     sys.exit("\n".join(f"Error: {line}" for line in str(error).splitlines()))
 

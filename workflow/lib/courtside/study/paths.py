@@ -201,6 +201,7 @@ SESSION_YAML = "sessions/{session}.yaml"
 # Of a run.
 REPORT = "results/report.html"
 RUN = "results/run"
+CHECKSUMS = RUN + "/checksums.json"
 WITHOUT_CONSENT = RUN + "/without_consent/{session}.txt"
 SIDECAR = "run/provenance/{file}.json"  # below `RESULTS`, as is the file
 

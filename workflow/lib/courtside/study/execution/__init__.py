@@ -7,7 +7,7 @@ artefacts: `fetch` and `unpack` pinned files
 registries: `wheel` and `npm_package`, downloaded, not installed
 digest: `code_digest` and `Remembered`, which rerun rules whose code changed
 checksums: `Checksums` of large files, kept between runs
-future_dates, machine_resources: checks before any work
+file_dates, machine_resources: checks before any work
 summary: the text at the end of a run
 verdicts: `summary`, `read`, `failed`: verdicts on takes, at the end of a run
 """

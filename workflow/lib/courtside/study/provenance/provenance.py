@@ -12,6 +12,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from pathlib import Path
 from typing import Any
 
+from courtside.study import paths
 from courtside.study.errors import StrPath
 from courtside.study.execution import checksums, files
 
@@ -44,7 +45,7 @@ def record(
     `targets` were asked for by name: they are final whatever their kind.
     """
     folder = Path(folder)
-    known = checksums.Checksums(folder / "checksums.json")
+    known = checksums.Checksums(folder / Path(paths.CHECKSUMS).name)
     due = []
     for job in jobs:
         names = [name for name in job["outputs"] if _is_final(name, targets, folder, root)]

@@ -1,0 +1,95 @@
+"""Dates of files from which Snakemake concludes wrongly: in the future, or of an exchanged file."""
+
+import shlex
+import time
+from collections.abc import Iterable
+from datetime import datetime
+from pathlib import Path
+
+from courtside.study.errors import InputError, StrPath, few
+from courtside.study.execution import checksums, files
+
+SLACK_S = 60.0  # by which the clocks of a computer and of a disk in its network may differ
+N_NAMED = 3  # files of a folder in a line
+
+
+def check_future(named: Iterable[StrPath]) -> None:
+    """Check that no file is dated in the future that is named or below a folder that is.
+
+    Those that are missing are left out.
+
+    Snakemake ends a job with an error if what it made is older than what it was made from. An
+    `InputError` names the file that is furthest ahead.
+    """
+    there = [path for path in map(Path, dict.fromkeys(named)) if path.exists()]
+    latest_s = time.time() + SLACK_S
+    every = (path for one in there for path in ([one] if one.is_file() else one.rglob("*")))
+    found = (path for path in every if path.is_file())
+    late = {dated for path in found if (dated := (path.stat().st_mtime, path))[0] > latest_s}
+    if not late:
+        return
+    when_s, path = max(late)
+    raise InputError(
+        f"{path}: expected a date in the past, found {_in_words(when_s)} (now: "
+        f"{_in_words(time.time())}), as in {len(late) - 1} more; set this computer's clock "
+        f"if it is wrong, otherwise give them today's date: {_advice(there)}"
+    )
+
+
+def check_exchanged(kept: StrPath, apart: Iterable[StrPath]) -> None:
+    """Check that no file was exchanged for another one of an older date since the last run.
+
+    Such a file looks unchanged to Snakemake, which compares dates: results of the other one would
+    stay. `kept` is the file of `Checksums` that runs write: of all files that results were made
+    from. Of these, files and folders `apart` are not looked at. An `InputError` has one line for
+    each folder.
+    """
+    known = checksums.Checksums(kept).known
+    apart = {Path(path) for path in apart}
+    exchanged: dict[Path, list[Path]] = {}
+    for path in map(Path, sorted(known)):
+        if apart.isdisjoint([path, *path.parents]) and _is_exchanged(path, *known[str(path)]):
+            exchanged.setdefault(path.parent, []).append(path)
+    lines = [
+        f"{folder}: expected files as in the last run, or newer ones, found others of an older "
+        f"date ({few([path.name for path in found], N_NAMED)}): the results of the last run would "
+        f"stay; give them today's date: {_touching(folder, found)}"
+        for folder, found in exchanged.items()
+    ]
+    if lines:
+        raise InputError(*lines)
+
+
+def _is_exchanged(path: Path, size: int, stamp_ns: int, sha256: str) -> bool:
+    """Say whether a file differs from the one of a run, but is not newer."""
+    if not path.is_file():
+        return False
+    now = path.stat()
+    if now.st_mtime_ns > stamp_ns or (now.st_size, now.st_mtime_ns) == (size, stamp_ns):
+        return False
+    return now.st_size != size or files.sha256(path) != sha256
+
+
+def _touching(folder: Path, found: list[Path]) -> str:
+    """Return the command that gives files the present date; if many, all of their folder."""
+    few_files = len(found) <= N_NAMED
+    if files.WINDOWS:
+        named = ", ".join(f"'{path}'" for path in (found if few_files else [folder / "*"]))
+        return f"Get-Item -Path {named} | ForEach-Object {{ $_.LastWriteTime = Get-Date }}"
+    named = shlex.join(map(str, found)) if few_files else f"{shlex.quote(str(folder))}/*"
+    return f"touch -- {named}"
+
+
+def _advice(there: list[Path]) -> str:
+    """Return the command that dates future files today, for PowerShell on Windows."""
+    named = [f"'{path}'" for path in there]
+    if files.WINDOWS:
+        return (
+            f"Get-ChildItem -LiteralPath {', '.join(named)} -Recurse -File -Force | Where-Object "
+            "LastWriteTime -gt (Get-Date) | ForEach-Object { $_.LastWriteTime = Get-Date }"
+        )
+    return f"find {' '.join(named)} -newermt now -exec touch {{}} +"
+
+
+def _in_words(time_s: float) -> str:
+    return datetime.fromtimestamp(time_s).strftime("%Y-%m-%d %H:%M")
