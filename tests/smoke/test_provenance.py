@@ -64,6 +64,20 @@ def test_the_command_of_a_record_makes_that_file_again(drawn):
     assert {path: sha256(drawn / FOLDER / path) for path in FILES} == before
 
 
+def test_results_that_came_without_snakemakes_records_are_told(drawn):
+    hidden = drawn / FOLDER / ".snakemake"
+    kept = hidden.rename(hidden.with_name("kept"))
+    done = run("-n", "--", FIGURE, root=drawn, anew=True)
+    said = done.stdout + done.stderr
+    assert "Remark: results of 1 jobs (draw_court_points) are here, but not" in said
+    assert f"verify_study.py --directory {FOLDER.as_posix()}`" in said
+    assert verify(drawn).returncode == 0
+    shutil.rmtree(hidden)
+    kept.rename(hidden)
+    done = run("-n", "--", FIGURE, root=drawn, anew=True)
+    assert "Remark: results of" not in done.stdout + done.stderr
+
+
 def test_a_changed_input_is_told_and_a_new_run_settles_it(drawn):
     done = verify(drawn)
     assert (done.returncode, done.stderr) == (0, "")

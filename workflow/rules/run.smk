@@ -3,14 +3,19 @@
 Inputs: all jobs that the run asked for. Outputs: results/run/: provenance.json of the run,
 checksums.json of the inputs, provenance/<file>.json beside each figure, table and exported file.
 Steps: record_provenance and end_of_run, called in `onsuccess` and `onerror` of the Snakefile. A run
-in which a take was judged as failed ends with a line on it and exit code 1.
+in which a take was judged as failed ends with a line on it and exit code 1. `last_words` is called
+when Snakemake ends, also where nothing was to be done: what it cannot see is told, and its jobs are
+written for a program that asks (`courtside.study.provenance.planned`).
 """
 
+import atexit
+import contextlib
 import time
 
-from courtside.study.provenance import run
+from courtside.study.provenance import planned, run
 
 STARTED_S = time.monotonic()
+STUDIED_IN = Path.cwd()
 LOOK_AT = [paths.REPORT, paths.PLAYERS_TABLE, paths.CALIBRATION_TABLE]
 
 
@@ -27,3 +32,15 @@ def end_of_run(n_failed=0):
     viewers = targets.pages.every_viewer(STUDY)[:1]
     seconds = time.monotonic() - STARTED_S
     return run.ending(workflow, REPOSITORY, seconds, LOOK_AT + viewers, n_failed)
+
+
+def last_words():
+    """Tell the jobs to who asks, and the user of results that Snakemake has no records of."""
+    with contextlib.chdir(STUDIED_IN):  # which Snakemake has left
+        planned.tell(workflow)
+        for line in planned.unseen(workflow, REPOSITORY):
+            print(line, file=sys.stderr)
+
+
+if workflow.is_main_process:
+    atexit.register(last_words)

@@ -1,6 +1,7 @@
 """Each change is told once for each file that it reaches, and for no other."""
 
 import json
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -9,11 +10,17 @@ import pytest
 
 from courtside.study.errors import InputError
 from courtside.study.execution import checksums, digest
-from courtside.study.provenance import environment, provenance, verification
+from courtside.study.provenance import environment, planned, provenance, verification
 
 PROGRAM = Path(__file__).parents[4] / "workflow" / "verify_study.py"
 FIGURE, ALONE = "results/figures/f.pdf", "results/figures/alone.csv"
+LIBRARY = str(Path(planned.__file__).parents[3])
+ASK = planned.ask
 SNAKEFILE = """
+import atexit, sys
+sys.path.insert(0, LIBRARY)
+from courtside.study.provenance import planned
+atexit.register(lambda: planned.tell(workflow))
 configfile: "config.yaml"
 rule all:
     input: "results/figures/f.pdf", "results/figures/alone.csv"
@@ -26,13 +33,14 @@ rule tabulate:
     input: "b.mp4"
     output: "results/figures/alone.csv"
     shell: "echo tabulate > {output}"
-"""
+""".replace("LIBRARY", repr(LIBRARY))
 
 
 @pytest.fixture
 def study(tmp_path, monkeypatch):
-    """Go to a made-up repository where a study ran."""
+    """Go to a made-up repository where a study ran; Snakemake, which is slow, is not asked."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(planned, "ask", lambda *_: planned.Plan({}, frozenset()))
     digest._parsed.cache_clear()  # of a process that sees one repository only
     library = Path("workflow/lib/courtside")
     for path in (library, Path("workflow/scripts"), Path("results/figures")):
@@ -152,25 +160,68 @@ def test_each_file_is_read_once(study, monkeypatch):
     assert sorted(read) == sorted([FIGURE, ALONE, "a.mp4", "b.mp4", "net.onnx", "config.yaml"])
 
 
-def test_a_changed_parameter_is_told_by_snakemake(study):
-    Path("results/figures/f.pdf").unlink()
-    run = ["-m", "snakemake", "--cores", "1", "--quiet", "all"]
-    subprocess.run([sys.executable, *run, "--forceall"], check=True, capture_output=True)
+@pytest.fixture
+def ran(study, monkeypatch):
+    """Let Snakemake run the study, and ask it."""
+    monkeypatch.setattr(planned, "ask", ASK)
+    Path(FIGURE).unlink()
+    words = ["-m", "snakemake", "--cores", "1", "--quiet", "all", "--forceall"]
+    subprocess.run([sys.executable, *words], check=True, capture_output=True)
     jobs = [
-        made("draw", None, ["a.mp4", "net.onnx"], [FIGURE]),
+        made("draw", None, ["a.mp4", "net.onnx"], [FIGURE]) | {"params": {"width": 3}},
         made("tabulate", None, [], [ALONE]),
     ]
     record = {"command": ["snakemake"], "surroundings": environment.found("."), "config": {}}
     record["config_files"] = ["config.yaml"]
     provenance.record(jobs, "results/run", run=record, root="results")
+
+
+def test_a_changed_setting_is_told(ran):
+    assert reported() == []
     Path("config.yaml").write_text("width: 4\n")
-    assert reported() == [
-        f"{FIGURE}: configuration changed",
+    told = [
+        f"{FIGURE}: settings of draw changed (width)",
         "since the last run, config.yaml changed",
     ]
+    assert reported() == told
+    shutil.rmtree(".snakemake")  # as of results that were moved without it
+    *lines, advice = reported()
+    assert lines == told
+    assert advice.startswith("Snakemake has no records of these settings")
+    assert advice.endswith(": snakemake --forcerun draw")
+
+
+def test_a_study_that_cannot_be_planned_is_told(ran):
     Path("Snakefile").write_text("Error")
-    with pytest.raises(InputError, match=r"snakemake: .*Error"):
+    (line,) = reported()
+    assert line.startswith("settings are not compared: snakemake: ") and "Error" in line
+    Path("config.yaml").write_text("width: 4\n")
+    with pytest.raises(InputError, match=r"snakemake: .*Error.*; correct this"):
         reported()
+
+
+def test_settings_of_a_file_asked_for_by_name_are_compared(study, monkeypatch):
+    def ask(words, repository, targets=()):
+        return planned.Plan({name: {"draw": [{"n": 1}]} for name in targets}, frozenset())
+
+    monkeypatch.setattr(planned, "ask", ask)
+    *_, cause, advice = reported()
+    assert cause == "2 files: settings of draw changed (n)"
+    assert advice.endswith(f": snakemake --forcerun draw -- all {ALONE} {FIGURE}")
+
+
+def test_the_folder_of_the_results_is_the_present_one(study, monkeypatch):
+    asked = []
+    monkeypatch.setattr(
+        planned, "ask", lambda words, *_: asked.append(words) or planned.Plan({}, frozenset())
+    )
+    path = Path("results/run/provenance.json")
+    moved = {"command": "snakemake --directory elsewhere --configfile config/a.yaml"}
+    path.write_text(json.dumps(json.loads(path.read_text()) | moved))
+    reported()
+    assert asked[0] == ["snakemake", "--configfile", "config/a.yaml"]
+    verification.report("results/run", "results", study.parent)
+    assert asked[-1] == ["snakemake", "--directory", study.name, "--configfile", "config/a.yaml"]
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", '{"format": 0}'])

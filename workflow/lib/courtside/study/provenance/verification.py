@@ -1,25 +1,24 @@
 """Files of a study that are out of date, and why, according to their sidecars."""
 
 import shlex
-import subprocess
-import sys
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from courtside.study.errors import InputError, StrPath
+from courtside.study.errors import InputError, StrPath, few
 from courtside.study.execution import checksums, digest, files
-from courtside.study.provenance import environment
+from courtside.study.provenance import environment, planned
 from courtside.study.provenance.provenance import FORMAT, command
 
 REPEATED = {"--directory", "--configfile", "--config"}  # options of a command that is repeated
 OF_RUN = {"command": str, "config_files": dict}  # what a record must hold
 OF_FILE = {
     "file": str, "sha256": str, "inputs": dict, "artefacts": dict, "code": dict, "packages": dict,
-    "lock_sha256": str | None, "python": str,
+    "lock_sha256": str | None, "python": str, "rule": str, "settings": dict,
 }  # fmt: skip
+N_NAMED = 3  # settings in a line
 DRAWN = {".pdf", ".png", ".csv"}  # in folders named figures: all have sidecars
 
 
@@ -115,17 +114,23 @@ def _unrecorded(root: StrPath, sidecars: Iterable[dict[str, Any]]) -> list[str]:
     return sorted(path.as_posix() for path in drawn if path.resolve() not in known)
 
 
-def planned(run: dict[str, Any], repository: StrPath) -> set[str]:
-    """Return the files that a run's command would make anew; `InputError` if it is refused."""
-    words = [sys.executable, "-m", *_words(run), "--summary"]
-    done = subprocess.run(words, cwd=repository, capture_output=True, text=True, check=False)
-    if done.returncode:
-        failures = [line for line in (done.stdout + done.stderr).splitlines() if "Error" in line]
-        raise InputError(
-            f"{run['command']}: {failures[0] if failures else 'Snakemake failed'}; correct this"
-        )
-    rows = [line.split("\t") for line in done.stdout.splitlines() if line.count("\t") == 5]
-    return {Path(row[0]).as_posix() for row in rows if row[5] == "update pending"}
+def _planned(
+    words: list[str], sidecars: Sequence[dict[str, Any]], repository: StrPath
+) -> planned.Plan:
+    """Return what a run's command would make, and of the other recorded files those it could."""
+    try:
+        plan = planned.ask(words, repository)
+    except InputError as error:
+        return planned.Plan({}, frozenset(), refused=f"{shlex.join(words)}: {error}")
+    names = [sidecar["file"] for sidecar in sidecars]
+    apart = [name for name in names if name not in plan.settings and Path(name).exists()]
+    try:
+        other = planned.ask(words, repository, apart) if apart else plan
+    except InputError:  # of another study, or of nothing that still exists
+        return plan
+    return planned.Plan(
+        other.settings | plan.settings, other.pending | plan.pending, frozenset(apart)
+    )
 
 
 def _words(run: dict[str, Any]) -> list[str]:
@@ -143,6 +148,38 @@ def _words(run: dict[str, Any]) -> list[str]:
     return words
 
 
+def _here(words: list[str], repository: StrPath) -> list[str]:
+    """Return the words of a run's command for the present folder: results travel."""
+    at = words.index("--directory") if "--directory" in words else len(words)
+    folder = files.seen_from(Path.cwd(), repository)
+    own = [] if folder == "." else ["--directory", folder]
+    rest = words[:at] + words[at + 2 :]
+    return [*rest[:1], *own, *rest[1:]]
+
+
+def _settings(sidecar: dict[str, Any], plan: planned.Plan) -> dict[str, str]:
+    """Return in words which settings would be others now, by rule."""
+    now = plan.settings.get(sidecar["file"])
+    found = {} if now is None else planned.changes(sidecar["settings"], now)
+    return {
+        rule: f"settings of {rule} changed ({few(keys, N_NAMED)})" for rule, keys in found.items()
+    }
+
+
+def _forcing(words: list[str], unnoticed: dict[str, set[str]], plan: planned.Plan) -> list[str]:
+    """Return a line on settings that changed unseen by Snakemake: rules by file."""
+    if not unnoticed:
+        return []
+    rules = sorted(set().union(*unnoticed.values()))
+    apart = sorted(plan.by_name.intersection(unnoticed))
+    targets = ["--", "all", *apart] if apart else []
+    return [
+        "Snakemake has no records of these settings (.snakemake/metadata), so it does not see that "
+        "they changed; what rests on them is made anew by: "
+        + shlex.join([*words, "--forcerun", *rules, *targets])
+    ]
+
+
 def report(folder: StrPath, root: StrPath, repository: StrPath) -> tuple[list[str], int]:
     """Return lines for people, and the number of files that would differ or have no record.
 
@@ -150,24 +187,49 @@ def report(folder: StrPath, root: StrPath, repository: StrPath) -> tuple[list[st
     """
     sidecars, now = read(folder), present(repository)
     run = _read(Path(folder) / "provenance.json", OF_RUN)
-    files = run["config_files"].items()
-    changed = [line for path, sha in files for line in _of_file(path, sha, now["sha256"](path))]
-    anew = planned(run, repository) if changed else set()
-    lines: list[str] = []
-    causes: Counter[str] = Counter()
-    for sidecar in sidecars:
-        reasons = changes(sidecar, now)
-        reasons += ["configuration changed"] * (not reasons and sidecar["file"] in anew)
-        lines += [f"{sidecar['file']}: {'; '.join(reasons)}"] if reasons else []
-        causes.update(reasons)
-    again = [*_words(run), "--force"]
+    words = _here(_words(run), repository)
+    changed = [
+        line
+        for path, sha in run["config_files"].items()
+        for line in _of_file(path, sha, now["sha256"](path))
+    ]
+    plan = _planned(words, sidecars, repository)
+    if plan.refused and changed:
+        raise InputError(f"{plan.refused}; correct this")
+    lines, causes = _of_all(sidecars, now, plan, words, bool(changed))
     lines += [
         f"{name}: has no record; remake it, or delete it if the study no longer names it: "
-        + command(again, name)
+        + command([*words, "--force"], name)
         for name in _unrecorded(root, sidecars)
     ]
     n_faults = len(lines)
     lines += [f"since the last run, {line}" for line in changed]
-    lines += [f"{n} files: {cause}" for cause, n in causes.most_common() if n > 1]
+    lines += causes
+    lines += [f"settings are not compared: {plan.refused}"] * bool(plan.refused)
     verdict = f"{n_faults} are out of date or have none" if n_faults else "all are up to date"
     return [*lines, f"{len(sidecars)} files have a record: {verdict}"], n_faults
+
+
+def _of_all(
+    sidecars: Sequence[dict[str, Any]],
+    now: dict[str, Any],
+    plan: planned.Plan,
+    words: list[str],
+    is_configured_anew: bool,
+) -> tuple[list[str], list[str]]:
+    """Return a line for each file that would differ, and lines on what this comes from."""
+    lines: list[str] = []
+    causes: Counter[str] = Counter()
+    unnoticed: dict[str, set[str]] = {}
+    for sidecar in sidecars:
+        name, rules = sidecar["file"], _settings(sidecar, plan)
+        is_pending = name in plan.pending
+        reasons = changes(sidecar, now) + list(rules.values())
+        if not reasons and is_configured_anew and is_pending:
+            reasons = ["configuration changed"]
+        lines += [f"{name}: {'; '.join(reasons)}"] if reasons else []
+        causes.update(reasons)
+        if rules and not is_pending:
+            unnoticed[name] = set(rules)
+    told = [f"{n} files: {cause}" for cause, n in causes.most_common() if n > 1]
+    return lines, told + _forcing(words, unnoticed, plan)

@@ -1,0 +1,114 @@
+"""The jobs that a run would have now: told by the workflow, asked for by who verifies a study.
+
+Snakemake's own list of what is out of date rests on its hidden records of settings and code
+(`.snakemake/metadata`), which results that were moved without them do not have.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from courtside.study.errors import InputError, StrPath, few
+from courtside.study.execution import files
+from courtside.study.provenance import provenance, run
+
+ASKED = "COURTSIDE_PLAN"  # environment variable: the file that the workflow writes its jobs to
+N_NAMED = 3  # rules in a line
+Settings = dict[str, list]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a run would make, or why this is unknown."""
+
+    settings: dict[str, Settings]  # of all steps before a file, by file, as in its sidecar
+    pending: frozenset[str]  # files that Snakemake would make anew
+    by_name: frozenset[str] = frozenset()  # files that are made when asked for only
+    refused: str = ""
+
+
+def tell(workflow: Any) -> None:
+    """Write the jobs of a workflow that was planned, if a program asks for them."""
+    path = os.environ.get(ASKED)
+    if path and workflow.dag is not None:
+        dag = workflow.dag
+        jobs = [{**run.plain_job(job, dag, touched=False), "code": None} for job in dag.jobs]
+        content = [{**job, "params": provenance.plain(job["params"])} for job in jobs]
+        Path(path).write_text(json.dumps(content), encoding="utf-8")
+
+
+def ask(command: Sequence[str], repository: StrPath, targets: Sequence[str] = ()) -> Plan:
+    """Return what a command of Snakemake would make now; `InputError` if it is refused.
+
+    `command` are its words, to be given in the folder `repository`, `targets` what is asked for.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "jobs.json"
+        words = [
+            sys.executable,
+            "-m",
+            *command,
+            "--summary",
+            *(["--", *targets] if targets else ()),
+        ]
+        environ = {**os.environ, ASKED: str(path)}
+        done = subprocess.run(
+            words, cwd=repository, env=environ, capture_output=True, text=True, check=False
+        )
+        if done.returncode or not path.is_file():
+            said = (done.stdout + done.stderr).splitlines()
+            faults = [line for line in said if "Error" in line or "Exception" in line]
+            raise InputError(faults[0] if faults else "Snakemake failed")
+        jobs = files.read_json(path, "give the command again")
+    reach = provenance.upstream(jobs)
+    settings = {
+        name: provenance.origin(jobs, reached, lambda _: None)["settings"]
+        for job, reached in zip(jobs, reach, strict=True)
+        for name in job["outputs"]
+    }
+    pending = [name for job in jobs if not job["done"] for name in job["outputs"]]
+    return Plan(settings, frozenset(pending))
+
+
+def changes(recorded: Settings, now: Settings) -> dict[str, list[str]]:
+    """Return the names of the settings that differ, by rule."""
+    rules = sorted({*recorded, *now})
+    pairs = {rule: (recorded.get(rule, []), now.get(rule, [])) for rule in rules}
+    return {rule: _differing(*pair) for rule, pair in pairs.items() if pair[0] != pair[1]}
+
+
+def _differing(one: list, other: list) -> list[str]:
+    keys = sorted({key for params in (*one, *other) for key in params})
+    return [key for key in keys if _values(one, key) != _values(other, key)]
+
+
+def _values(jobs: list, key: str) -> list[str]:
+    return sorted({json.dumps(params.get(key), sort_keys=True) for params in jobs})
+
+
+def unseen(workflow: Any, repository: Path) -> list[str]:
+    """Return a line if Snakemake lacks records of files that are here, and keeps as they are."""
+    dag, known = workflow.dag, workflow.persistence
+    if dag is None or known is None:
+        return []
+    kept = [job for job in dag.jobs if job.output and dag.noneedrun_finished(job)]
+    rules = [job.rule.name for job in kept if _is_unknown(job, known.metadata)]
+    if not rules:
+        return []
+    folder = files.seen_from(Path.cwd(), repository)
+    option = "" if folder == "." else f" --directory {folder}"
+    return [
+        f"Remark: results of {len(rules)} jobs ({few(sorted(set(rules)), N_NAMED)}) are here, but "
+        "not Snakemake's records of them (.snakemake/metadata): it does not see changes of their "
+        f"settings and code; `python workflow/verify_study.py{option}` tells these"
+    ]
+
+
+def _is_unknown(job: Any, metadata: Callable[[Any], Any]) -> bool:
+    return any(Path(path).exists() and metadata(path) is None for path in job.output)
