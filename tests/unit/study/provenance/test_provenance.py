@@ -150,6 +150,22 @@ def test_a_file_younger_than_its_sidecar_was_made_by_a_run_that_was_killed(folde
     assert "later run" in read(folder, "gym/figures/f.pdf")["recorded"]
 
 
+def test_a_copy_of_another_date_keeps_what_it_was_made_with(folder):
+    record(folder, study())
+    path = folder / "provenance/gym/figures/f.pdf.json"
+    before, later = path.read_bytes(), path.stat().st_mtime_ns + 10**11
+    os.utime("results/gym/figures/f.pdf", ns=(later, later))
+    jobs = [{**job, "params": {"seed": 4}} for job in study(made=False, known=False)]
+    assert record(folder, jobs) == []
+    assert path.read_bytes() == before
+    path.write_text("{")
+    os.utime("results/gym/figures/f.pdf", ns=(later, later))
+    assert record(folder, jobs) == ["results/gym/figures/f.pdf"]
+    Path("results/gym/figures/f.pdf").write_text("drawn anew")
+    os.utime("results/gym/figures/f.pdf", ns=(later, later))
+    assert record(folder, jobs) == ["results/gym/figures/f.pdf"]
+
+
 @pytest.mark.parametrize("absent", ["undone", "gone"])
 def test_what_is_not_made_yet_has_none(folder, absent):
     jobs = study(made=False, done=absent != "undone")

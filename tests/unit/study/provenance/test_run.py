@@ -47,6 +47,7 @@ def workflow(jobs=(), finished=(), failed=None, touch=False):
     scheduler = None if failed is None else SimpleNamespace(failed=failed)
     return SimpleNamespace(
         dag=Dag(list(jobs), list(finished)),
+        persistence=SimpleNamespace(has_metadata=lambda job: True),
         scheduler=scheduler,
         touch=touch,
         config_settings=settings,

@@ -2,7 +2,8 @@
 
 A job is a dictionary: rule, script (its file name or None), code (digest of the script and of the
 library code that it reaches, or None), inputs and outputs (paths), params (without the digest),
-done (its outputs are up to date), made (in this run).
+done (its outputs are up to date), made (in this run), known (Snakemake has records of what it was
+made with, and nothing changed since; true where it is left out).
 """
 
 import graphlib
@@ -13,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from courtside.study import paths
-from courtside.study.errors import StrPath
+from courtside.study.errors import InputError, StrPath
 from courtside.study.execution import checksums, files
 
 FORMAT = 1
@@ -79,7 +80,11 @@ def _is_final(name: str, targets: Collection[str], folder: StrPath, root: StrPat
 
 
 def _is_due(name: str, job: Job, record_of_it: Path) -> bool:
-    """Tell whether a file exists and has no sidecar that is younger than itself."""
+    """Tell whether a file exists and has no sidecar that is younger than itself.
+
+    A copy has a date of its own: the sidecar stays if it is of the same content, unless Snakemake
+    knows that the file was made as it would be now.
+    """
     path = Path(name)
     if not path.exists():
         return False
@@ -88,7 +93,18 @@ def _is_due(name: str, job: Job, record_of_it: Path) -> bool:
     # Of a folder, Snakemake's time stamp in it says when it was made.
     stamp = path / ".snakemake_timestamp" if path.is_dir() else path
     stamp = stamp if stamp.exists() else path
-    return stamp.stat().st_mtime_ns > record_of_it.stat().st_mtime_ns
+    if stamp.stat().st_mtime_ns <= record_of_it.stat().st_mtime_ns:
+        return False
+    return job.get("known", True) or not _is_of(record_of_it, path)
+
+
+def _is_of(record_of_it: Path, path: Path) -> bool:
+    """Tell whether a sidecar is of a file's present content."""
+    try:
+        content = files.read_json(record_of_it, "delete it")
+    except InputError:  # damaged: it is written anew
+        return False
+    return isinstance(content, dict) and content.get("sha256") == checksums.of_path(path)
 
 
 def upstream(jobs: Sequence[Job]) -> list[frozenset[int]]:

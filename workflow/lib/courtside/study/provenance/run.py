@@ -30,7 +30,10 @@ def record(
     be written.
     """
     dag = workflow.dag
-    jobs = [plain_job(job, dag, touched=workflow.touch) for job in dag.jobs]
+    jobs = [
+        plain_job(job, dag, workflow.touch) | {"known": workflow.persistence.has_metadata(job)}
+        for job in dag.jobs
+    ]
     targets = {Path(name).as_posix() for name in dag.derived_targetfiles}
     run = {
         "command": repeating_command(workflow.config_settings, repository),
