@@ -37,7 +37,7 @@ def end_of_run(n_failed=0):
 def last_words():
     """Tell the jobs to who asks, and the user of results that Snakemake has no records of."""
     with contextlib.chdir(STUDIED_IN):  # which Snakemake has left
-        planned.tell(workflow)
+        planned.tell(workflow, STUDY)
         for line in planned.unseen(workflow, REPOSITORY):
             print(line, file=sys.stderr)
 

@@ -14,10 +14,10 @@ from courtside.study.provenance import planned
 
 LIBRARY = Path(planned.__file__).parents[3]
 SNAKEFILE = f"""
-import atexit, sys
+import atexit, sys, types
 sys.path.insert(0, {str(LIBRARY)!r})
 from courtside.study.provenance import planned
-atexit.register(lambda: planned.tell(workflow))
+atexit.register(lambda: planned.tell(workflow, types.SimpleNamespace(sessions={{}})))
 configfile: "config.yaml"
 rule all:
     input: "b.txt"

@@ -183,6 +183,14 @@ def test_the_sidecar_of_a_file_that_is_gone_goes(folder):
     assert names == {"f.csv.json", "alone.pdf.json"}
 
 
+def test_files_with_a_sidecar_are_listed_here_or_not(folder):
+    record(folder, study())
+    Path("results/gym/figures/f.pdf").unlink()
+    names = ("alone.pdf", "f.csv", "f.pdf")
+    found = provenance.recorded(folder, "results")
+    assert found == [f"results/gym/figures/{name}" for name in names]
+
+
 def test_a_folder_has_a_sidecar_too(folder):
     project = Path("results/gym/project")
     project.mkdir()

@@ -234,6 +234,19 @@ def test_takes_that_a_session_no_longer_has_are_told(study, tmp_path, monkeypatc
     assert line.startswith("plain-tiny: results/plain-tiny/takes/old belongs to no take of")
 
 
+def test_cameras_that_a_take_no_longer_has_are_told(study, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    study = replace(study, sessions={"players-tiny": study.sessions["players-tiny"]})
+    take = next(iter(study.sessions["players-tiny"].takes))
+    folder = Path(f"results/players-tiny/takes/{take}/movement")
+    folder.mkdir(parents=True)
+    (folder / "old.csv").touch()
+    line = (
+        f"players-tiny: {folder.parent.as_posix()} has files of old, which this take does not have"
+    )
+    assert run.left_out(study) == run.remaining(study) == [f"{line}: delete them"]
+
+
 def test_files_that_persons_no_longer_agree_to_are_listed(study, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     session = study.sessions["walk-4cams-tiny"]
@@ -255,8 +268,11 @@ def test_files_that_persons_no_longer_agree_to_are_listed(study, tmp_path, monke
     assert line.startswith("walk-4cams-tiny: 4 files that persons have not agreed to were made")
     listed = Path("results/run/without_consent/walk-4cams-tiny.txt")
     assert listed.read_text().splitlines() == sorted(path.as_posix() for path in gone)
+    told = run.remaining(study)[-1]
+    assert told.startswith("walk-4cams-tiny: 4 files that persons have not agreed to are here")
     for path in gone:
         path.unlink()
+    assert run.remaining(study) == []
     assert len(run.left_out(study)) == n_told
     assert not listed.exists()
 

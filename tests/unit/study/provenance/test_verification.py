@@ -17,10 +17,10 @@ FIGURE, ALONE = "results/figures/f.pdf", "results/figures/alone.csv"
 LIBRARY = str(Path(planned.__file__).parents[3])
 ASK = planned.ask
 SNAKEFILE = """
-import atexit, sys
+import atexit, sys, types
 sys.path.insert(0, LIBRARY)
 from courtside.study.provenance import planned
-atexit.register(lambda: planned.tell(workflow))
+atexit.register(lambda: planned.tell(workflow, types.SimpleNamespace(sessions={})))
 configfile: "config.yaml"
 rule all:
     input: "results/figures/f.pdf", "results/figures/alone.csv"
@@ -208,6 +208,30 @@ def test_settings_of_a_file_asked_for_by_name_are_compared(study, monkeypatch):
     *_, cause, advice = reported()
     assert cause == "2 files: settings of draw changed (n)"
     assert advice.endswith(f": snakemake --forcerun draw -- all {ALONE} {FIGURE}")
+
+
+def test_what_the_study_no_longer_asks_for_is_counted_apart(study, monkeypatch):
+    advice = "gym: results/figures belongs to no take: delete it"
+    unrecorded = "results/figures/old.png"
+    remains = frozenset([FIGURE, unrecorded])
+    left = planned.Plan({}, frozenset(), remains=remains, advice=(advice,))
+    monkeypatch.setattr(planned, "ask", lambda *_: left)
+    Path(unrecorded).touch()
+    Path("a.mp4").write_text("x")  # no run makes this figure again
+    lines, n_faults = verification.report("results/run", "results", ".")
+    assert n_faults == 1
+    verdict = "1 files have a record: all are up to date; besides, 2 that the study no longer asks"
+    assert lines == [advice, f"{verdict} for"]
+
+
+def test_what_was_deleted_because_nobody_asks_for_it_is_no_fault(study, monkeypatch):
+    left = planned.Plan({}, frozenset(), remains=frozenset([FIGURE]))
+    monkeypatch.setattr(planned, "ask", lambda *_: left)
+    Path(FIGURE).unlink()
+    (line,) = reported()
+    assert line.startswith("1 files that the study no longer asks for were deleted: the next run")
+    Path(ALONE).unlink()
+    assert reported() == [f"{ALONE}: is gone", line]
 
 
 def test_the_folder_of_the_results_is_the_present_one(study, monkeypatch):

@@ -30,6 +30,52 @@ def test_files_of_persons_whom_a_take_no_longer_has_are_found(study, tmp_path, m
     assert remains.of_nobody(session) == {take: ["old", "older"]}
 
 
+def test_files_of_cameras_that_a_take_no_longer_has_are_found(study, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    session = study.sessions["walk-4cams-tiny"]
+    take = Path("results/walk-4cams-tiny/takes/balancing")
+    videos, keypoints = take / "videos/file/all-robust", take / "pose2d/blazepose-full"
+    for folder in (videos, keypoints):
+        folder.mkdir(parents=True)
+    for camera in ("cam01", "left"):
+        (videos / f"blazepose-full.{camera}.mp4").touch()
+    (keypoints / "right.npz").touch()
+    (keypoints / ".snakemake_timestamp").touch()
+    assert remains.of_no_camera(session) == {take.as_posix(): ["left", "right"]}
+
+
+def test_records_of_what_nobody_asks_for_are_found_whether_here_or_deleted(study, monkeypatch):
+    session = study.sessions["walk-4cams-tiny"]
+    only = {name: replace(one, consent=("analysis",)) for name, one in session.subjects.items()}
+    sessions = {
+        "walk-4cams-tiny": replace(session, subjects=only),
+        "plain-tiny": replace(study.sessions["plain-tiny"], takes={}),
+        "players-tiny": study.sessions["players-tiny"],
+    }
+    study = replace(study, sessions=sessions)
+    take = "results/walk-4cams-tiny/takes/balancing"
+    way = "file/all-robust/blazepose-full"
+    left = [
+        "results/walk-4cams-tiny/takes/old/quality.csv",
+        f"{take}/pose3d/{way}.older.trc",
+        f"{take}/motion/{way}.older.glb",
+        f"{take}/videos/{way}.cam01.mp4",
+        f"{take}/shake/old.csv",
+        f"{take}/pages/people.html",
+        "results/plain-tiny/pages/quality.html",
+        "results/report.html",
+    ]
+    kept = [
+        f"{take}/motion/{way}.angles.csv",
+        f"{take}/quality.csv",
+        f"{take}/shake/cam01.csv",
+        "results/players-tiny/pages/quality.html",
+        "results/another/takes/old/quality.csv",
+        "results/figures/study.csv",
+    ]
+    assert remains.of_records(study, [*kept, *left]) == left
+
+
 def test_only_files_of_persons_who_refuse_are_found(study, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     made = takes.every_export(study)

@@ -14,9 +14,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from courtside.study import paths
+from courtside.study.configuration.sessions import Study
 from courtside.study.errors import InputError, StrPath, few
 from courtside.study.execution import files
 from courtside.study.provenance import provenance, run
+from courtside.study.targets import remains
 
 ASKED = "COURTSIDE_PLAN"  # environment variable: the file that the workflow writes its jobs to
 N_NAMED = 3  # rules in a line
@@ -30,16 +33,24 @@ class Plan:
     settings: dict[str, Settings]  # of all steps before a file, by file, as in its sidecar
     pending: frozenset[str]  # files that Snakemake would make anew
     by_name: frozenset[str] = frozenset()  # files that are made when asked for only
+    remains: frozenset[str] = frozenset()  # here or deleted; no longer asked for
+    advice: tuple[str, ...] = ()  # on those that are here
     refused: str = ""
 
 
-def tell(workflow: Any) -> None:
-    """Write the jobs of a workflow that was planned, if a program asks for them."""
+def tell(workflow: Any, study: Study) -> None:
+    """Write what a workflow would make, and what is left of earlier ones, if a program asks."""
     path = os.environ.get(ASKED)
     if path and workflow.dag is not None:
         dag = workflow.dag
         jobs = [{**run.plain_job(job, dag, touched=False), "code": None} for job in dag.jobs]
-        content = [{**job, "params": provenance.plain(job["params"])} for job in jobs]
+        drawn = (path.as_posix() for path in Path(paths.RESULTS).glob("**/figures/*"))
+        names = dict.fromkeys([*provenance.recorded(paths.RUN, paths.RESULTS), *drawn])
+        content = {
+            "jobs": [{**job, "params": provenance.plain(job["params"])} for job in jobs],
+            "remains": remains.of_records(study, names),
+            "advice": run.remaining(study),
+        }
         Path(path).write_text(json.dumps(content), encoding="utf-8")
 
 
@@ -65,7 +76,8 @@ def ask(command: Sequence[str], repository: StrPath, targets: Sequence[str] = ()
             said = (done.stdout + done.stderr).splitlines()
             faults = [line for line in said if "Error" in line or "Exception" in line]
             raise InputError(faults[0] if faults else "Snakemake failed")
-        jobs = files.read_json(path, "give the command again")
+        told = files.read_json(path, "give the command again")
+    jobs = told["jobs"]
     reach = provenance.upstream(jobs)
     settings = {
         name: provenance.origin(jobs, reached, lambda _: None)["settings"]
@@ -73,7 +85,8 @@ def ask(command: Sequence[str], repository: StrPath, targets: Sequence[str] = ()
         for name in job["outputs"]
     }
     pending = [name for job in jobs if not job["done"] for name in job["outputs"]]
-    return Plan(settings, frozenset(pending))
+    left, advice = frozenset(told["remains"]), tuple(told["advice"])
+    return Plan(settings, frozenset(pending), remains=left, advice=advice)
 
 
 def changes(recorded: Settings, now: Settings) -> dict[str, list[str]]:

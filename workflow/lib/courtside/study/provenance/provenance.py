@@ -60,7 +60,7 @@ def record(
         for name in names:
             files.write_json(sidecar(folder, name, root), _sidecar(jobs[at], name, run, body))
             written.append(name)
-    _prune(folder / "provenance", root)
+    _prune(folder, root)
     files.write_json(folder / "provenance.json", _of_run(run, known))
     known.write()
     return written
@@ -71,6 +71,13 @@ def sidecar(folder: StrPath, name: str, root: StrPath) -> Path:
     path = Path(name)
     inner = path.relative_to(root) if path.is_relative_to(root) else Path(path.name)
     return Path(folder) / "provenance" / inner.with_name(f"{inner.name}.json")
+
+
+def recorded(folder: StrPath, root: StrPath) -> list[str]:
+    """Return the files that have a sidecar, here or not."""
+    own = Path(folder) / "provenance"
+    inner = sorted(path.relative_to(own) for path in own.rglob("*.json"))
+    return [(Path(root) / p.with_name(p.name.removesuffix(".json"))).as_posix() for p in inner]
 
 
 def _is_final(name: str, targets: Collection[str], folder: StrPath, root: StrPath) -> bool:
@@ -232,7 +239,6 @@ def _of_run(run: dict[str, Any], known: checksums.Checksums) -> dict[str, Any]:
 
 def _prune(folder: Path, root: StrPath) -> None:
     """Delete the sidecars of files that are gone."""
-    for path in folder.rglob("*.json"):
-        inner = path.relative_to(folder)
-        if not (Path(root) / inner.with_name(inner.name.removesuffix(".json"))).exists():
-            path.unlink()
+    for name in recorded(folder, root):
+        if not Path(name).exists():
+            sidecar(folder, name, root).unlink()

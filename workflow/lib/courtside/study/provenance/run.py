@@ -198,12 +198,30 @@ def left_out(study: Study) -> list[str]:
     return found
 
 
+def remaining(study: Study) -> list[str]:
+    """Return a line for each thing that is left of what the session files no longer ask for."""
+    found = [
+        f"{session.name}: {line}"
+        for session in study.sessions.values()
+        for line in _of_no_take(session)
+    ]
+    return found + [
+        f"{name}: {len(kept)} files that persons have not agreed to are here, such as "
+        f"{few(kept, N_NAMED)}: delete them; the end of a run lists all"
+        for name, kept in remains.without_consent(study).items()
+    ]
+
+
 def _of_no_take(session: Session) -> list[str]:
     """Return a line for each take with results of takes or persons that are no more."""
     pages = Path(paths.QUALITY_PAGE.format(session=session.name)).parent.as_posix()
     gone = [
         f"{folder} has files of {', '.join(persons)}, whom this take does not have: delete them"
         for folder, persons in remains.of_nobody(session).items()
+    ]
+    gone += [
+        f"{folder} has files of {', '.join(cameras)}, which this take does not have: delete them"
+        for folder, cameras in remains.of_no_camera(session).items()
     ]
     return gone + [
         f"{folder} was made before: delete it, {pages} and {paths.REPORT}, which may show it"

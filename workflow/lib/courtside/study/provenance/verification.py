@@ -3,6 +3,7 @@
 import shlex
 from collections import Counter
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -123,14 +124,14 @@ def _planned(
     except InputError as error:
         return planned.Plan({}, frozenset(), refused=f"{shlex.join(words)}: {error}")
     names = [sidecar["file"] for sidecar in sidecars]
-    apart = [name for name in names if name not in plan.settings and Path(name).exists()]
+    others = [name for name in names if name not in plan.settings and name not in plan.remains]
+    apart = [name for name in others if Path(name).exists()]
     try:
         other = planned.ask(words, repository, apart) if apart else plan
     except InputError:  # of another study, or of nothing that still exists
         return plan
-    return planned.Plan(
-        other.settings | plan.settings, other.pending | plan.pending, frozenset(apart)
-    )
+    settings, pending = other.settings | plan.settings, other.pending | plan.pending
+    return replace(plan, settings=settings, pending=pending, by_name=frozenset(apart))
 
 
 def _words(run: dict[str, Any]) -> list[str]:
@@ -196,18 +197,33 @@ def report(folder: StrPath, root: StrPath, repository: StrPath) -> tuple[list[st
     plan = _planned(words, sidecars, repository)
     if plan.refused and changed:
         raise InputError(f"{plan.refused}; correct this")
-    lines, causes = _of_all(sidecars, now, plan, words, bool(changed))
+    asked_for = [sidecar for sidecar in sidecars if sidecar["file"] not in plan.remains]
+    left = [name for name in plan.remains if Path(name).exists()]
+    lines, causes = _of_all(asked_for, now, plan, words, bool(changed))
     lines += [
         f"{name}: has no record; remake it, or delete it if the study no longer names it: "
         + command([*words, "--force"], name)
         for name in _unrecorded(root, sidecars)
+        if name not in plan.remains
     ]
     n_faults = len(lines)
     lines += [f"since the last run, {line}" for line in changed]
     lines += causes
     lines += [f"settings are not compared: {plan.refused}"] * bool(plan.refused)
+    lines += [*plan.advice, *_forgotten(len(plan.remains) - len(left))]
     verdict = f"{n_faults} are out of date or have none" if n_faults else "all are up to date"
-    return [*lines, f"{len(sidecars)} files have a record: {verdict}"], n_faults
+    more = f"; besides, {len(left)} that the study no longer asks for" if plan.advice else ""
+    n_faults += len(plan.advice)
+    return [*lines, f"{len(asked_for)} files have a record: {verdict}{more}"], n_faults
+
+
+def _forgotten(n_deleted: int) -> list[str]:
+    if not n_deleted:
+        return []
+    return [
+        f"{n_deleted} files that the study no longer asks for were deleted: the next run that "
+        "makes a file drops their records"
+    ]
 
 
 def _of_all(
