@@ -3,6 +3,7 @@
 run: a run of Snakemake as plain values
 provenance: `record` writes a sidecar for each result
 planned: `ask` what a run would make now
+advice: the command that makes a file anew
 verification: `report` lists the results that are out of date
 comparison: `compare` two trees of results within stated tolerances
 stage_checksums: the first stage at which the results of two machines differ

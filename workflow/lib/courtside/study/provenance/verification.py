@@ -10,7 +10,7 @@ from typing import Any
 
 from courtside.study.errors import InputError, StrPath, few
 from courtside.study.execution import checksums, digest, files
-from courtside.study.provenance import environment, planned
+from courtside.study.provenance import advice, environment, planned
 from courtside.study.provenance.provenance import FORMAT, command
 
 REPEATED = {"--directory", "--configfile", "--config"}  # options of a command that is repeated
@@ -202,7 +202,7 @@ def report(folder: StrPath, root: StrPath, repository: StrPath) -> tuple[list[st
     lines, causes = _of_all(asked_for, now, plan, words, bool(changed))
     lines += [
         f"{name}: has no record; remake it, or delete it if the study no longer names it: "
-        + command([*words, "--force"], name)
+        + command(advice.making(name, words, run, sidecars, repository), name)
         for name in _unrecorded(root, sidecars)
         if name not in plan.remains
     ]
