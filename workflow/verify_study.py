@@ -2,10 +2,12 @@
 
 Usage: `python workflow/verify_study.py`.
 
-It computes again the checksums of raw inputs, artefacts, networks, lock and code, and compares them
-with what the sidecars in results/run say. With `--against OTHER/results` it compares two results
-trees file by file instead: bit-equal, equal within the tolerances of
-courtside/study/provenance/comparison.py, or different. The exit status is 1 if anything differs.
+It computes again the checksums of raw inputs, artefacts, networks, lock and code, asks Snakemake
+which settings the jobs would have, and compares these with what the sidecars in results/run say.
+Recordings that are not here are told apart from those that changed. With `--against OTHER/results`
+it compares two results trees file by file instead: bit-equal, equal within the tolerances of
+courtside/study/provenance/comparison.py, or different. The exit status is 1 if anything differs,
+and 3 if nothing does but something cannot be compared: recordings that are not here, for instance.
 
 Two machines that cannot reach each other's files compare checksums: `--write-checksums TABLE.csv`
 on one of them, `--against TABLE.csv` on the other. It counts the files of each stage that are
@@ -31,25 +33,28 @@ from courtside.study.provenance import comparison, stage_checksums, verification
 from courtside.study.targets import numbers as tables
 
 RESULTS = Path("results")
+DIFFERENT, NOT_COMPARED = 1, 3  # exit status
 
 
 def main(against):
-    """Return (lines to print, number of files that differ)."""
+    """Return (lines to print, exit status)."""
     check_results()
     if against is None:
-        lines, n_faults = verification.report(RESULTS / "run", RESULTS, REPOSITORY)
-        return [*lines, numbers_in_short()], n_faults
+        lines, n_faults, n_unseen = verification.report(RESULTS / "run", RESULTS, REPOSITORY)
+        status = DIFFERENT if n_faults else NOT_COMPARED if n_unseen else 0
+        return [*lines, numbers_in_short()], status
     if against.is_file():
-        return stage_checksums.table(
-            stage_checksums.measure(RESULTS), stage_checksums.read(against)
-        )
+        own, other = stage_checksums.measure(RESULTS), stage_checksums.read(against)
+        lines, n_faults = stage_checksums.table(own, other)
+        return lines, DIFFERENT if n_faults else 0
     if not against.is_dir():
         raise InputError(
             f"{against}: expected a folder of results or a table of checksums, found neither; "
             "correct --against"
         )
     verdicts = comparison.compare(RESULTS, against)
-    return comparison.table(verdicts), sum(v.outcome in comparison.FAULTS for v in verdicts)
+    is_different = any(v.outcome in comparison.FAULTS for v in verdicts)
+    return comparison.table(verdicts), DIFFERENT if is_different else 0
 
 
 def check_results():
@@ -76,10 +81,12 @@ def numbers_in_short():
 
 
 def stale_numbers():
-    """Return (a line for each stale number, their number)."""
+    """Return (a line for each stale number, exit status)."""
     check_results()
     lines = numbers.report(RESULTS, REPOSITORY, tables.made(REPOSITORY))
-    return lines or [f"{numbers.REGISTER}: all numbers are those of these results"], len(lines)
+    if not lines:
+        return [f"{numbers.REGISTER}: all numbers are those of these results"], 0
+    return lines, DIFFERENT
 
 
 def write_checksums(table):
@@ -106,10 +113,10 @@ if __name__ == "__main__":
     try:
         os.chdir(given.directory)
         if given.numbers:
-            lines, n_faults = stale_numbers()
+            lines, status = stale_numbers()
         else:
-            lines, n_faults = write_checksums(table) if table else main(other)
+            lines, status = write_checksums(table) if table else main(other)
     except (InputError, OSError) as error:
         sys.exit(f"Error: {error}")
     print("\n".join(lines))
-    sys.exit(1 if n_faults else 0)
+    sys.exit(status)

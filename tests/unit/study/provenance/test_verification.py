@@ -1,6 +1,7 @@
 """Each change is told once for each file that it reaches, and for no other."""
 
 import json
+import runpy
 import shutil
 import subprocess
 import sys
@@ -40,7 +41,8 @@ rule tabulate:
 def study(tmp_path, monkeypatch):
     """Go to a made-up repository where a study ran; Snakemake, which is slow, is not asked."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(planned, "ask", lambda *_: planned.Plan({}, frozenset()))
+    nothing = planned.Plan({FIGURE: {}, ALONE: {}}, frozenset())
+    monkeypatch.setattr(planned, "ask", lambda *_: nothing)
     digest._parsed.cache_clear()  # of a process that sees one repository only
     library = Path("workflow/lib/courtside")
     for path in (library, Path("workflow/scripts"), Path("results/figures")):
@@ -77,7 +79,7 @@ def made(rule, script, inputs, outputs):
 
 def reported():
     digest._parsed.cache_clear()
-    lines, n_faults = verification.report("results/run", "results", ".")
+    lines, n_faults, _ = verification.report("results/run", "results", ".")
     assert n_faults == len([line for line in lines[:-1] if line.startswith("results/")])
     return lines[:-1]
 
@@ -96,7 +98,6 @@ def test_a_file_that_is_only_touched_changes_nothing(study):
     ("name", "content", "lines"),
     [
         ("a.mp4", "x", [f"{FIGURE}: a.mp4 changed"]),
-        ("b.mp4", None, [f"{ALONE}: b.mp4 is gone"]),
         ("net.onnx", "x", [f"{FIGURE}: net.onnx changed"]),
         ("workflow/lib/courtside/style.py", "WIDTH = 2", [f"{FIGURE}: code of draw.py changed"]),
         ("workflow/lib/courtside/style.py", "WIDTH = 1  # mm", []),
@@ -193,11 +194,47 @@ def test_a_changed_setting_is_told(ran):
 
 def test_a_study_that_cannot_be_planned_is_told(ran):
     Path("Snakefile").write_text("Error")
-    (line,) = reported()
-    assert line.startswith("settings are not compared: snakemake: ") and "Error" in line
+    lines, n_faults, n_unseen = verification.report("results/run", "results", ".")
+    assert lines[0].startswith("settings are not compared: snakemake: ") and "Error" in lines[0]
+    assert (n_faults, n_unseen) == (0, 2)
     Path("config.yaml").write_text("width: 4\n")
-    with pytest.raises(InputError, match=r"snakemake: .*Error.*; correct this"):
-        reported()
+    lines, n_faults, _ = verification.report("results/run", "results", ".")
+    assert n_faults == 1 and lines[0] == "since the last run, config.yaml changed"
+
+
+@pytest.mark.parametrize(("name", "of"), [("b.mp4", ALONE), ("net.onnx", FIGURE)])
+def test_inputs_that_are_not_here_are_told_apart_from_those_that_changed(study, name, of):
+    Path(name).unlink()
+    lines, n_faults, n_unseen = verification.report("results/run", "results", ".")
+    told = f"1 inputs of 1 files are not here, so they cannot be compared: {name}; bring them to"
+    assert lines == [
+        f"{told} this folder",
+        "2 files have a record: 1 cannot be compared in full, the rest is up to date",
+    ]
+    assert (n_faults, n_unseen) == (0, 1)
+    Path(of).write_text("x")
+    lines, n_faults, n_unseen = verification.report("results/run", "results", ".")
+    assert lines[0] == f"{of}: was altered since it was made"
+    assert "1 are out of date or have none, 1 cannot be compared in full" in lines[-1]
+    assert (n_faults, n_unseen) == (1, 1)
+
+
+def test_files_of_the_repository_are_found_from_other_folders(study, monkeypatch):
+    asset = Path("workflow/lib/courtside/style.py")
+    assert verification.present(".")["sha256"](str(asset)) == checksums.of_path(asset)
+    (study / "elsewhere").mkdir()
+    monkeypatch.chdir("elsewhere")
+    known = checksums.of_path(study / asset)
+    now = verification.present("..")
+    assert (now["sha256"](str(asset)), now["sha256"]("a.mp4")) == (known, None)
+    now = verification.present("..", "tests/smoke")  # the study ran there
+    assert now["sha256"](f"../../{asset}") == known
+
+
+def test_files_of_another_study_are_told(study, monkeypatch):
+    monkeypatch.setattr(planned, "ask", lambda *_: planned.Plan({FIGURE: {}}, frozenset()))
+    (line,) = reported()
+    assert line == "1 files are not of the last run's study: their settings are not compared"
 
 
 def test_settings_of_a_file_asked_for_by_name_are_compared(study, monkeypatch):
@@ -214,18 +251,18 @@ def test_what_the_study_no_longer_asks_for_is_counted_apart(study, monkeypatch):
     advice = "gym: results/figures belongs to no take: delete it"
     unrecorded = "results/figures/old.png"
     remains = frozenset([FIGURE, unrecorded])
-    left = planned.Plan({}, frozenset(), remains=remains, advice=(advice,))
+    left = planned.Plan({ALONE: {}}, frozenset(), remains=remains, advice=(advice,))
     monkeypatch.setattr(planned, "ask", lambda *_: left)
     Path(unrecorded).touch()
     Path("a.mp4").write_text("x")  # no run makes this figure again
-    lines, n_faults = verification.report("results/run", "results", ".")
+    lines, n_faults, _ = verification.report("results/run", "results", ".")
     assert n_faults == 1
     verdict = "1 files have a record: all are up to date; besides, 2 that the study no longer asks"
     assert lines == [advice, f"{verdict} for"]
 
 
 def test_what_was_deleted_because_nobody_asks_for_it_is_no_fault(study, monkeypatch):
-    left = planned.Plan({}, frozenset(), remains=frozenset([FIGURE]))
+    left = planned.Plan({ALONE: {}}, frozenset(), remains=frozenset([FIGURE]))
     monkeypatch.setattr(planned, "ask", lambda *_: left)
     Path(FIGURE).unlink()
     (line,) = reported()
@@ -317,3 +354,15 @@ def test_the_program_compares_trees(tmp_path):
     done = program(tmp_path / "one", *against)
     assert done.returncode == 1
     assert "a.json: different by up to 1" in done.stdout
+
+
+@pytest.mark.parametrize(("counts", "status"), [((0, 0), 0), ((2, 0), 1), ((0, 5), 3), ((1, 5), 1)])
+def test_the_exit_status_tells_what_differs_from_what_is_not_here(
+    tmp_path, monkeypatch, counts, status
+):
+    monkeypatch.chdir(tmp_path)
+    Path("results").mkdir()
+    program = runpy.run_path(str(PROGRAM))
+    monkeypatch.setattr(verification, "report", lambda *_: (["line"], *counts))
+    lines, found = program["main"](None)
+    assert (lines[0], found) == ("line", status)

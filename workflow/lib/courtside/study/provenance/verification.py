@@ -1,5 +1,6 @@
 """Files of a study that are out of date, and why, according to their sidecars."""
 
+import os
 import shlex
 from collections import Counter
 from collections.abc import Iterable, Sequence
@@ -20,6 +21,7 @@ OF_FILE = {
     "lock_sha256": str | None, "python": str, "rule": str, "settings": dict,
 }  # fmt: skip
 N_NAMED = 3  # settings in a line
+OF_REPOSITORY = {"config", "workflow"}  # folders
 DRAWN = {".pdf", ".png", ".csv"}  # in folders named figures: all have sidecars
 
 
@@ -50,17 +52,20 @@ def _read(path: Path, kinds: dict[str, Any]) -> dict[str, Any]:
     return content
 
 
-def present(repository: StrPath) -> dict[str, Any]:
+def present(repository: StrPath, ran_in: StrPath = ".") -> dict[str, Any]:
     """Return the inputs, code and versions with which the study would be made now.
 
-    sha256 (callable of a path, None for one that is gone; each file is read once), code (callable
-    of the file name of a script, None for one that is gone), and what `environment.found` says.
+    sha256 (callable of a path, None for one that is not here; each file is read once), code
+    (callable of the file name of a script, None for one that is gone), and what `environment.found`
+    says. `ran_in` is the folder where the study ran, seen from the repository: files of the
+    repository are found wherever the results are now.
     """
     workflow = Path(repository) / "workflow"
 
     @cache
     def sha256(path):
-        return checksums.of_path(path) if Path(path).exists() else None
+        place = Path(path) if Path(path).exists() else _in_repository(path, repository, ran_in)
+        return checksums.of_path(place) if place.exists() else None
 
     @cache
     def code(script):
@@ -70,21 +75,37 @@ def present(repository: StrPath) -> dict[str, Any]:
     return {"sha256": sha256, "code": code, **environment.found(repository)}
 
 
+def _in_repository(path: str, repository: StrPath, ran_in: StrPath) -> Path:
+    """Return where a recorded file of the repository is now; of other files, the path itself."""
+    inner = Path(os.path.normpath(Path(ran_in) / path))
+    return Path(repository) / inner if inner.parts[0] in OF_REPOSITORY else Path(path)
+
+
 def changes(sidecar: dict[str, Any], now: dict[str, Any]) -> list[str]:
-    """Return why a file would differ if made now (see `present`), one reason for each cause."""
+    """Return why a file would differ if made now (see `present`), one reason for each cause.
+
+    Inputs that are not here are no reason (see `absent`).
+    """
     there = now["sha256"](sidecar["file"])
     reasons = []
     if there != sidecar["sha256"]:
         reasons.append("is gone" if there is None else "was altered since it was made")
     for kind in ("inputs", "artefacts"):
         for path, recorded in sidecar[kind].items():
-            reasons += _of_file(path, recorded, now["sha256"](path))
+            found = now["sha256"](path)
+            reasons += [] if found is None else _of_file(path, recorded, found)
     for script, recorded in sidecar["code"].items():
         found = now["code"](script)
         # What follows a hyphen is of the lock's packages, which have reasons of their own.
         if found is None or found != str(recorded).partition("-")[0]:
             reasons.append(f"code of {script} " + ("is gone" if found is None else "changed"))
     return reasons + _of_surroundings(sidecar, now)
+
+
+def absent(sidecar: dict[str, Any], now: dict[str, Any]) -> list[str]:
+    """Return the inputs of a file that are not here, so that they cannot be compared."""
+    recorded = {**sidecar["inputs"], **sidecar["artefacts"]}
+    return [path for path, sha in recorded.items() if sha and now["sha256"](path) is None]
 
 
 def _of_file(path: str, recorded: str | None, found: str | None) -> list[str]:
@@ -149,6 +170,11 @@ def _words(run: dict[str, Any]) -> list[str]:
     return words
 
 
+def _folder(words: list[str]) -> str:
+    """Return the folder where a run's command was given, seen from the repository."""
+    return words[words.index("--directory") + 1] if "--directory" in words[:-1] else "."
+
+
 def _here(words: list[str], repository: StrPath) -> list[str]:
     """Return the words of a run's command for the present folder: results travel."""
     at = words.index("--directory") if "--directory" in words else len(words)
@@ -181,24 +207,23 @@ def _forcing(words: list[str], unnoticed: dict[str, set[str]], plan: planned.Pla
     ]
 
 
-def report(folder: StrPath, root: StrPath, repository: StrPath) -> tuple[list[str], int]:
-    """Return lines for people, and the number of files that would differ or have no record.
+def report(folder: StrPath, root: StrPath, repository: StrPath) -> tuple[list[str], int, int]:
+    """Return lines for people, the number of faults, and of files not compared in full.
 
+    Faults are files that would differ, that have no record, or that the study no longer asks for.
     `folder` is such as results/run, `root` the folder of all results.
     """
-    sidecars, now = read(folder), present(repository)
+    sidecars = read(folder)
     run = _read(Path(folder) / "provenance.json", OF_RUN)
     words = _here(_words(run), repository)
+    now = present(repository, _folder(_words(run)))
     changed = [
         line
         for path, sha in run["config_files"].items()
         for line in _of_file(path, sha, now["sha256"](path))
     ]
     plan = _planned(words, sidecars, repository)
-    if plan.refused and changed:
-        raise InputError(f"{plan.refused}; correct this")
     asked_for = [sidecar for sidecar in sidecars if sidecar["file"] not in plan.remains]
-    left = [name for name in plan.remains if Path(name).exists()]
     lines, causes = _of_all(asked_for, now, plan, words, bool(changed))
     lines += [
         f"{name}: has no record; remake it, or delete it if the study no longer names it: "
@@ -207,14 +232,41 @@ def report(folder: StrPath, root: StrPath, repository: StrPath) -> tuple[list[st
         if name not in plan.remains
     ]
     n_faults = len(lines)
-    lines += [f"since the last run, {line}" for line in changed]
-    lines += causes
-    lines += [f"settings are not compared: {plan.refused}"] * bool(plan.refused)
-    lines += [*plan.advice, *_forgotten(len(plan.remains) - len(left))]
-    verdict = f"{n_faults} are out of date or have none" if n_faults else "all are up to date"
-    more = f"; besides, {len(left)} that the study no longer asks for" if plan.advice else ""
-    n_faults += len(plan.advice)
-    return [*lines, f"{len(asked_for)} files have a record: {verdict}{more}"], n_faults
+    told, n_unseen = _not_compared(asked_for, now, plan)
+    lines += [*(f"since the last run, {line}" for line in changed), *causes, *told, *plan.advice]
+    lines += _forgotten(sum(not Path(name).exists() for name in plan.remains))
+    lines += [f"{len(asked_for)} files have a record: {_verdict(n_faults, n_unseen, plan)}"]
+    n_faults += len(plan.advice) + bool(plan.refused and changed)
+    return lines, n_faults, n_unseen
+
+
+def _not_compared(
+    sidecars: Sequence[dict[str, Any]], now: dict[str, Any], plan: planned.Plan
+) -> tuple[list[str], int]:
+    """Return lines on what cannot be compared, and of how many files."""
+    missing = {sidecar["file"]: absent(sidecar, now) for sidecar in sidecars}
+    names = sorted(set().union(*missing.values()))
+    files = [name for name, paths in missing.items() if paths]
+    lines = [f"settings are not compared: {plan.refused}"] * bool(plan.refused)
+    if not plan.refused and (n := sum(s["file"] not in plan.settings for s in sidecars)):
+        lines.append(f"{n} files are not of the last run's study: their settings are not compared")
+    if names:
+        lines.append(
+            f"{len(names)} inputs of {len(files)} files are not here, so they cannot be compared: "
+            f"{few(names, N_NAMED)}; bring them to this folder"
+        )
+    return lines, len(sidecars) if plan.refused else len(files)
+
+
+def _verdict(n_faults: int, n_unseen: int, plan: planned.Plan) -> str:
+    parts = [f"{n_faults} are out of date or have none"] if n_faults else []
+    parts += [f"{n_unseen} cannot be compared in full"] if n_unseen else []
+    n_left = sum(Path(name).exists() for name in plan.remains)
+    text = ", ".join(parts) or "all are up to date"
+    if n_unseen and not n_faults:
+        text += ", the rest is up to date"
+    left = f"; besides, {n_left or 'others'} that the study no longer asks for"
+    return text + (left if plan.advice else "")
 
 
 def _forgotten(n_deleted: int) -> list[str]:
