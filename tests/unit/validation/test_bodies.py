@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from courtside.study.configuration.sessions import Subject
+from courtside.study.configuration.sessions import Study, Subject
 from courtside.validation import bodies
 
 
@@ -40,3 +40,21 @@ def test_a_remark_on_a_body_names_the_file(hall):
     faults, (remark,) = hall.said()
     assert faults == []
     assert ".yaml: subjects.p1: expected 12 to 40 kg/m2" in remark
+
+
+def test_a_session_without_the_person_who_is_compared_is_told(hall):
+    one = hall.session()
+    step = {"subject": "p1", "sessions": ["hall", "other", "unknown"], "takes": ["serve"]}
+
+    def said(**others):
+        sessions = {"hall": one, **others}
+        return list(bodies.compared(Study(sessions, {}, {}, {"compare_sessions": step}, file="f")))
+
+    alike = replace(one, name="other")
+    assert said() == said(other=alike) == []
+    (line,) = said(other=replace(alike, takes={"lob": one.takes["lob"]}))
+    assert line == (
+        "f: compare_sessions: expected a take of p1 whose name begins with serve in each session, "
+        "found none in other; archive.csv has no change, only first values; correct the names, or "
+        "the list of sessions"
+    )

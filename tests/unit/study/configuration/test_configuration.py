@@ -598,3 +598,8 @@ def test_layouts_of_figure_5_show_cameras_of_takes_that_are_compared_with_someth
     assert unseen.startswith(f"{where}.take: expected a virtual take, or one of evaluate_networks")
     layouts = {"a": {"take": "elsewhere/t1", "cameras": ["left"]}}
     load(folder, **changed_step("draw_badminton_fig05", layouts=layouts))
+
+
+def test_a_take_that_no_session_has_is_told_of_the_file_that_names_it(folder):
+    (line,) = faults(folder, **changed_step("export_overlay_video", takes=["hall/t9"]))
+    assert line.startswith("config/config.yaml: export_overlay_video.takes: expected one of the ")

@@ -1,8 +1,8 @@
-"""Persons that sessions state: a mass that does not go with the height, other words elsewhere."""
+"""Persons that sessions state: an unlikely mass, other words elsewhere, nobody to compare with."""
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from courtside.study.configuration.sessions import Session, Subject
+from courtside.study.configuration.sessions import Session, Study, Subject
 
 KG_OF_LB = 0.45359237
 # ASSUME: kg/m2 of a body; in pounds, a person of 18 or more kg/m2 seems to have 40 or more.
@@ -25,6 +25,30 @@ def unlike(sessions: Iterable[Session]) -> Iterator[str]:
                 f"{name}: consent differs between sessions ({each}): who withdraws must be changed "
                 "in the file of each session"
             )
+
+
+def compared(study: Study) -> Iterator[str]:
+    """Yield one line if a session has nothing of the person whom the study compares over sessions.
+
+    Sessions that the study does not run are passed over.
+    """
+    step = study.parameters["compare_sessions"]
+    named = [study.sessions[name] for name in step["sessions"] if name in study.sessions]
+    begins = tuple(step["takes"])
+    there = [
+        session.name
+        for session in named
+        for take in session.takes.values()
+        if take.name.startswith(begins) and step["subject"] in take.subjects
+    ]
+    missing = [session.name for session in named if session.name not in there]
+    if there and missing:
+        alone = "; archive.csv has no change, only first values" if len(set(there)) == 1 else ""
+        yield (
+            f"{study.file}: compare_sessions: expected a take of {step['subject']} whose name "
+            f"begins with {' or '.join(begins)} in each session, found none in "
+            f"{', '.join(missing)}{alone}; correct the names, or the list of sessions"
+        )
 
 
 def remarks(subjects: Mapping[str, Subject]) -> Iterator[str]:

@@ -40,6 +40,7 @@ def check(study: Study, remembered: Remembered) -> list[str]:
             faults += found.faults()
             remarks += found.remarks()
     remarks += bodies.unlike(one for one in study.sessions.values() if not one.virtual)
+    remarks += bodies.compared(study)
     remembered.save()
     if faults:
         raise InputError(*dict.fromkeys(faults))

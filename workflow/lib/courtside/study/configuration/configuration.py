@@ -8,6 +8,7 @@ from pathlib import Path
 
 from courtside.study.configuration import (
     model_faults,
+    named_faults,
     schemas,
     session_faults,
     session_files,
@@ -107,7 +108,8 @@ def _study(config: Content, config_file: str, folder: Path, root: StrPath) -> St
         folder=folder,
         file=config_file,
     )
-    if faults := [*_take_faults(study), *_layout_faults(study, config_file)]:
+    faults = [*_take_faults(study), *_layout_faults(study, config_file)]
+    if faults := [*faults, *named_faults.find(config_file, study)]:
         raise InputError(*faults)
     return study
 

@@ -1,0 +1,75 @@
+"""A take or a person that a step names and no session has is told before any job."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import yaml
+
+from courtside.study.configuration import named_faults, session_files
+from courtside.study.configuration.sessions import Study
+
+PARAMETERS = yaml.safe_load(Path("config/config.yaml").read_text(encoding="utf-8"))
+COMPARED = PARAMETERS["compare_sessions"] | {"takes": ["pre", "post"], "measures": None}
+
+
+def session(name, persons, takes):
+    content = {
+        "description": "a hall",
+        "court": "none",
+        "subjects": {person: {} for person in persons},
+        "cameras": {"left": {}},
+        "takes": {take: {"videos": {"left": "a.mp4"}} for take in takes},
+    }
+    return session_files.session(name, f"{name}.yaml", content, PARAMETERS)
+
+
+def study(**steps):
+    spring, autumn = session("spring", ["alma"], ["pre1"]), session("autumn", ["bert"], ["post1"])
+    sessions = {"spring": spring, "autumn": autumn}
+    return Study(sessions, {}, {}, PARAMETERS | steps)
+
+
+def said(one):
+    return list(named_faults.find("season.yaml", one))
+
+
+def overlay(*takes):
+    return {"export_overlay_video": PARAMETERS["export_overlay_video"] | {"takes": list(takes)}}
+
+
+def test_a_take_that_its_session_does_not_have_is_told():
+    (line,) = said(study(**overlay("spring/pre1", "spring/pre9", "winter/pre1")))
+    assert line == (
+        "season.yaml: export_overlay_video.takes: expected one of the takes of session spring, "
+        "['pre1'], found spring/pre9; correct the name, or remove it"
+    )
+    step = {"draw_thesis_fig3": {"take": "autumn/pre1", "sources": ["a", "b"]}}
+    (line,) = said(study(**step))
+    assert line.startswith("season.yaml: draw_thesis_fig3.take: expected one of the takes of")
+
+
+def test_a_take_without_consent_and_a_value_of_the_default_file_are_not_told():
+    one = study(**overlay("spring/pre2"))
+    spring = replace(one.sessions["spring"], withheld={"pre2": ("alma",)})
+    assert said(replace(one, sessions=one.sessions | {"spring": spring})) == []
+    named = {"walk-4cams": session("walk-4cams", ["p1"], ["another"])}
+    assert said(Study(named, {}, {}, PARAMETERS)) == []
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({}, None),
+        ({"subject": "carla"}, "subject: expected one of the persons of spring, autumn, "
+         "['alma', 'bert'], found carla; correct the name, or the list of sessions"),
+        ({"takes": ["pre", "mid"]}, "takes: expected how names of takes of spring, autumn begin, "
+         "['post1', 'pre1'], found mid; correct it, or remove it"),
+        ({"subject": "carla", "sessions": ["spring", "winter"]}, None),
+        ({"subject": "carla", "sessions": []}, None),
+    ],
+)  # fmt: skip
+def test_persons_and_beginnings_of_takes_that_are_compared_are_known(change, words):
+    step = COMPARED | {"subject": "alma", "sessions": ["spring", "autumn"]} | change
+    where = "season.yaml: compare_sessions"
+    assert said(study(compare_sessions=step)) == ([f"{where}.{words}"] if words else [])

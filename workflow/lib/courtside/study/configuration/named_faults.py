@@ -1,0 +1,71 @@
+"""Names of takes and persons in the steps of a study that no session of it has."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from courtside.study.configuration import yaml_files
+from courtside.study.configuration.sessions import DEFAULT, Session, Study
+
+WITH_TAKES = (
+    *("export_overlay_video", "evaluate_networks", "evaluate_round_trip", "draw_stroke"),
+    "draw_three_cameras",
+)
+
+
+def find(config_file: str, study: Study) -> Iterator[str]:
+    """Yield a fault for each name that nothing in the study's sessions has.
+
+    Sessions that the study does not run are passed over: one file serves several studies. So are
+    values of the default file in a study with a file of its own, whose author did not write them.
+    """
+
+    def is_own(key: str) -> bool:
+        default = study.folder / DEFAULT
+        return yaml_files.file_of(key, study.parameters, config_file, default) == config_file
+
+    for key, name in filter(lambda named: is_own(named[0]), _named(study.parameters)):
+        session_name, _, take = name.partition("/")
+        session = study.sessions.get(session_name)
+        if session and take not in _takes(session):
+            yield (
+                f"{config_file}: {key}: expected one of the takes of session {session_name}, "
+                f"{_takes(session)}, found {name}; correct the name, or remove it"
+            )
+    if is_own("compare_sessions"):
+        yield from _compared(f"{config_file}: compare_sessions", study)
+
+
+def _named(parameters: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """Yield the key and the name, `session/take`, of each take that a step names."""
+    for step in WITH_TAKES:
+        yield from ((f"{step}.takes", name) for name in parameters[step]["takes"])
+    yield "draw_thesis_fig3.take", parameters["draw_thesis_fig3"]["take"]
+    for layout, place in parameters["draw_badminton_fig05"]["layouts"].items():
+        yield f"draw_badminton_fig05.layouts.{layout}.take", place["take"]
+
+
+def _takes(session: Session) -> list[str]:
+    """Return the takes of a session's file, those without consent among them."""
+    return sorted([*session.takes, *session.withheld])
+
+
+def _compared(where: str, study: Study) -> Iterator[str]:
+    """Yield what of `compare_sessions` no session has, if the study runs all that it names."""
+    step = study.parameters["compare_sessions"]
+    if not step["sessions"] or not set(step["sessions"]) <= set(study.sessions):
+        return
+    compared = [study.sessions[name] for name in step["sessions"]]
+    of = f"of {', '.join(step['sessions'])}"
+    persons = sorted({name for session in compared for name in session.subjects})
+    takes = sorted({name for session in compared for name in _takes(session)})
+    if step["subject"] not in persons:
+        yield (
+            f"{where}.subject: expected one of the persons {of}, {persons}, found "
+            f"{step['subject']}; correct the name, or the list of sessions"
+        )
+    for beginning in step["takes"]:
+        if not any(name.startswith(beginning) for name in takes):
+            yield (
+                f"{where}.takes: expected how names of takes {of} begin, {takes}, found "
+                f"{beginning}; correct it, or remove it"
+            )
