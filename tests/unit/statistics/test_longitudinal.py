@@ -48,6 +48,14 @@ def test_changes_are_of_means_in_the_order_of_sessions():
     assert row["verdict"] == "within"
 
 
+def test_values_say_whose_they_are_and_of_which_takes():
+    table = rows([("a", [8.0, np.nan, 7.9], {}), ("b", [9.0], {})])
+    values = compared(table)[0]
+    assert values["person"].tolist() == ["p1", "p1"]
+    assert values["takes"].tolist() == ["t0+t2", "t0"]
+    assert values["n_takes"].tolist() == [2, 1]
+
+
 def test_without_a_change_one_in_twenty_is_called_real():
     rng = np.random.default_rng(0)
     table = rows([("a", np.zeros(3), {}), ("b", np.zeros(4), {})])

@@ -9,10 +9,10 @@ from courtside.statistics import longitudinal
 
 VALUES = pd.DataFrame(
     [
-        ("speed", "m/s", "a", 0, "net", "file", "", 3, 2.0, 0.1),
-        ("speed", "m/s", "b", 1, "net", "file", "", 3, 2.5, 0.1),
-        ("speed", "m/s", "c", 2, "other", "file", "", 1, 2.4, np.nan),
-        ("knee", "degrees", "a", 0, "net", "file", "", 1, 90.0, np.nan),
+        ("p1", "speed", "m/s", "a", 0, "net", "file", "", 3, "t1+t2+t3", 2.0, 0.1),
+        ("p1", "speed", "m/s", "b", 1, "net", "file", "", 3, "t1+t2+t3", 2.5, 0.1),
+        ("p1", "speed", "m/s", "c", 2, "other", "file", "", 1, "t1", 2.4, np.nan),
+        ("p1", "knee", "degrees", "a", 0, "net", "file", "", 1, "t1", 90.0, np.nan),
     ],
     columns=longitudinal.VALUES,
 )
@@ -31,7 +31,8 @@ def test_changes_stand_beside_the_values_they_belong_to():
     assert rows["change"].tolist()[1:3] == [0.5, 0.4]
     assert np.isnan(rows["change"][0])
     assert rows["mixed"].tolist() == ["", "", "model: net -> other", ""]
-    assert rows["value"].tolist() == VALUES["value"].tolist()
+    for name in ("person", "takes", "value"):
+        assert rows[name].tolist() == VALUES[name].tolist()
 
 
 def test_bands_reach_as_far_as_the_smallest_detectable_change():

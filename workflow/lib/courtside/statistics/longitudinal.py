@@ -14,8 +14,8 @@ LEVEL = 0.95  # of detectable changes, as is usual
 FACTOR = scipy.special.ndtri(0.5 + LEVEL / 2)  # of the smallest detectable change of single takes
 REAL, WITHIN, UNTOLD, MIXED = "real", "within", "untold", "mixed"
 VALUES = [
-    "measure", "unit", "session", "order", "model", "calibration", "definition", "n_takes", "value",
-    "sd_takes",
+    "person", "measure", "unit", "session", "order", "model", "calibration", "definition",
+    "n_takes", "takes", "value", "sd_takes",
 ]  # fmt: skip
 CHANGES = [
     "measure", "unit", "session", "order", "against", "change", "detectable", "freedom", "verdict",
@@ -93,13 +93,15 @@ def over_sessions(rows: pd.DataFrame) -> pd.DataFrame:
     """Average the takes of each session, from rows of `of_subject`.
 
     `VALUES`, one row per measure, session and way of measuring: mean over the takes and their
-    standard deviation. `order` counts sessions as they come.
+    standard deviation. `order` counts sessions as they come, `takes` are joined by +.
     """
     rows = rows.dropna(subset=["value"])
     order = list(dict.fromkeys(rows["session"]))
-    keys = ["measure", "unit", "session", *CONDITIONS, "definition"]
-    groups = rows.groupby(keys, sort=False)["value"]
-    found = groups.agg(n_takes="count", value="mean", sd_takes="std").reset_index()
+    keys = ["subject", "measure", "unit", "session", *CONDITIONS, "definition"]
+    groups = rows.groupby(keys, sort=False)
+    found = groups["value"].agg(n_takes="count", value="mean", sd_takes="std")
+    found = found.assign(takes=groups["take"].agg("+".join)).reset_index()
+    found = found.rename(columns={"subject": "person"})
     found["order"] = found["session"].map(order.index)
     names = list(dict.fromkeys(rows["measure"]))
     found["place"] = found["measure"].map(names.index)
