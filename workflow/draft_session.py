@@ -4,7 +4,8 @@ Example: `python workflow/draft_session.py data/north`.
 
 A plain program, for Snakemake checks sessions before it runs. It writes
 config/sessions/<session>.yaml with every guess marked and config/<session>.yaml, the study of this
-session alone, never over a file that is there, and says what to look at next.
+session alone, never over a file that is there, and says what to look at next. Of a session that is
+there it prints the new takes, to be copied into the file.
 """
 
 import argparse
@@ -15,8 +16,9 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 COURTS = REPOSITORY / "config" / "courts"
 sys.path.insert(0, str(REPOSITORY / "workflow" / "lib"))
 
-from courtside.drafting import draft, guess, survey
+from courtside.drafting import additions, draft, guess, survey
 from courtside.drafting import names as file_names
+from courtside.study.configuration import schemas, session_files
 from courtside.study.configuration.configuration import RESERVED
 from courtside.study.errors import InputError
 
@@ -29,10 +31,14 @@ def main(folder, name, court, sessions):
     check_court(court)
     name = name or file_names.name(folder.resolve().name, "session1")
     check_name(name)
+    check_folder(sessions)
     recordings = survey.survey(folder, root=Path.cwd())
     found = guess.guess(recordings)
     written = survey.written(folder, Path.cwd())
     path = sessions / f"{name}.yaml"
+    if path.is_file():
+        content = session_files.filled(schemas.read(path, "session"))
+        return additions.to_paste(found, content, path=shown(path), folder=written)
     title = folder.resolve().name
     draft.write(path, draft.text(found, title=title, folder=written, court=court))
     study = shown(sessions.parent / f"{name}.yaml")
@@ -59,6 +65,16 @@ def check_name(name):
         raise InputError(
             f"--name: expected another name than {', '.join(taken)}, which config/ or results/ "
             f"have for files of their own, found {name}; give the session another name"
+        )
+
+
+def check_folder(sessions):
+    """Refuse a folder of sessions that is not there."""
+    if not sessions.is_dir():
+        raise InputError(
+            f"--sessions: expected a folder of the files of sessions, found "
+            f"{'a file' if sessions.exists() else 'none'} at {shown(sessions)}; make it, or "
+            "correct the path"
         )
 
 

@@ -210,7 +210,8 @@ def test_a_folder_of_sessions_that_is_not_there_is_told_in_one_line(gym):
     done = run(gym / "data", str(gym / "data" / "My Gym"))
     assert done.returncode == 1
     assert done.stderr.startswith("Error: ") and done.stderr.count("\n") == 1
-    assert str(gym / "data" / "sessions") in done.stderr
+    assert "--sessions: expected a folder of the files of sessions, found none at" in done.stderr
+    assert "sessions; make it, or correct the path" in done.stderr
 
 
 def test_the_program_drafts_once(gym):
@@ -237,6 +238,12 @@ def test_the_program_drafts_once(gym):
     assert again.returncode == 1
     assert again.stderr.count("\n") == 1
     assert again.stderr.startswith("Error: ")
+    shorter = {**content, "takes": {}}
+    (gym / "sessions" / "my_gym.yaml").write_text(yaml.safe_dump(shorter))
+    more = run(gym, "data/My Gym")
+    assert (more.returncode, more.stderr) == (0, "")
+    assert "\n  serve:\n" in more.stdout
+    assert yaml.safe_load((gym / "sessions" / "my_gym.yaml").read_text()) == shorter
 
 
 def test_the_program_says_when_there_is_nothing(tmp_path):

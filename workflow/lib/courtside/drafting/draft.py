@@ -203,12 +203,15 @@ def _as_many_frames(take: Take) -> bool:
 def _takes(guess: Guess) -> list[str]:
     remark = "recordings that belong together; `synchronised: true` where the cameras share a clock"
     lines = [f"takes:  {MARK} {remark}"] * bool(guess.takes)
-    for name, take in guess.takes.items():
-        lines.append(f"  {_quoted(name)}:")
-        if name not in unfilmed(guess):
-            lines += [*["    videos:"] * bool(take), *_of_each_camera(guess, take, "      ")]
-        lines += [*_keypoints(guess, name), *_devices(guess, name)]
-    return lines
+    return lines + [line for name in guess.takes for line in take_lines(guess, name)]
+
+
+def take_lines(guess: Guess, name: str) -> list[str]:
+    """Return the lines of one take, which a session's file has under `takes`."""
+    lines, take = [f"  {_quoted(name)}:"], guess.takes[name]
+    if name not in unfilmed(guess):
+        lines += [*["    videos:"] * bool(take), *_of_each_camera(guess, take, "      ")]
+    return [*lines, *_keypoints(guess, name), *_devices(guess, name)]
 
 
 def _of_each_camera(guess: Guess, take: Take, indent: str) -> Iterator[str]:
