@@ -29,9 +29,9 @@ def record_provenance():
 
 def end_of_run(n_failed=0):
     """Return the words at the end of a run; `n_failed` takes were made, but judged as failed."""
-    viewers = targets.pages.every_viewer(STUDY)[:1]
+    viewers = targets.pages.every_viewer(STUDY)
     seconds = time.monotonic() - STARTED_S
-    return run.ending(workflow, REPOSITORY, seconds, LOOK_AT + viewers, n_failed)
+    return run.ending(workflow, REPOSITORY, seconds, LOOK_AT, n_failed, viewers)
 
 
 def last_words():

@@ -133,6 +133,19 @@ def test_a_report_of_an_earlier_run_is_not_to_be_looked_at(tmp_path, monkeypatch
     assert "report" not in run.ending(workflow(), **end)  # nothing was made: it may be of this run
 
 
+def test_the_end_names_what_this_run_made_to_look_at(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    viewers = [f"{take}.html" for take in ("a", "b", "c")]
+    look_at = ["players.csv", "ways.csv"]
+    jobs = [made_up("build", path) for path in (*viewers, *look_at)]
+    for job in jobs:
+        (tmp_path / job.output[0]).touch()
+    only = workflow(jobs, jobs)
+    monkeypatch.setattr(only.dag, "needrun_jobs", lambda exclude_finished: [*jobs[1:3], jobs[4]])
+    said = run.ending(only, tmp_path, 42, look_at, viewers=viewers)
+    assert said.endswith("Look at ways.csv, b.html.")
+
+
 def test_the_end_says_what_failed(tmp_path):
     jobs = [made_up("draw", "a.png"), made_up("draw_all", "b.png")]
     words = run.ending(workflow(jobs, jobs[:1], failed=jobs[1:]), tmp_path, 42, [])

@@ -94,11 +94,16 @@ def verdicts(workflow: Any) -> tuple[list[str], int]:
 
 
 def ending(
-    workflow: Any, repository: Path, seconds: float, look_at: Iterable[str], n_failed: int = 0
+    workflow: Any,
+    repository: Path,
+    seconds: float,
+    look_at: Iterable[str],
+    n_failed: int = 0,
+    viewers: Iterable[str] = (),
 ) -> str:
     """Return the words at the end of a run, finished or stopped; `n_failed` takes failed.
 
-    Of the files to `look_at`, those that this run was asked for are named.
+    Of the files to `look_at`, those that this run made are named, and of `viewers` the first.
     """
     dag, scheduler = workflow.dag, workflow.scheduler
     wanted = [job for job in dag.needrun_jobs(exclude_finished=False) if job.output]
@@ -107,8 +112,10 @@ def ending(
     if not failed and len(done) == len(wanted):
         made = [str(path) for job in done for path in job.output]
         of_run = {Path(path).as_posix() for job in dag.jobs for path in job.output}
-        asked = [path for path in look_at if path in of_run]
-        text = summary.finished(made, seconds, asked, n_failed)
+        new = {Path(path).as_posix() for path in made}
+        named = [path for path in look_at if path in new]
+        named += [path for path in viewers if path in new][:1]
+        text = summary.finished(made, seconds, named, n_failed)
         is_older = made and paths.REPORT not in of_run and Path(paths.REPORT).is_file()
         return f"{text}\n{_older_report(workflow, repository)}" if is_older else text
     faults = [(job.name, [str(path) for path in job.log]) for job in failed]
