@@ -71,7 +71,7 @@ onsuccess:
 onerror:
     files.delete_unfinished("results")
     print(end_of_run(), *REMARKS, *asked(run.warnings, STUDY), sep="\n", file=sys.stderr)
-    record_provenance()
+    record_provenance(tried)
 
 
 rule all:

@@ -115,6 +115,7 @@ def test_a_disk_full_during_a_job_is_one_line(on_small_disk, untouched):
                 assert_one_line(main, f"  {rule}: ")
                 text = output(main)
                 assert "No space left on device" in text or "free or allow" in text
+                assert "its log is empty" not in text and "run.smk" not in text
         assert_survived(on_small_disk, untouched)
 
 

@@ -120,6 +120,14 @@ def asked(function, *args, **options):
         raise WorkflowError(str(error)) from None
 
 
+def tried(function, *args):
+    """Call a function of the library; its error is one line after the fault that stopped a run."""
+    try:
+        function(*args)
+    except InputError as error:
+        print(f"Error: {error}", file=sys.stderr)
+
+
 def of_job(function, *args, **options):
     """Return the input function of a library function whose first argument is the `Job`."""
     return lambda w: asked(function, Job(STUDY, dict(w.items())), *args, **options)

@@ -1,5 +1,7 @@
 """The words at the end of a run: what was made and where, or what failed and what to do."""
 
+import shutil
+
 import pytest
 
 from courtside.study.errors import SPARE_MEMORY
@@ -116,3 +118,17 @@ def test_more_failures_are_counted_with_the_places_of_their_logs(tmp_path):
 )
 def test_durations_are_words(seconds, words):
     assert summary.duration(seconds) == words
+
+
+def test_a_log_that_a_full_disk_left_empty_says_so(tmp_path, monkeypatch):
+    log = tmp_path / "take.log"
+    log.touch()
+    usage = shutil.disk_usage(tmp_path)._replace(free=300_000)
+    monkeypatch.setattr(shutil, "disk_usage", lambda folder: usage)
+    (told,) = [
+        line
+        for line in summary.failed([("rule", [str(log)])], 0, 1, 1).splitlines()
+        if line.startswith("  rule: ")
+    ]
+    assert told.startswith("  rule: its log could not be written: ")
+    assert "expected at least 20 MB free on its disk, found 0.3 MB; free some room" in told

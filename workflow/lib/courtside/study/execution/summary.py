@@ -3,7 +3,8 @@
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from courtside.study.errors import SPARE_MEMORY, StrPath, few
+from courtside.study.errors import SPARE_MEMORY, InputError, StrPath, few
+from courtside.study.execution import machine_resources
 
 N_NAMED = 3  # folders or files that a line names; the rest are counted
 N_FAULTS = 20  # told with their reason
@@ -115,7 +116,16 @@ def _last_fault(log: StrPath) -> str:
         if mark:
             return message
     if not lines:
-        return f"its log is empty: it was killed, or disk or memory are full; {SPARE_MEMORY}"
+        return _unwritten(Path(log).parent)
     if any(mark in lines[-1] for mark in UNFINISHED):
         return f"it was killed, or ran out of memory; its last words: {lines[-1]}"
     return lines[-1]
+
+
+def _unwritten(folder: Path) -> str:
+    """Return why a job's log in a folder is empty, as far as the disk tells it."""
+    try:
+        machine_resources.check(folder)
+    except InputError as error:
+        return f"its log could not be written: {error}"
+    return f"its log is empty: it was killed, or disk or memory are full; {SPARE_MEMORY}"
