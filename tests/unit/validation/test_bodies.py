@@ -35,6 +35,29 @@ def test_other_consent_of_a_person_in_another_session_is_told(hall):
     )
 
 
+@pytest.mark.parametrize(
+    ("key", "there", "words"),
+    [
+        ("height_m", (1.65, 1.75), "(hall: 1.65, other: 1.75)"),
+        ("height_m", (1.65, 1.67), None),  # another shoe
+        ("mass_kg", (60.0, 82.0), "(hall: 60.0, other: 82.0)"),
+        ("mass_kg", (60.0, 66.0), None),  # half a year
+        ("sex", ("m", "f"), "(hall: m, other: f)"),
+        ("sex", ("m", None), None),
+    ],
+)
+def test_another_body_of_a_person_in_another_session_is_told(hall, key, there, words):
+    one = hall.session()
+    sessions = [
+        replace(one, name=name, subjects={"p1": replace(one.subjects["p1"], **{key: value})})
+        for name, value in zip(("hall", "other"), there, strict=True)
+    ]
+    said = list(bodies.unlike(sessions))
+    advice = "correct it, or, if these are two persons, give one another pseudonym"
+    told = [f"p1: {key} differs between sessions {words}: {advice}"]
+    assert said == (told if words else [])
+
+
 def test_a_remark_on_a_body_names_the_file(hall):
     hall.content["subjects"]["p1"] = {"height_m": 1.75, "mass_kg": 154.3}
     faults, (remark,) = hall.said()

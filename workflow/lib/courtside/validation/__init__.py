@@ -1,7 +1,7 @@
 """Checks of sessions before any job: sizes, rates, copies, exchanged cameras, clicked points.
 
 check: `check`: all sessions of a study; every fault in one `InputError`
-bodies: `remarks`, `unlike`, `compared`: an unlikely mass; consent of a person; nobody to compare
+bodies: `remarks`, `unlike`, `compared`: unlikely masses; persons who differ; nobody to compare
 boards: `remarks`: a board of an impossible size
 calibrated: `faults`: cameras and sizes against the calibration file, sizes of a camera's recordings
 views: `faults`: one view given for two cameras, exchanged cameras

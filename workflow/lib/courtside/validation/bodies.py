@@ -1,30 +1,54 @@
 """Persons that sessions state: an unlikely mass, other words elsewhere, nobody to compare with."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from courtside.study.configuration.sessions import Session, Study, Subject
 
 KG_OF_LB = 0.45359237
 # ASSUME: kg/m2 of a body; in pounds, a person of 18 or more kg/m2 seems to have 40 or more.
 BODY_KG_M2 = (12.0, 40.0)
+# ASSUME: how a person's body, as it is measured again, does not differ from session to session.
+OF_THE_BODY: dict[str, Callable[[list], bool]] = {
+    "height_m": lambda values: round(max(values) - min(values), 3) > 0.02,
+    "mass_kg": lambda values: max(values) > 1.15 * min(values),
+    "sex": lambda values: len(set(values)) > 1,
+}
 
 
 def unlike(sessions: Iterable[Session]) -> Iterator[str]:
-    """Yield one line for each person of several sessions who agrees to less in one of them.
+    """Yield one line for each thing of a person that sessions state differently.
 
-    The same pseudonym is the same person: sessions are compared by it.
+    The same pseudonym is the same person: sessions are compared by it. Who says nothing of consent
+    agrees to less; other things are compared where they are stated.
     """
-    stated: dict[str, dict[str, tuple[str, ...]]] = {}
+    persons: dict[str, dict[str, Subject]] = {}
     for session in sessions:
         for name, person in session.subjects.items():
-            stated.setdefault(name, {})[session.name] = person.consent
-    for name, words in stated.items():
+            persons.setdefault(name, {})[session.name] = person
+    for name, there in persons.items():
+        words = {session: person.consent for session, person in there.items()}
         if len({frozenset(each) for each in words.values()}) > 1:
             each = ", ".join(f"{session}: [{', '.join(word)}]" for session, word in words.items())
             yield (
                 f"{name}: consent differs between sessions ({each}): who withdraws must be changed "
                 "in the file of each session"
             )
+        for key, differ in OF_THE_BODY.items():
+            yield from _differing(name, key, differ, there)
+
+
+def _differing(
+    name: str, key: str, differ: Callable[[list], bool], there: Mapping[str, Subject]
+) -> Iterator[str]:
+    """Yield a line if sessions state a person's body so differently that one is wrong."""
+    stated = {session: getattr(person, key) for session, person in there.items()}
+    stated = {session: value for session, value in stated.items() if value is not None}
+    if stated and differ([*stated.values()]):
+        each = ", ".join(f"{session}: {value}" for session, value in stated.items())
+        yield (
+            f"{name}: {key} differs between sessions ({each}): correct it, or, if these are two "
+            "persons, give one another pseudonym"
+        )
 
 
 def compared(study: Study) -> Iterator[str]:
