@@ -64,6 +64,7 @@ def test_nothing_is_made_of_takes_with_somebody_who_withdrew():
     found = session(agreed("analysis", "export", "pictures"), agreed())
     assert list(found.takes) == ["alone"]
     assert found.withheld == {"both": ("p2",)}
+    assert list(found.refused) == ["both"]
     assert consent.left_out(found) == [
         "nothing is made of take both: p2 has not agreed to analysis (consent)"
     ]

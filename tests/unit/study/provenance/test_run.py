@@ -237,6 +237,17 @@ def test_what_is_left_out_for_want_of_consent_is_told_with_what_remains(
         f"walk-4cams-tiny: {made} was made before: delete it, {pages} and results/report.html, "
         "which may show it"
     )
+    (tmp_path / made).rmdir()
+    withdrawn = replace(withdrawn, refused=session.takes)
+    Path(pages).mkdir()
+    for path in (f"{pages}/quality.html", "results/report.html"):
+        Path(path).touch()
+    (line,) = run.left_out(replace(study, sessions={"walk-4cams-tiny": withdrawn}))[1:]
+    assert line == (
+        "walk-4cams-tiny: 1 file that persons have not agreed to was made before, "
+        f"{pages}/quality.html: delete all that results/run/without_consent/walk-4cams-tiny.txt "
+        "lists, and results/report.html, which may show them"
+    )
 
 
 def test_takes_that_a_session_no_longer_has_are_told(study, tmp_path, monkeypatch):

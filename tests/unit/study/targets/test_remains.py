@@ -91,3 +91,20 @@ def test_only_files_of_persons_who_refuse_are_found(study, tmp_path, monkeypatch
     of_session = [path for path in made if path.startswith("results/walk-4cams-tiny/")]
     found = remains.without_consent(study)["walk-4cams-tiny"]
     assert found == sorted(path for path in of_session if f".{person}." in path)
+
+
+def test_pages_of_a_session_without_any_take_left_are_found(study, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    session = study.sessions["walk-4cams-tiny"]
+    page, table = "results/walk-4cams-tiny/pages/quality.html", "results/figures/study.csv"
+    overlay = "results/walk-4cams-tiny/takes/balancing/pages/people.html"
+    for path in map(Path, (page, table, overlay)):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
+    refused = {"takes": {}, "refused": session.takes, "withheld": {"balancing": ("p1",)}}
+    gone = replace(study, sessions={session.name: replace(session, **refused)})
+    assert remains.without_consent(gone) == {session.name: sorted([page, table])}
+    kept = {**study.sessions, session.name: replace(session, **refused)}  # others are tabulated
+    assert remains.without_consent(replace(study, sessions=kept)) == {session.name: [page]}
+    other = replace(session, **refused | {"takes": {"again": session.takes["balancing"]}})
+    assert remains.without_consent(replace(study, sessions={session.name: other})) == {}

@@ -87,7 +87,6 @@ def session(
         key: _take(key, shared | value, recordings.get("takes", {}).get(key), subjects)
         for key, value in content.get("takes", {}).items()
     }
-    withheld = consent.withheld(takes, subjects)
     config = Path(file).parent.parent
     cameras = {key: _camera(value) for key, value in content["cameras"].items()}
     for key, path in recordings.get("static", {}).items():
@@ -99,8 +98,7 @@ def session(
         court=None if content["court"] == "none" else content["court"],
         subjects=subjects,
         cameras=cameras,
-        takes={key: take for key, take in takes.items() if key not in withheld},
-        withheld=withheld,
+        **_by_consent(takes, subjects),
         **_calibration(content, config),
         people=of_configuration(content.get("people"), config),
         walks=recordings.get("walks") or {k: w.get("video") or w["images"] for k, w in walks},
@@ -116,6 +114,16 @@ def session(
         parameters=_merged(parameters, content.get("override", {})),
         override=content.get("override", {}),
     )
+
+
+def _by_consent(takes: dict[str, Take], subjects: dict[str, Subject]) -> dict[str, Any]:
+    """Return the takes that may be measured, and who refused which others, as a `Session` does."""
+    withheld = consent.withheld(takes, subjects)
+    return {
+        "takes": {key: take for key, take in takes.items() if key not in withheld},
+        "withheld": withheld,
+        "refused": {key: take for key, take in takes.items() if key in withheld},
+    }
 
 
 def _point_sets(court_yaml: Path) -> frozenset[int] | None:
@@ -173,6 +181,7 @@ def variations(base: Session, name: str, content: Content) -> dict[str, Session]
             },
             takes={},
             withheld={},
+            refused={},
             walks=files["walks"],
             court_points=files["court_points"],
             virtual=virtual,

@@ -149,6 +149,7 @@ class Session:
     # Takes that are not among `takes`, because persons in them have not agreed to be measured: who,
     # by take
     withheld: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    refused: dict[str, Take] = field(default_factory=dict)  # these takes themselves
     override: dict[str, Any] = field(default_factory=dict)  # what of `parameters` its file states
 
     def calibration_camera_names(self) -> dict[str, str]:

@@ -198,9 +198,12 @@ def left_out(study: Study) -> list[str]:
         listed.parent.mkdir(parents=True, exist_ok=True)
         with files.atomic(listed) as temporary:
             temporary.write_text("\n".join(kept) + "\n", encoding="utf-8")
+        is_one, more = len(kept) == 1, "" if len(kept) == 1 else "such as "
+        report = f", and {paths.REPORT}, which may show them" * Path(paths.REPORT).is_file()
         found.append(
-            f"{name}: {len(kept)} files that persons have not agreed to were made before, such as "
-            f"{few(kept, N_NAMED)}: delete all that {listed.as_posix()} lists"
+            f"{name}: {len(kept)} file{'' if is_one else 's'} that persons have not agreed to "
+            f"{'was' if is_one else 'were'} made before, {more}{few(kept, N_NAMED)}: delete all "
+            f"that {listed.as_posix()} lists{report}"
         )
     return found
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from courtside.study import paths
 from courtside.study.configuration import consent
 from courtside.study.configuration.sessions import Session, Study, Take
-from courtside.study.targets import devices, pages, takes
+from courtside.study.targets import devices, pages, takes, together
 
 WORDS = ("export", "pictures")
 OF_A_PERSON = (".trc", ".c3d", ".bvh", ".glb", ".mot", ".osim")  # after the model and the person
@@ -48,7 +48,7 @@ def _of_others(
 ) -> dict[str, list[str]]:
     found = {}
     for name, take in session.takes.items():
-        folder = Path(paths.TAKE.format(session=session.name, take=name))
+        folder = _folder(session, name)
         every = (path.relative_to(folder) for path in folder.rglob("*.*") if path.is_file())
         owners = {one for path in every if (one := owner(path))}
         found[folder.as_posix()] = sorted(owners - set(own(take)))
@@ -102,9 +102,10 @@ def _is_left(session: Session, path: Path) -> bool:
 
 
 def without_consent(study: Study) -> dict[str, list[str]]:
-    """Return, by session, the files there that persons have not agreed to, or no longer agree to.
+    """Return, by session, the files that persons there have not agreed to, or no longer agree to.
 
-    Of sessions in which all have agreed to everything there are none.
+    Of sessions in which all have agreed to everything there are none. Files of a take without
+    consent to `analysis` are in its folder (`of_takes`), and are not listed.
     """
     found = {}
     for session in study.sessions.values():
@@ -114,21 +115,27 @@ def without_consent(study: Study) -> dict[str, list[str]]:
 
 
 def _not_agreed(study: Study, session: Session) -> set[str]:
-    """Return the files that would be made if all had agreed to everything, but are not."""
+    """Return the files that would be made if all had agreed to everything, but are not.
+
+    Files of a take without consent to `analysis` are in its folder, and are left out.
+    """
     who = [consent.refusing(session, one, w) for one in session.takes.values() for w in WORDS]
-    if not any(who):
+    if not (any(who) or session.withheld):
         return set()
-    allowed, possible = (
-        set(_made(replace(study, sessions={session.name: one})))
-        for one in (session, _agreed(session))
-    )
-    return possible - allowed
+    possible = set(_made(replace(study, sessions={session.name: _agreed(session)})))
+    folders = tuple(f"{_folder(session, take).as_posix()}/" for take in session.withheld)
+    return {path for path in possible - set(_made(study)) if not path.startswith(folders)}
 
 
 def _agreed(session: Session) -> Session:
     every = tuple(consent.WORDS)
     subjects = {name: replace(one, consent=every) for name, one in session.subjects.items()}
-    return replace(session, subjects=subjects)
+    takes = {**session.takes, **session.refused}
+    return replace(session, subjects=subjects, takes=takes, withheld={})
+
+
+def _folder(session: Session, take: str) -> Path:
+    return Path(paths.TAKE.format(session=session.name, take=take))
 
 
 def _made(study: Study) -> Iterator[str]:
@@ -136,13 +143,16 @@ def _made(study: Study) -> Iterator[str]:
     yield from devices.every_device_export(study)
     yield from takes.every_figure(study)
     yield from pages.every_people_page(study)
+    yield from pages.every_quality_page(study)
+    yield from together.every_players_figure(study)
+    yield from together.every_study_table(study)
 
 
 def _videos(session: Session) -> Iterator[str]:
     """Yield the videos with skeletons of takes without consent; they are made when asked for."""
     for take in session.takes.values():
         if consent.refusing(session, take, "pictures"):
-            folder = Path(paths.TAKE.format(session=session.name, take=take.name)) / "videos"
+            folder = _folder(session, take.name) / "videos"
             yield from (path.as_posix() for path in folder.rglob("*.mp4"))
 
 
