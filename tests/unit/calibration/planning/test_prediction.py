@@ -10,8 +10,9 @@ from courtside.calibration.bundle import selection, solver
 from courtside.calibration.court import joint_adjustment, line_edges, quality, sfm_alignment
 from courtside.calibration.planning import cameras, prediction, tie_points
 from courtside.calibration.planning.prediction import Prediction
+from courtside.calibration.records import covariance
 from courtside.evaluation.calibration import over_volume
-from courtside.geometry.camera import project
+from courtside.geometry.camera import in_picture, project
 from fixtures.cameras import hall_plan
 
 PRIOR = (hall_plan.LENS_MEAN, hall_plan.LENS_SIGMA)
@@ -116,6 +117,23 @@ def test_a_camera_that_two_court_points_hardly_place_is_named():
     found = predicted([side, back, narrow])
     assert "camera narrow: expected it to be placed" in found.fault
     assert "found 2 court points" in found.fault and np.isnan(found.error_cm).all()
+
+
+def test_a_camera_adds_no_error_at_places_outside_its_picture():
+    """It shows one end of the court; in the rest the two others are as good as alone."""
+    side, back = hall_plan.fixed()
+    near = cameras.camera("near", (3, 9, 3), (3, 0, 0), hall_plan.SIZE, focal_px=900)
+    found = predicted([side, back, near])
+    names = [camera.name for camera in found.solution.cameras]
+    known = covariance.of_network(names, found.solution.covariance)
+    grid = quality.volume(hall_plan.COURT)
+    seen = np.stack([in_picture(c, project(c, grid)) for c in (side, back, near)])
+    assert seen[:2].all() and 0.1 < seen[2].mean() < 0.9
+    expected_cm, share = quality.expected_cm([side, back, near], known, grid)
+    assert share == 1
+    low, median, high = found.error_cm
+    assert low < expected_cm < high
+    assert np.sqrt(2 / 3) < median / expected_cm < 1.05  # of few independent errors, below the rms
 
 
 def predicted(fixed):

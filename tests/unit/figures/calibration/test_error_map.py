@@ -76,6 +76,18 @@ def test_points_outside_a_picture_are_blank():
     np.testing.assert_array_equal(rows["sigma_cm"].notna(), inside)
 
 
+def test_a_place_has_the_error_of_the_cameras_that_show_it():
+    side, back = cameras()
+    away = replace(side, name="away", cam_from_world=scene.look_at((40, 40, 2), (80, 80, 1)))
+    names, variance = ["side", "back", "away"], np.diag(covariance().covariance)
+    wide = np.concatenate([variance, np.ones(len(PARAMETERS))])
+    both = error_map.table([side, back], covariance(), COURT, [1.0])["sigma_cm"]
+    assert both.notna().all()
+    known = CameraCovariance(names, np.diag(wide))
+    of_three = error_map.table([side, back, away], known, COURT, [1.0])["sigma_cm"]
+    np.testing.assert_allclose(of_three, both, rtol=1e-6)
+
+
 def test_the_covariance_must_be_of_these_cameras():
     with pytest.raises(ValueError, match="back"):
         error_map.table(cameras()[::-1], covariance(), COURT, [0.0])

@@ -44,13 +44,17 @@ def sensitivity(network: Network, xyz: ArrayLike, seen: NDArray | None = None) -
     return found
 
 
-def point_covariance(network: Network, covariance: NDArray, xyz: NDArray) -> NDArray:
+def point_covariance(
+    network: Network, covariance: NDArray, xyz: NDArray, seen: NDArray | None = None
+) -> NDArray:
     """Return the covariance (N, 3, 3) m2 of triangulated points due to that of the cameras.
 
     The covariance of the keypoints' noise must be added. `covariance` (K, K) is that of the columns
-    of the `network` of the fixed cameras, `xyz` (N, 3) are m. NaN as for `sensitivity`.
+    of the `network` of the fixed cameras, `xyz` (N, 3) are m. `seen` and NaN as for `sensitivity`.
     """
-    found = (sensitivity(network, part) for part in _parts(xyz))
+    parts = _parts(xyz)
+    who = [None] * len(parts) if seen is None else np.array_split(seen, len(parts))
+    found = (sensitivity(network, part, one) for part, one in zip(parts, who, strict=True))
     return np.concatenate([by @ covariance @ by.transpose(0, 2, 1) for by in found])
 
 

@@ -197,6 +197,23 @@ def volume(
     return np.stack([x, y, z], axis=-1).reshape(-1, 3)
 
 
+def place_covariance(
+    cameras: Sequence[Camera], covariance: CameraCovariance, xyz: NDArray
+) -> NDArray:
+    """Return the covariance (N, 3, 3) m2 of places (N, 3) m from the cameras that show each.
+
+    NaN where fewer than two do.
+    """
+    spread = covariance.of([camera.name for camera in cameras]).of_columns()
+    network, seen = selection.of_cameras(cameras), shown(cameras, xyz)
+    return propagation.point_covariance(network, spread, xyz, seen)
+
+
+def shown(cameras: Sequence[Camera], xyz: NDArray) -> NDArray:
+    """Return which places (N, 3) m are in which camera's picture, (N, cameras) bool."""
+    return np.stack([in_picture(c, project(c, xyz)) for c in cameras], axis=1)
+
+
 def expected_cm(
     cameras: Sequence[Camera], covariance: CameraCovariance, xyz: NDArray
 ) -> tuple[float, float]:
@@ -204,16 +221,10 @@ def expected_cm(
 
     Of places that two cameras or more have in their pictures, from these alone; NaN of none.
     """
-    seen = np.stack([in_picture(c, project(c, xyz)) for c in cameras], axis=1)
-    variance: list[float] = []
-    for who in np.unique(seen[seen.sum(axis=1) > 1], axis=0):
-        chosen = [camera for camera, one in zip(cameras, who, strict=True) if one]
-        spread = covariance.of([camera.name for camera in chosen]).of_columns()
-        there = xyz[(seen == who).all(axis=1)]
-        each = propagation.point_covariance(selection.of_cameras(chosen), spread, there)
-        variance += list(np.trace(each, axis1=1, axis2=2))
-    share = float((seen.sum(axis=1) > 1).mean())
-    return (float(100 * np.sqrt(np.mean(variance))) if variance else float("nan")), share
+    variance = np.trace(place_covariance(cameras, covariance, xyz), axis1=1, axis2=2)
+    seen = np.isfinite(variance)
+    error_cm = 100 * np.sqrt(np.mean(variance[seen])) if seen.any() else np.nan
+    return float(error_cm), float(seen.mean())
 
 
 def expected_volume(

@@ -80,7 +80,7 @@ def predict(
         return Prediction(*found, (np.nan,) * len(QUANTILES), fault=str(error))
     if loose := _loose(solution, fixed, court):
         return Prediction(*found, (np.nan,) * len(QUANTILES), fault=loose)
-    return Prediction(*found, error_quantiles_cm(solution, court, rng), solution)
+    return Prediction(*found, error_quantiles_cm(solution, fixed, court, rng), solution)
 
 
 def _loose(solution: joint_adjustment.Solution, fixed: Sequence[Camera], court: Court) -> str:
@@ -127,14 +127,19 @@ def clicks(fixed: Sequence[Camera], court: Court) -> dict[str, NDArray]:
 
 
 def error_quantiles_cm(
-    solution: joint_adjustment.Solution, court: Court, rng: np.random.Generator
+    solution: joint_adjustment.Solution,
+    fixed: Sequence[Camera],
+    court: Court,
+    rng: np.random.Generator,
 ) -> tuple[float, ...]:
     """Return the `QUANTILES` of the root mean square error over the playing volume, cm.
 
-    Places that lie before fewer than two cameras are left out.
+    Each place is seen by the planned cameras that have it in their pictures; places that fewer than
+    two have are left out.
     """
     grid = quality.volume(court)
-    by_column = point_covariance.sensitivity(solution.network, grid)
+    seen = quality.shown(fixed, grid)
+    by_column = point_covariance.sensitivity(solution.network, grid, seen)
     by_column = by_column[np.isfinite(by_column).all(axis=(1, 2))]
     n_places, by_column = len(by_column), by_column.reshape(-1, by_column.shape[2])
     extent, axes = np.linalg.eigh(solution.covariance)

@@ -12,13 +12,10 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from courtside.calibration import point_covariance
-from courtside.calibration.bundle import selection
 from courtside.calibration.court import quality
 from courtside.calibration.court.court import Court
 from courtside.calibration.records.covariance import CameraCovariance
 from courtside.figures.style import court_plan, style
-from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
 
 COLUMNS, ROWS = 25, 55  # of the grid, along the short and the long side
@@ -33,20 +30,15 @@ def table(
 ) -> pd.DataFrame:
     """Return the expected error over the court; `covariance` is of the same cameras, in order.
 
-    The error is the root of the trace of a point's covariance, NaN if that is unknown.
+    The error is the root of the trace of a point's covariance from the cameras that show the point,
+    NaN where fewer than two do.
     `ValueError` if the covariance is of other cameras.
     """
     if list(covariance.cameras) != [camera.name for camera in cameras]:
         raise ValueError(f"covariance of {covariance.cameras}, cameras {[c.name for c in cameras]}")
     xyz = quality.volume(court, heights_m, COLUMNS, ROWS)
-    network = selection.of_cameras(cameras)
-    sigma = np.full(len(xyz), np.nan)
-    seen = np.ones(len(xyz), dtype=bool)
-    for camera in cameras:
-        seen &= camera_models.in_picture(camera, camera_models.project(camera, xyz))
-    if seen.any():
-        spread = point_covariance.point_covariance(network, covariance.of_columns(), xyz[seen])
-        sigma[seen] = 100 * np.sqrt(np.trace(spread, axis1=1, axis2=2))
+    spread = quality.place_covariance(cameras, covariance, xyz)
+    sigma = 100 * np.sqrt(np.trace(spread, axis1=1, axis2=2))
     return pd.DataFrame({"x_m": xyz[:, 0], "y_m": xyz[:, 1], "z_m": xyz[:, 2], "sigma_cm": sigma})
 
 
