@@ -121,6 +121,18 @@ def test_cameras_whose_points_all_fit_badly_are_named():
     assert all("as clicks do, to 1.2 px" in line and "own 1920 x 1080" in line for line in found)
 
 
+def test_cameras_that_share_points_with_exchanged_clicks_are_not_accused():
+    clicks = clicked(true_cameras())
+    by_all = np.flatnonzero(np.all([np.isfinite(xy[:, 0]) for xy in clicks.values()], axis=0))
+    chosen = np.sort(np.random.default_rng(0).permutation(by_all)[:16])
+    for xy in clicks.values():
+        xy[np.setdiff1d(np.arange(len(xy)), chosen)] = np.nan
+    clicks["west"][chosen[[1, 6]]] = clicks["west"][chosen[[6, 1]]]
+    found = calibrate(clicks)
+    assert {one.point for one in found.wrong} == {HALL.points[at] for at in chosen[[1, 6]]}
+    assert found.warnings == [str(one) for one in found.wrong]
+
+
 def on_floor(places, clicks):
     """Return places of a floor without names, and the clicks on it."""
     low = HALL.xyz[:, 2] == 0

@@ -35,6 +35,9 @@ ROUNDS, SETTLED = 8, 0.05  # of the variance factors: see `joint_adjustment`
 # ASSUME: a camera whose clicks scatter so much more than the others', or than stated, is named. In
 # a real hall, points with errors of some centimetres scatter 2.4 times as much as stated at most.
 SCATTERED, LARGEST = 3.0, 6.0
+# ASSUME: of cameras whose clicks scatter more than stated, those that scatter less than this share
+# of the worst are drawn away by it: they share the places of points.
+AS_THE_WORST = 0.6
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,8 +80,9 @@ def calibrate(
     table = click_checks.ClickErrors(court.points, tuple(sizes), *seen)
     sigma_px = joint_adjustment.largest_click_sigma(click_sigma_px, solved.cameras)
     wrong = click_checks.find_wrong_clicks(table, sigma_px=sigma_px)
-    warnings = [*map(str, wrong), *_scattered(solved, click_sigma_px), *doubts]
-    return Found(solved, dict(zip(sizes, table.error_px, strict=True)), wrong, warnings)
+    error_px = dict(zip(sizes, table.error_px, strict=True))
+    scattered = _scattered(solved, error_px, click_sigma_px, {one.camera for one in wrong})
+    return Found(solved, error_px, wrong, [*map(str, wrong), *scattered, *doubts])
 
 
 def _start(
@@ -106,10 +110,10 @@ def summary(found: Found) -> dict[str, Any]:
     cameras, spread = found.solution.cameras, np.sqrt(np.diag(found.solution.covariance))
     lens_sigma = spread[IMAGE * len(cameras) :].reshape(len(cameras), len(LENS))
     for camera, sigma in zip(cameras, lens_sigma, strict=True):
-        seen = found.error_px[camera.name][np.isfinite(found.error_px[camera.name])]
+        error_px = found.error_px[camera.name]
         one = {
-            "n_points": len(seen),
-            "rms_px": np.sqrt(np.mean(seen**2) / 2),
+            "n_points": int(np.isfinite(error_px).sum()),
+            "rms_px": _rms_px(error_px),
             "f_px": camera.K[1, 1],
             "f_sigma_px": sigma[LENS.index("f_px")],
             "k1": camera.dist[0],
@@ -160,26 +164,39 @@ def _solved(lenses: Ties, clicks: ClickedPoints, court: Court, weights: dict) ->
     return solved
 
 
-def _scattered(solved: Solution, click_sigma_px: float) -> list[str]:
+def _rms_px(error_px: NDArray) -> float:
+    """Return the root mean square per axis of the errors (P,) of a camera's clicks; NaN: none."""
+    return float(np.sqrt(np.nanmean(error_px**2) / 2))
+
+
+def _scattered(
+    solved: Solution, error_px: Mapping[str, NDArray], click_sigma_px: float, mistaken: set[str]
+) -> list[str]:
     """Return a warning for each camera whose clicks scatter far more than those of the others.
 
-    Or far more than clicks do: all may be of pictures of another size.
+    Or far more than clicks do, as all do in pictures of another size, and nearly as much as those
+    of the worst camera. Nothing of the `mistaken` cameras, whose wrong clicks are named; these draw
+    the others away, which are then only compared with one another.
     """
     share = np.sqrt(solved.factors.clicks.mean(axis=1))
+    least = np.inf if mistaken else max(LARGEST, AS_THE_WORST * share.max())
+    rms_px = np.array([_rms_px(error_px[camera.name]) for camera in solved.cameras])
     found = []
     for at, camera in enumerate(solved.cameras):
-        others = np.delete(share, at)
-        usual = max(1.0, float(np.median(others))) if len(others) else np.inf
-        if share[at] > min(SCATTERED * usual, LARGEST):
-            stated = joint_adjustment.click_sigma(click_sigma_px, camera.size)
-            expected = (
-                f"as those of the other cameras do, to {stated * np.median(others):.1f} px"
-                if share[at] > SCATTERED * usual
-                else f"as clicks do, to {stated:.1f} px"
-            )
-            found.append(
-                f"camera {camera.name}: expected its points to fit {expected}, found "
-                f"{stated * share[at]:.1f} px; check the names and places of its points, and that "
-                f"its clicks are px of the picture's own {camera.size[0]} x {camera.size[1]}"
-            )
+        others = np.delete(np.arange(len(share)), at)
+        usual = max(1.0, float(np.median(share[others]))) if len(others) else np.inf
+        if camera.name in mistaken or share[at] <= min(SCATTERED * usual, least):
+            continue
+        stated_px = joint_adjustment.click_sigma(click_sigma_px, camera.size)
+        whose, usual_px = (
+            ("those of the other cameras", np.median(rms_px[others]))
+            if share[at] > SCATTERED * usual
+            else ("clicks", stated_px)
+        )
+        found.append(
+            f"camera {camera.name}: expected its points to fit as {whose} do, to "
+            f"{usual_px:.1f} px, found {rms_px[at]:.1f} px; check the names and places of its "
+            "points, and that its clicks are px of the picture's own "
+            f"{camera.size[0]} x {camera.size[1]}"
+        )
     return found
