@@ -40,30 +40,36 @@ def main(
     enough = (
         f"{chosen.n_images} bridging images" if chosen else "not enough with any number of images"
     )
-    log.logger.info("%s: %s", enough, reason)
+    verdict = f"{enough}: {reason}" if any(planned.n_images) else planning.alone(found[0])
+    log.logger.info("%s", verdict)
     rows = plan.table(found, chosen)
-    title = f"{planned.description}\n{enough}: {reason}"
+    title = f"{planned.description}\n{verdict}"
     drawing = plan.draw(rows, title, widest_deg=planning.WIDEST_DEG, **limits)
     style.save(drawing, rows, growth_pdf, growth_png, growth_csv)
     drawn = chosen or [prediction for prediction in found if prediction.solution][-1]
     names = [camera.name for camera in fixed]
     covariance = camera_covariance.of_network(names, drawn.solution.covariance)
     rows = error_map.table(fixed, covariance, court, heights_m)
-    title = f"{planned.description}, {drawn.n_images} bridging images"
+    walked = f"{drawn.n_images} bridging images" if drawn.n_images else "court points alone"
+    title = f"{planned.description}, {walked}"
     drawing = error_map.draw(rows, fixed, court, title)
     style.save(drawing, rows, map_pdf, map_png, map_csv)
 
 
 def predict_all(planned, fixed, court, adjust):
     texture = tie_points.TEXTURES[planned.texture]
-    prior = model.lens_prior([*(camera.size for camera in fixed), planned.walk.size_px])
+    walk = planned.walk
+    mobile_px = walk.size_px if walk else fixed[0].size  # without a walk, no image is by it
+    prior = model.lens_prior([*(camera.size for camera in fixed), mobile_px])
     options = {key: adjust[key] for key in WEIGHTS} | {"thinning": {k: adjust[k] for k in THINNING}}
     options |= {"seed": adjust["seed"]}
     if planned.click_sigma_px is not None:
         options["click_sigma_px"] = planned.click_sigma_px
     found = []
     for n in log.progress(planned.n_images, len(planned.n_images), "numbers of bridging images"):
-        walked = cameras.walked_cameras(n_images=n, seed=adjust["seed"], **vars(planned.walk))
+        walked = (
+            cameras.walked_cameras(n_images=n, seed=adjust["seed"], **vars(walk)) if walk else []
+        )
         about = (court, planned.hall_m, texture, prior)
         found.append(planning.predict(fixed, walked, *about, **options))
     if not any(prediction.solution for prediction in found):

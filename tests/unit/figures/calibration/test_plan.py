@@ -51,3 +51,16 @@ def test_a_plan_without_an_answer_or_a_prediction_is_drawn(tmp_path):
     assert labels == ["median; band: 90 % of sessions"]
     drawing.savefig(tmp_path / "x.png")
     assert rows["fault"].tolist() == ["", "camera side: expected matches"]
+
+
+def test_a_plan_without_a_walk_shows_its_error_alone(tmp_path):
+    drawing = plan.draw(
+        plan.table([prediction(0, 1.2)], None), "title", min_points=20, widest_deg=6
+    )
+    (axis,) = drawing.axes
+    (bars,) = axis.containers
+    assert bars.lines[0].get_xydata().tolist() == [[1.2, 0]]
+    (bar,) = bars.lines[2]
+    assert bar.get_segments()[0][:, 0] == pytest.approx([0.6, 2.4])
+    assert axis.get_xlabel() == "expected RMS 3D error over the court (cm)"
+    drawing.savefig(tmp_path / "x.png")

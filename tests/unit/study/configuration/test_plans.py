@@ -41,9 +41,16 @@ def test_what_is_left_out_has_a_default(tmp_path, content):
     assert (found.target_cm, found.click_sigma_px) == (1, 1.5)
 
 
+def test_a_plan_needs_no_walk(tmp_path, content):
+    del content["walk"], content["n_images"]
+    found = plans.read(written(tmp_path, content))
+    assert (found.walk, found.n_images) == (None, (0,))
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
+        (lambda c: c.pop("walk"), r"n_images: expected \[0\] without a walk, found \[0, 5, "),
         (
             lambda c: c["cameras"]["side"].pop("focal_px"),
             "cameras.side: expected .*focal_px or fov_deg",

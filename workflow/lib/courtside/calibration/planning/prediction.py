@@ -149,6 +149,15 @@ def error_quantiles_cm(
     return tuple(np.quantile(rms_cm, QUANTILES).tolist())
 
 
+def alone(prediction: Prediction) -> str:
+    """Return one line on the error to expect without a walk."""
+    low, middle, high = prediction.error_cm
+    return (
+        f"court points alone: median error {middle:.2f} cm, in 90 % of sessions {low:.2f} to "
+        f"{high:.2f} cm"
+    )
+
+
 def needed(
     predictions: Sequence[Prediction], *, min_points: int, target_cm: float | None = None
 ) -> tuple[Prediction | None, str]:

@@ -12,6 +12,7 @@ COLUMNS = (
     "n_images", "neighbour_deg", "n_ties", "least_ties", "error_median_cm", "error_p05_cm",
     "error_p95_cm", "enough", "fault",
 )  # fmt: skip
+ERROR = "RMS 3D error\nover the court (cm)"
 
 
 def table(predictions: list[Prediction], chosen: Prediction | None) -> pd.DataFrame:
@@ -35,9 +36,13 @@ def draw(
 ) -> Figure:
     """Draw the table of `table`: error above, widest angle between neighbours, fewest ties below.
 
+    Of a plan without a walk, the error alone.
+
     `min_points` are the fewest ties of a fixed camera, `widest_deg` is the widest angle between
     neighbouring views that keeps a model connected.
     """
+    if not rows["n_images"].any():
+        return _draw_alone(rows.iloc[0], title, target_cm)
     drawing = style.figure(110)
     above, angle, ties = drawing.subplots(3, 1, sharex=True, height_ratios=[2.2, 1, 1])
     walked, alone = rows[rows["n_images"] > 0], rows[rows["n_images"] == 0]
@@ -52,12 +57,29 @@ def draw(
     if target_cm is not None:
         above.axhline(target_cm, color=style.CYCLE[1], linewidth=0.9, label="wanted")
     _mark_enough(above, walked)
-    above.set(ylabel="expected 3D error (cm)", ylim=(0, 1.35 * rows["error_p95_cm"].max()))
+    above.set(ylabel=f"expected {ERROR}", ylim=(0, 1.35 * rows["error_p95_cm"].max()))
     above.legend(loc="upper right", ncols=2)
     _draw_limit(angle, n, walked["neighbour_deg"], widest_deg, "neighbours\n(degrees)")
     _draw_limit(ties, n, walked["least_ties"], min_points, "fewest ties")
     bars.ticks_at(ties, n)
     ties.set_xlabel("bridging images")
+    drawing.suptitle(title, fontsize=8)
+    return drawing
+
+
+def _draw_alone(row: pd.Series, title: str, target_cm: float | None) -> Figure:
+    drawing = style.figure(45)
+    axis = drawing.subplots()
+    middle, low, high = (row[f"error_{part}_cm"] for part in ("median", "p05", "p95"))
+    label = "median; bar: 90 % of sessions"
+    axis.errorbar(
+        middle, 0, xerr=[[middle - low], [high - middle]], fmt="o", capsize=4, label=label
+    )
+    if target_cm is not None:
+        axis.axvline(target_cm, color=style.CYCLE[1], linewidth=0.9, label="wanted")
+    axis.set(yticks=[0], yticklabels=["court points\nalone"], ylim=(-1, 1))
+    axis.set(xlabel=f"expected {ERROR}".replace("\n", " "), xlim=(0, 1.2 * high))
+    axis.legend(loc="upper right")
     drawing.suptitle(title, fontsize=8)
     return drawing
 

@@ -9,6 +9,7 @@ from courtside.study.configuration import schemas
 from courtside.study.errors import InputError, StrPath
 
 HEIGHT_M = 1.6  # at which people hold a camera
+WAY = ("from_m", "via_m", "to_m")  # keys of a walk
 TEXTURE = "plain"  # a plan without a word on texture expects few tie points
 
 
@@ -43,7 +44,7 @@ class Plan:
     court: str
     hall_m: tuple  # two opposite corners
     cameras: dict
-    walk: PlannedWalk
+    walk: PlannedWalk | None  # None: points are clicked, and nobody walks
     n_images: tuple  # numbers of bridging images, increasing
     texture: str = TEXTURE  # a key of `courtside.calibration.planning.tie_points.TEXTURES`
     # Scatter of a click per axis at a width of 3840 px, where it is not the study's
@@ -57,14 +58,30 @@ def read(path: StrPath) -> Plan:
     if faults := list(_faults(path, content)):
         raise InputError(*faults)
     plan = _frozen(content)
-    walk, cameras = plan.pop("walk"), plan.pop("cameras")
-    way_m = (walk.pop("from_m"), *walk.pop("via_m", ()), walk.pop("to_m"))
-    plan["n_images"] = tuple(sorted(plan["n_images"]))
+    walk, cameras = plan.pop("walk", None), plan.pop("cameras")
+    plan["n_images"] = tuple(sorted(plan.get("n_images", (0,))))
     fixed = {name: PlannedCamera(**camera) for name, camera in cameras.items()}
-    return Plan(**plan, cameras=fixed, walk=PlannedWalk(**walk, way_m=way_m))
+    return Plan(**plan, cameras=fixed, walk=_walk(walk) if walk else None)
+
+
+def _walk(content: dict[str, Any]) -> PlannedWalk:
+    rest = {key: value for key, value in content.items() if key not in WAY}
+    return PlannedWalk(**rest, way_m=tuple(_way_m(content)))
+
+
+def _way_m(walk: dict[str, Any]) -> list:
+    """Return the places on the floor that a walk passes; none without one."""
+    return [walk["from_m"], *walk.get("via_m", ()), walk["to_m"]] if walk else []
 
 
 def _faults(path: StrPath, content: dict[str, Any]) -> Iterator[str]:
+    walk = content.get("walk")
+    wanted = content.get("n_images", [0])
+    if walk is None and any(wanted):
+        yield (
+            f"{path}: n_images: expected [0] without a walk, found {wanted}; add `walk`, or leave "
+            "`n_images` out"
+        )
     low, high = (
         [pick(pair) for pair in zip(*content["hall_m"], strict=True)] for pick in (min, max)
     )
@@ -73,9 +90,8 @@ def _faults(path: StrPath, content: dict[str, Any]) -> Iterator[str]:
             f"{path}: hall_m: expected corners 1 m or more apart along each axis, found {low}, "
             f"{high}"
         )
-    walk = content["walk"]
-    height_m = walk.get("height_m", HEIGHT_M)
-    way_m = [walk["from_m"], *walk.get("via_m", []), walk["to_m"]]
+    walk = walk or {}
+    height_m, way_m = walk.get("height_m", HEIGHT_M), _way_m(walk)
     places = {f"cameras.{name}.place_m": at["place_m"] for name, at in content["cameras"].items()}
     places |= {f"walk: place {at}": [*spot, height_m] for at, spot in enumerate(way_m)}
     for where, place in places.items():
