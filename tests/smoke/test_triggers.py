@@ -23,7 +23,7 @@ import pytest
 import yaml
 
 from courtside.study.execution import digest
-from smoke.snakemake_runs import FOLDER, ROOT, changed, copy_repository, edited, planned, run
+from smoke.snakemake_runs import FOLDER, ROOT, TINY, changed, copy_repository, edited, planned, run
 
 RESULTS = FOLDER / "results"
 DEMO = RESULTS / "external/pose2sim/Pose2Sim/Demo_SinglePerson"
@@ -350,9 +350,12 @@ def test_a_take_that_is_removed_reruns_the_tables_that_it_was_in(kept):
     session = kept / SESSIONS / "players-tiny.yaml"
     content = yaml.safe_load(session.read_text())
     del content["takes"]["rally"]
+    tables = {"tabulate_players": 1, "tabulate_angles": 1, "draw_reliability": 1}
     with changed(session, yaml.safe_dump(content, sort_keys=False).encode()):
-        tables = {"tabulate_players": 1, "tabulate_angles": 1, "draw_reliability": 1}
-        assert planned(root=kept) == {**tables, **OF_ALL_TAKES, "build_quality_page": 1}
+        said = run("-n", root=kept, check=False)
+        assert said.returncode and "compare_sessions.takes: expected how names" in said.stderr
+        with edited(kept / TINY, "takes: [shot, rally]", "takes: [shot]"):
+            assert planned(root=kept) == {**tables, **OF_ALL_TAKES, "build_quality_page": 1}
 
 
 def test_photos_in_a_folder_are_compared_one_by_one(tmp_path):

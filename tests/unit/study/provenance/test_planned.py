@@ -77,7 +77,7 @@ def test_results_that_snakemake_has_no_records_of_are_told_in_one_line(tmp_path,
         Path(name).touch()
     names = {"draw": "a.txt", "fit": "b.txt", "cut": "c.txt", "lift": "none.txt"}
     jobs = [SimpleNamespace(rule=SimpleNamespace(name=n), output=[p]) for n, p in names.items()]
-    dag = SimpleNamespace(jobs=jobs, noneedrun_finished=lambda job: job.rule.name != "cut")
+    dag = SimpleNamespace(jobs=jobs, needrun=lambda job: job.rule.name == "cut")
     records = SimpleNamespace(metadata={"b.txt": 1}.get)
     (line,) = planned.unseen(SimpleNamespace(dag=dag, persistence=records), tmp_path)
     assert line.startswith("Remark: results of 1 jobs (draw) are here, but not Snakemake's records")

@@ -106,11 +106,11 @@ def _values(jobs: list, key: str) -> list[str]:
 
 
 def unseen(workflow: Any, repository: Path) -> list[str]:
-    """Return a line if Snakemake lacks records of files that are here, and keeps as they are."""
+    """Return a line if Snakemake lacks records of files that were here before, and keeps them."""
     dag, known = workflow.dag, workflow.persistence
     if dag is None or known is None:
         return []
-    kept = [job for job in dag.jobs if job.output and dag.noneedrun_finished(job)]
+    kept = [job for job in dag.jobs if job.output and not dag.needrun(job)]
     rules = [job.rule.name for job in kept if _is_unknown(job, known.metadata)]
     if not rules:
         return []
