@@ -84,7 +84,7 @@ def test_a_file_whose_tree_has_a_loop_is_refused(tmp_path):
 
 def test_a_joint_is_found_by_its_name():
     np.testing.assert_array_equal(motion().joint("right_wrist")[2], [15.0, 16.0, 17.0])
-    with pytest.raises(ValueError, match="nose"):
+    with pytest.raises(ValueError, match="not in list"):
         motion().joint("nose")
 
 

@@ -3,6 +3,7 @@
 import contextlib
 import itertools
 import struct
+import sys
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +12,6 @@ from typing import Any
 import apsw
 import cv2
 import numpy as np
-from backports import zstd
 from numpy.typing import NDArray
 from rosbags import rosbag1, rosbag2
 from rosbags.serde import SerdeError
@@ -19,6 +19,11 @@ from rosbags.typesys import Stores, get_typestore
 
 from courtside.geometry import camera_fields
 from courtside.study.errors import InputError, StrPath
+
+if sys.version_info >= (3, 14):
+    from compression import zstd
+else:
+    from backports import zstd
 
 Parser = Callable[[bytes, str], Any]
 # What rosbags, its parsers and its decompressors raise on damaged files.
