@@ -76,3 +76,21 @@ def test_a_path_in_the_middle_of_the_picture_has_a_warning_if_the_lens_is_unknow
     warnings = summary(seen(xyz, sigma_px=0.2), lenses, floor=Floor((3.0, 4.0)))["warnings"]
     assert warnings
     assert all(line.startswith("camera c2: the wand's path extends over") for line in warnings)
+
+
+@pytest.mark.parametrize(("flipped", "floor"), [(True, True), (False, True), (True, False)])
+def test_y_from_the_bottom_has_a_warning_by_a_floor_that_turns_the_cameras_over(flipped, floor):
+    xyz = swung()
+    xyz[10] = [[1.0, 0.5, 0.0], [1.0, 1.0, 0.0]]
+    xyz[20] = [[-0.5, 0.0, 0.0], [-1.0, 0.0, 0.0]]
+    found, lenses = seen(xyz, sigma_px=0.2), LENSES
+    if flipped:
+        found.xy[..., 1] = SIZES["c0"][1] - 1 - found.xy[..., 1]
+        lenses = {}
+    more = {"floor": Floor((10.0, 20.0))} if floor else {}
+    warnings = summary(found, lenses, **more)["warnings"]
+    lines = [line for line in warnings if "upside down" in line]
+    assert len(lines) == (flipped and floor)
+    for line in lines:
+        assert line.startswith(f"cameras {', '.join(LENSES)}: expected them upright above the flo")
+        assert "correct `wand.program`, or subtract y_px from the picture's height" in line

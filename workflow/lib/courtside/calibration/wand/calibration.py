@@ -127,7 +127,7 @@ def _world(
     lying = xyz[[int(np.flatnonzero(seen.frames == frame)[0]) for frame in floor.frames]]
     places = lying.reshape(-1, 3)
     moved = world.of_floor(lying, floor.above_m, cameras)
-    return moved, places[np.isfinite(places).all(axis=1)], "the floor's"
+    return moved, places[np.isfinite(places).all(axis=1)], world.FLOOR
 
 
 def _check_path(seen: Seen) -> None:

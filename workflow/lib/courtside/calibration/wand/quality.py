@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle.problem import IMAGE, LENS, POSE
+from courtside.calibration.court import place_checks
 from courtside.calibration.people import world_frame
-from courtside.calibration.wand import timing
+from courtside.calibration.wand import timing, world
 from courtside.calibration.wand.adjustment import WRONG_SIGMAS
 from courtside.calibration.wand.calibration import Found
 from courtside.calibration.wand.points import Seen, Wand
@@ -115,7 +116,25 @@ def _warnings(found: Found, wand: Wand) -> list[str]:
             f"{1000 * wand.length_m * np.exp(longer):.1f} mm by the clicked points; measure it "
             "between the markers' centres"
         )
-    return lines
+    return lines + _hanging(found)
+
+
+def _hanging(found: Found) -> list[str]:
+    """Return a warning if half of the cameras or more hang upside down above the wand's floor.
+
+    The mirror image of the wand fits as well as the wand, and turns all cameras over. Clicked
+    points show it by themselves; a floor shows only this.
+    """
+    up = {camera.name: place_checks.up(camera) for camera in found.cameras}
+    names = [name for name, along in up.items() if along < -place_checks.UPRIGHT]
+    if found.world != world.FLOOR or 2 * len(names) < len(up):
+        return []
+    return [
+        f"cameras {', '.join(names)}: expected them upright above the floor of the wand, found "
+        "them upside down: right if they are mounted so; if not, y of the wand's markers is "
+        "counted from the bottom and all places are mirrored: correct `wand.program`, or subtract "
+        "y_px from the picture's height minus 1"
+    ]
 
 
 def _of_cameras(found: Found, seen: Seen, known: set[str], late, sigma) -> list[str]:

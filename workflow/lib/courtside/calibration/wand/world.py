@@ -14,6 +14,7 @@ from courtside.geometry.similarity import Sim3
 from courtside.geometry.triangulation import triangulate_all
 from courtside.study.errors import InputError
 
+FLOOR = "the floor's"  # description of a world frame `of_floor`
 WIDE = 0.03  # ASSUME: least width of markers on the floor relative to their length
 OFF_M = 0.05  # ASSUME: a marker farther from the plane of the others is not on the floor
 FEWEST_CLICKS = 4  # in one camera, to determine the world frame
