@@ -94,3 +94,15 @@ def test_y_from_the_bottom_has_a_warning_by_a_floor_that_turns_the_cameras_over(
     for line in lines:
         assert line.startswith(f"cameras {', '.join(LENSES)}: expected them upright above the flo")
         assert "correct `wand.program`, or subtract y_px from the picture's height" in line
+
+
+def test_markers_in_the_upper_left_quarter_may_be_of_a_smaller_copy():
+    found = seen(swung())
+    found = replace(found, cameras=found.cameras[:2], xy=found.xy[:2] / 2)
+    warnings = summary(found)["warnings"]
+    for name in ("c0", "c1"):
+        assert any(
+            line.startswith(f"camera {name}: its markers lie in the upper left quarter of the pict")
+            and "of 1920x1080 px): right if" in line
+            for line in warnings
+        )

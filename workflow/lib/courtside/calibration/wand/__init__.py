@@ -1,7 +1,8 @@
 """Camera calibration with a wand: two or three markers at known distances on a stick.
 
 points: `Wand`, `Seen`, `read`: the markers and their positions in the pictures, from CSV files
-start: `guess`, `triangulated`: initial cameras, two first, then one after another
+start: `guess`, `placed`, `triangulated`: initial cameras, two first, then one after another
+culprit: `named`: the camera that does not agree with the others, each left out in turn
 adjustment: `adjust`: bundle adjustment of cameras and wand positions, with covariance
 world: `of_floor`, `of_cameras`, `of_clicks`: the world frame of the cameras
 timing: `delays`: delays of cameras relative to the others

@@ -12,7 +12,7 @@ from courtside.calibration.bundle.problem import FLEX, IMAGE, LENS
 from courtside.calibration.court import points_alone
 from courtside.calibration.people import world_frame
 from courtside.calibration.people.adjustment import Clicks
-from courtside.calibration.wand import adjustment, start, timing, world
+from courtside.calibration.wand import adjustment, culprit, start, timing, world
 from courtside.calibration.wand.adjustment import Adjusted, Bodies, State
 from courtside.calibration.wand.points import Seen, Wand
 from courtside.geometry import rotations, similarity
@@ -81,15 +81,11 @@ def calibrate(
     Raises `InputError` if the wand does not determine the cameras.
     """
     _check_path(seen)
-    cameras = start.guess(wand, seen, sizes, lenses)
-    _check_middle(wand, start.triangulated(cameras, seen.xy))
-    for _ in range(2):  # the second time with all frames that the first cameras agree on
-        state = _state(wand, seen, cameras, lenses)
-        found = _adjust(state, cameras, lenses)
-        cameras = _cameras(found, cameras, lenses)
+    try:
+        cameras, found = _agreeing(wand, seen, sizes, lenses)
+    except start.Disagreement as fault:
+        raise culprit.named(fault, wand, seen, sizes, lenses) from None
     xyz = start.triangulated(cameras, seen.xy)
-    _check_extent(xyz)
-    _check_sync(seen, cameras, xyz)
     if clicks is not None:
         marked = clicks(cameras)
         moved = world.of_clicks(cameras, marked.xyz, marked.xy)
@@ -106,6 +102,22 @@ def calibrate(
     error_px = np.stack([project(camera, xyz) for camera in cameras]) - seen.xy
     stated = clicks is not None or floor is not None
     return Found(cameras, covariance, text, stated, xyz, error_px, found)
+
+
+def _agreeing(
+    wand: Wand, seen: Seen, sizes: Mapping[str, tuple[int, int]], lenses: Mapping[str, Camera]
+) -> tuple[list[Camera], Adjusted]:
+    """Return cameras from the wand alone; raise `start.Disagreement` where they do not agree."""
+    cameras = start.guess(wand, seen, sizes, lenses)
+    _check_middle(wand, start.triangulated(cameras, seen.xy))
+    for _ in range(2):  # the second time with all frames that the first cameras agree on
+        state = _state(wand, seen, cameras, lenses)
+        found = _adjust(state, cameras, lenses)
+        cameras = _cameras(found, cameras, lenses)
+    xyz = start.triangulated(cameras, seen.xy)
+    _check_extent(xyz)
+    _check_sync(seen, cameras, xyz)
+    return cameras, found
 
 
 def _world(
@@ -182,7 +194,7 @@ def _check_middle(wand: Wand, xyz: NDArray) -> None:
 
 
 def _check_sync(seen: Seen, cameras: Sequence[Camera], xyz: NDArray) -> None:
-    """Raise an `InputError` if the views of a frame do not show the same position of the wand."""
+    """Raise `start.Disagreement` if the views of a frame do not show one position of the wand."""
     near = []
     for camera, xy in zip(cameras, seen.xy, strict=True):
         off = np.linalg.norm(project(camera, xyz) - xy, axis=-1)
@@ -191,11 +203,12 @@ def _check_sync(seen: Seen, cameras: Sequence[Camera], xyz: NDArray) -> None:
     worst = int(np.argmin(near))
     if near[worst] < LEAST_NEAR:
         frames = timing.delays(cameras, seen, xyz)[0][worst]
-        raise InputError(
+        raise start.Disagreement(
             f"camera {cameras[worst].name}: expected most markers within "
             f"{FAR_SHARE * max(cameras[worst].size):.1f} px of their positions by all cameras, "
             f"found {100 * near[worst]:.0f} % of them (apparent delay {frames:+.1f} frames); check "
-            "that the videos are synchronised, and that no markers are exchanged"
+            "that the videos are synchronised, and that no markers are exchanged",
+            cameras[worst].name,
         )
 
 
@@ -216,7 +229,7 @@ def _state(
     xyz = start.triangulated(cameras, seen.xy)
     frames = np.flatnonzero(np.isfinite(xyz[..., 0]).any(axis=1))
     if len(frames) < start.FEWEST_FRAMES:
-        raise InputError(
+        raise start.Disagreement(
             f"wand: expected {start.FEWEST_FRAMES} frames or more in which cameras agree on the "
             f"position of a marker, found {len(frames)}; check that the videos are synchronised, "
             f"and {start.HOW}"

@@ -13,6 +13,7 @@ from courtside.calibration.wand import timing, world
 from courtside.calibration.wand.adjustment import WRONG_SIGMAS
 from courtside.calibration.wand.calibration import Found
 from courtside.calibration.wand.points import Seen, Wand
+from courtside.geometry import camera_fields
 
 # ASSUME: limits of the warnings.
 MOST_FACTOR = 2.0  # scatter of blocks of time, relative to single frames
@@ -148,6 +149,12 @@ def _of_cameras(found: Found, seen: Seen, known: set[str], late, sigma) -> list[
             )
     for camera, xy in zip(found.cameras, seen.xy, strict=True):
         low, high = np.nanquantile(xy.reshape(-1, 2), [0.02, 0.98], axis=0)
+        if (high < np.array(camera.size) / 2).all():
+            lines.append(
+                f"camera {camera.name}: its markers lie in the upper left quarter of the picture "
+                f"(up to {high[0]:.0f}, {high[1]:.0f} of {camera_fields.times(camera.size)} px): "
+                "right if they are px of the video's own size, not of a smaller copy"
+            )
         extent = float(np.linalg.norm(high - low) / np.linalg.norm(camera.size))
         if camera.name not in known and extent < LEAST_PATH:
             lines.append(

@@ -47,12 +47,22 @@ class _Pair:
 
 
 @dataclass(frozen=True, eq=False)
-class _Placed:
+class Placed:
     """Cameras by name, and the lowest agreement of a camera with those placed before it."""
 
     cameras: dict[str, Camera]
     agreeing: float  # share of its markers; negative if a camera could not be placed
-    fault: str = ""  # why it could not
+    spread: float = np.inf  # of the wand's length by the first two, as a share
+    fault: str = ""  # why a camera could not be placed
+    accused: str = ""  # its name
+
+
+class Disagreement(InputError):
+    """Cameras do not agree on where the wand is; which of them are wrong is not known."""
+
+    def __init__(self, fault: str, accused: str = "") -> None:
+        super().__init__(fault)
+        self.accused = accused  # the camera that its fault names, if it names one
 
 
 def guess(
@@ -63,31 +73,38 @@ def guess(
     `sizes` are those of the pictures by camera, px; `lenses` are the known ones. Raises
     `InputError` if the wand does not determine the poses.
     """
-    shared = _shared(seen)
-    _check(seen, shared)
-    cameras = [_candidates(name, sizes[name], lenses) for name in seen.cameras]
-    tried = []
-    for first in _first(wand, seen, cameras, shared):
-        tried.append(_completed(first, seen, cameras))
-        if tried[-1].agreeing >= ENOUGH:
-            break
-    best = max(tried, key=lambda one: one.agreeing)
+    _check(seen, _shared(seen))
+    best = placed(wand, seen, [candidates(name, sizes[name], lenses) for name in seen.cameras])
     if best.fault:
-        raise InputError(best.fault)
+        raise Disagreement(best.fault, best.accused)
     return [best.cameras[name] for name in seen.cameras]
 
 
-def _completed(
-    first: tuple[Camera, Camera], seen: Seen, cameras: Sequence[Sequence[Camera]]
-) -> _Placed:
+def placed(
+    wand: Wand, seen: Seen, cameras: Sequence[Sequence[Camera]], starts: int = STARTS
+) -> Placed:
+    """Return the cameras from the best of some `starts`, with the fault if none gives them all.
+
+    `cameras` are the `candidates` for each. Raises `InputError` if all pairs are too close.
+    """
+    tried = []
+    for first in _first(wand, seen, cameras)[:starts]:
+        tried.append(_completed(first, seen, cameras))
+        if tried[-1].agreeing >= ENOUGH:
+            break
+    nothing = Placed({}, -1.0, fault=_no_pair("no pair whose markers agree"))
+    return max(tried, key=lambda one: one.agreeing, default=nothing)
+
+
+def _completed(first: _Pair, seen: Seen, cameras: Sequence[Sequence[Camera]]) -> Placed:
     """Add all other cameras to two, each by the markers triangulated with those before it."""
-    posed, least = {camera.name: camera for camera in first}, 1.0
+    posed, least = {camera.name: camera for camera in first.cameras}, 1.0
     while len(posed) < len(cameras):
-        xyz = _placed(list(posed.values()), seen)
+        xyz = positions(list(posed.values()), seen)
         tried = [
-            _resected(candidates, seen.xy[c], xyz)
-            for c, candidates in enumerate(cameras)
-            if candidates[0].name not in posed
+            resected(every, seen.xy[c], xyz)
+            for c, every in enumerate(cameras)
+            if every[0].name not in posed
         ]
         count, shown, camera = max(tried, key=lambda one: one[0])
         share = count / max(shown, 1)
@@ -98,9 +115,10 @@ def _completed(
                 f"{shown}; check its clock, that no markers are exchanged, and that its video is "
                 "not mirrored"
             )
-            return _Placed(posed, share - 1, fault)  # worse than any start with all cameras
+            # Worse than any start with all cameras.
+            return Placed(posed, share - 1, first.spread, fault, camera.name)
         posed[camera.name], least = camera, min(least, share)
-    return _Placed(posed, least)
+    return Placed(posed, least, first.spread)
 
 
 def _shared(seen: Seen) -> NDArray:
@@ -123,7 +141,7 @@ def _check(seen: Seen, shared: NDArray) -> None:
         )
 
 
-def _candidates(name: str, size: tuple[int, int], lenses: Mapping[str, Camera]) -> list[Camera]:
+def candidates(name: str, size: tuple[int, int], lenses: Mapping[str, Camera]) -> list[Camera]:
     """Return a camera at the origin with its known lens, or one for each focal length to try."""
     if name in lenses:
         return [replace(lenses[name], cam_from_world=np.eye(3, 4))]
@@ -135,10 +153,12 @@ def _tolerance(camera: Camera) -> float:
     return TOLERANCE * max(camera.size) / float(camera.K[1, 1])
 
 
-def _first(
-    wand: Wand, seen: Seen, cameras: Sequence[Sequence[Camera]], shared: NDArray
-) -> list[tuple[Camera, Camera]]:
-    """Return pairs of cameras to start from, the one with the most constant length first."""
+def _first(wand: Wand, seen: Seen, cameras: Sequence[Sequence[Camera]]) -> list[_Pair]:
+    """Return pairs of cameras to start from, the one with the most constant length first.
+
+    There are none if the markers of no pair agree. Raises `InputError` if all are too close.
+    """
+    shared = _shared(seen)
     every = sorted(combinations(range(len(cameras)), 2), key=lambda two: -shared[two])
     found: list[_Pair] = []
     for two in every[:PAIRS]:
@@ -150,19 +170,18 @@ def _first(
         most = max((one.agreeing for one in of_pair), default=0)
         found += [one for one in of_pair if one.agreeing >= 0.9 * most]
     wide = [one for one in found if one.sine >= LEAST_SINE]
-    if not wide:
-        widest = max((one.sine for one in found), default=None)
-        what = (
-            "no pair whose markers agree"
-            if widest is None
-            else f"{np.degrees(np.arcsin(widest)):.1f} at most"
-        )
-        raise InputError(
-            f"wand: expected two cameras whose rays to a marker meet at "
-            f"{np.degrees(np.arcsin(LEAST_SINE)):.0f} degrees or more, found {what}; check that "
-            f"the videos are synchronised and none is mirrored, and {HOW}"
-        )
-    return [one.cameras for one in sorted(wide, key=lambda one: one.spread)[:STARTS]]
+    if found and not wide:
+        widest = np.degrees(np.arcsin(max(one.sine for one in found)))
+        raise InputError(_no_pair(f"{widest:.1f} at most"))
+    return sorted(wide, key=lambda one: one.spread)[:STARTS]
+
+
+def _no_pair(found: str) -> str:
+    return (
+        f"wand: expected two cameras whose rays to a marker meet at "
+        f"{np.degrees(np.arcsin(LEAST_SINE)):.0f} degrees or more, found {found}; check that the "
+        f"videos are synchronised and none is mirrored, and {HOW}"
+    )
 
 
 def _related(wand: Wand, xy: NDArray, lenses: Sequence[Camera]) -> _Pair | None:
@@ -212,21 +231,24 @@ def _lengths(xyz: NDArray) -> NDArray:
     return apart[np.isfinite(apart)]
 
 
-def _placed(cameras: Sequence[Camera], seen: Seen) -> NDArray:
+def positions(cameras: Sequence[Camera], seen: Seen) -> NDArray:
     """Return the markers (F, M, 3) triangulated with some of the cameras."""
     at = [seen.cameras.index(camera.name) for camera in cameras]
     return triangulated(cameras, seen.xy[at])
 
 
-def _resected(candidates: Sequence[Camera], xy: NDArray, xyz: NDArray) -> tuple[int, int, Camera]:
-    """Return the number of markers (F, M, 3) that agree, the number tried, and the posed camera."""
+def resected(every: Sequence[Camera], xy: NDArray, xyz: NDArray) -> tuple[int, int, Camera]:
+    """Return the number of markers (F, M, 3) that agree, the number tried, and the posed camera.
+
+    `every` are its `candidates`, `xy` (F, M, 2) its markers.
+    """
     at = np.argwhere(np.isfinite(xyz).all(axis=-1) & np.isfinite(xy[..., 0]))
     at = at[np.linspace(0, len(at) - 1, min(len(at), SAMPLE)).astype(int)]
-    best = 0, len(at), candidates[0]
+    best = 0, len(at), every[0]
     if len(at) < 6:
         return best
     place, px = xyz[tuple(at.T)], xy[tuple(at.T)]
-    for camera in candidates:
+    for camera in every:
         rays, limit = undistort(camera, px), _tolerance(camera)
         found = robust_poses.resected(place, rays, limit, LEAST_SHARE)
         if found and found[0] > best[0]:
