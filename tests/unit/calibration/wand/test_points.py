@@ -139,8 +139,12 @@ def test_a_wand_has_two_or_three_markers():
         (OURS.split("\n")[0], {}, "expected rows of a wand's markers, found none"),
         (OURS.replace("x_px", "u"), {}, "expected the columns camera,marker,x_px,y_px"),
         (OURS.replace(",9\n", ",x\n", 1), {"markers": ["tip", "end"]}, "line 3: expected y_px"),
-        (OURS.replace("cam_b", "cam_c"), {"markers": ["tip", "end"]}, "for camera right (cam_b)"),
-        (OURS.replace("cam_", "no_"), {"markers": ["tip", "end"]}, "for camera left (cam_a)"),
+        (OURS.replace("cam_b", "cam_c"), {"markers": ["tip", "end"]}, "for camera right (cam_b), "
+         "found markers of cam_c, other; correct the name in the file"),
+        (OURS.replace("cam_", "no_"), {"markers": ["tip", "end"]}, "for camera left (cam_a), "
+         "found markers of no_a, no_b, other; correct"),
+        ("camera,frame,marker,x_px,y_px\ncam_a,1,a,1,1\ncam_a,1,b,2,2\n", {},
+         "for camera right (cam_b), found none; correct the name"),
         (OURS + "cam_a,3,tip,1,1\n", {"markers": ["tip", "end"]}, "expected one row for marker"),
         (OURS, {"markers": ["tip", "End"]}, "of tip, end, floor, found End; correct `wand.mark"),
         (OURS, {"markers": ["Tip", "End"]}, "found Tip, End; correct `wand.markers`"),

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.geometry import camera_fields
 from courtside.records.user_tables import lines, number, table
 from courtside.study.errors import InputError, StrPath
 
@@ -100,12 +101,20 @@ def _check_inside(path: StrPath, found: Seen, sizes: Mapping[str, tuple[int, int
             )
 
 
-def _check_cameras(path: StrPath, names: Mapping[str, str], seen: Collection[str]) -> None:
+def _check_cameras(
+    path: StrPath,
+    names: Mapping[str, str],
+    seen: Collection[str],
+    listed: Iterable[str] = (),
+) -> None:
+    """Raise an `InputError` if a camera has no marker; the file's own names are `listed`."""
     for name, theirs in names.items():
         if name not in seen:
+            others = [one for one in dict.fromkeys(listed) if one not in names.values()]
+            found = f"markers of {camera_fields.short(', '.join(others))}" if others else "none"
             raise InputError(
-                f"{path}: expected markers of the wand for camera {name} ({theirs}), found none; "
-                "correct the name in the file, or set `name_in_calibration` of the camera"
+                f"{path}: expected markers of the wand for camera {name} ({theirs}), found "
+                f"{found}; correct the name in the file, or set `name_in_calibration` of the camera"
             )
 
 
@@ -135,7 +144,8 @@ def _ours(path: StrPath, wand: Wand, names: Mapping[str, str], floor: Iterable[f
                 f"at {times[0]} {row[times[0]]}, found a second one; delete one"
             )
         xy[at] = [number(where, key, row[key]) for key in OURS[2:]]
-    _check_cameras(path, names, [name for name, places in each.items() if places])
+    seen = [name for name, places in each.items() if places]
+    _check_cameras(path, names, seen, (row["camera"] for _, row in rows))
     return _at_frames(each) if times == ["frame"] else _at_times(each, floor)
 
 
