@@ -3,7 +3,7 @@
 import numpy as np
 
 from courtside.calibration import file_formats
-from courtside.calibration.file_check import residuals, verdict
+from courtside.calibration.file_check import residuals, upright, verdict
 from courtside.geometry import camera
 from courtside.reconstruction import common_views
 from courtside.records import tables
@@ -26,12 +26,15 @@ def main(paths, check_json, check_csv, *, names, override, takes, unit=None):
     seen = verdict.Seen(static, joints)
     person_px = residuals.height_px(views, people.height_px) if people else np.inf
     judged = verdict.judge(found, seen, person_px)
-    for line in judged.warnings:
+    turned = upright.warning(found, np.stack(views)) if views else ""
+    shared = [turned] if turned else []
+    for line in judged.warnings + shared:
         log.tell(line, check_json)
     rows = verdict.by_camera(found, seen)
     tables.write(check_csv, rows, float_format="%.3f")
     content = {
-        "warnings": judged.warnings,
+        "warnings": judged.warnings + shared,
+        "shared": shared,  # of them, about all cameras together
         "faults": [
             {"what": one.what, "advice": one.advice, "cameras": one.names} for one in judged.faults
         ],

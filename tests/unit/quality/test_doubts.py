@@ -78,3 +78,15 @@ def test_painted_lines_and_the_calibration_itself_are_heard(tmp_path):
     assert found.shared == ("floor: it tilts", "frame") and found.of("c1") == "it sees"
     both = doubts.Doubts({"c1": "sees"}, {"c1": "it is odd"})
     assert both.of("c1") == "it sees, and by the check of the calibration file it is odd"
+
+
+def test_a_world_that_is_not_upright_is_said_beside_a_fault_of_a_camera(tmp_path, quality):
+    content = {"warnings": ["fault", "not upright"], "shared": ["not upright"], "faults": []}
+    check = tmp_path / "check.json"
+    check.write_text(json.dumps(content))
+    assert doubts.read(quality, check).shared == ("fault", "not upright")
+    content["faults"] = [{"what": MIRRORED, "cameras": ["c1"]}]
+    check.write_text(json.dumps(content))
+    assert doubts.read(quality, check) == doubts.Doubts(
+        by_check={"c1": MIRRORED}, shared=("not upright",)
+    )

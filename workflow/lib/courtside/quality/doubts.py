@@ -33,7 +33,7 @@ def read(quality_json: StrPath, check_json: StrPath = "", court_json: StrPath = 
     check = read_json(check_json) if check_json else {}
     court = read_json(court_json) if court_json else {}
     faults = check.get("faults", ())
-    shared += [] if faults else check.get("warnings", ())
+    shared += check.get("shared", ()) if faults else check.get("warnings", ())
     shared += court.get("shared", ())
     return Doubts(court.get("cameras", {}), _by_camera(faults), tuple(shared))
 
