@@ -262,7 +262,7 @@ def test_opencv_several_cameras_in_one_file(tmp_path):
         ({"T": np.array([np.nan, 0, 0])}, "left: expected translation"),
         ({"unit": "inch"}, "left: expected unit"),
         ({"unit": 3}, "left: expected unit"),
-        ({"distortion_coefficients": np.arange(8.0)}, "left: .*five-coefficient"),
+        ({"distortion_coefficients": np.arange(8.0)}, "left: .*five coefficients"),
     ],
 )
 def test_malformed_opencv_is_one_line_to_mend(tmp_path, values, message):

@@ -327,7 +327,7 @@ def test_lengths_are_read_in_the_unit_of_the_file(tmp_path, metadata, metres):
         ("[1500.0, 0.0, 950.0]", "[0.0, 0.0, 950.0]", "left: .*positive focal"),
         ("[1500.0, 0.0, 950.0]", "[1500.0, 950.0]", "left: expected matrix as 3x3"),
         ("[-0.2, 0.1, 0.0, 0.0]", "[-0.2]", "left: expected distortions"),
-        ("[-0.2, 0.1, 0.0, 0.0]", "[0, 0, 0, 0, 0, 1, 0, 0]", "left: .*five-coefficient"),
+        ("[-0.2, 0.1, 0.0, 0.0]", "[0, 0, 0, 0, 0, 1, 0, 0]", "left: .*five coefficients"),
         ("1920.0, 1080.0", "1920.5, 1080.0", "left: expected size"),
         ("1920.0, 1080.0", "-1920, 1080", "left: expected size"),
         ("fisheye = false", "fisheye = true", "left: .*fisheye = true"),

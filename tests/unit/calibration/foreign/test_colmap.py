@@ -54,6 +54,26 @@ def test_models_by_pycolmap_project_to_the_same_px(tmp_path, name):
         np.testing.assert_allclose(xy, np.asarray(colmaps) - 0.5, atol=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("name", "more"),
+    [
+        ("FULL_OPENCV", [-0.2, 0.09, 0.001, -0.0007, -0.02, 0.05, 0.01, -0.003]),
+        ("OPENCV_FISHEYE", [-0.03, 0.01, -0.004, 0.0008]),
+    ],
+)
+def test_other_lenses_by_pycolmap_are_followed_by_five_coefficients(tmp_path, name, more):
+    made = model(name, [3400, 3404, 950, 545, *more])
+    made.write_text(str(tmp_path))
+    left, _ = file_formats.read(tmp_path, "m")
+    rng = np.random.default_rng(1)
+    in_camera = np.column_stack([rng.uniform(-0.25, 0.25, (200, 2)) * [1, 0.6], np.ones(200)])
+    colmaps = np.asarray(made.cameras[1].img_from_cam(in_camera)) - 0.5
+    inside = ((colmaps >= 0) & (colmaps <= np.array(theirs.SIZE) - 1)).all(axis=1)
+    assert inside.sum() > 150
+    off = cameras.project(replace(left, cam_from_world=np.eye(3, 4)), in_camera) - colmaps
+    assert np.abs(off[inside]).max() < 0.01
+
+
 def test_pycolmap_projects_with_what_we_write(tmp_path):
     for name, text in colmap.texts([OURS]).items():
         (tmp_path / name).write_text(text)

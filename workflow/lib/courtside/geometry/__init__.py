@@ -3,7 +3,8 @@
 camera: `Camera`, `plain`, `look_at`, `project`, `undistort`, `crop`, `scaled`, `check_size`, and
     TOML files
 picture_size: `relation`, `scaled_size`, `advice`: a video's size against the calibrated one
-camera_fields: checked numbers of calibration files (`numbers`, `pose`, `five_coefficients`)
+camera_fields: checked numbers of calibration files (`numbers`, `pose`, `distortions`)
+lens_fit: `five`, `fit`: lenses of other models as five coefficients
 rotations: `rotation_from_rodrigues`, `rodrigues_from_rotation`, `interpolate`, `invert`, `composed`
 similarity: `Sim3`, `umeyama`, `rigid`, `fit_many`, `kabsch`
 robust_similarity: `fit`, `triples`: the similarity on which most points agree

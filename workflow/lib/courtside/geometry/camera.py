@@ -10,7 +10,7 @@ import numpy as np
 import tomli_w
 from numpy.typing import ArrayLike, NDArray
 
-from courtside.geometry import camera_fields, picture_size, rotations
+from courtside.geometry import camera_fields, lens_fit, picture_size, rotations
 from courtside.study.errors import InputError, StrPath, reading
 from courtside.study.execution.files import atomic
 
@@ -257,21 +257,22 @@ def build(where: str, name: str, table: Mapping[str, Any], metres: float) -> Cam
     """Build a camera from its table in a file; `where` begins error messages.
 
     The parsed table, of any types, holds `size matrix distortions rotation translation`, optionally
-    `fisheye`; rotation as vector or matrix. `metres` is the unit of the translation.
+    `fisheye`; rotation as vector or matrix. `metres` is the unit of the translation. A lens of more
+    than five coefficients, or a fisheye lens, becomes one of five if `lens_fit.five` can.
     """
-    if table.get("fisheye", False):
-        raise InputError(
-            f"{where}: expected a lens with distortions k1 k2 p1 p2 k3, found fisheye = true; "
-            "calibrate with the standard lens model"
-        )
+    fisheye = bool(table.get("fisheye", False))
     size = camera_fields.numbers(where, "size", table.get("size"), (2,))
     matrix = camera_fields.numbers(where, "matrix", table.get("matrix"), (3, 3))
-    dist = camera_fields.five_coefficients(where, table.get("distortions"))
+    dist = camera_fields.distortions(where, table.get("distortions"), fisheye=fisheye)
+    other = fisheye or len(dist) > 5
     pose = camera_fields.pose(where, table.get("rotation"), table.get("translation"), metres)
     try:
-        return Camera(name, size.tolist(), matrix, dist, pose)
+        camera = Camera(name, size.tolist(), matrix, np.zeros(5) if other else dist, pose)
     except ValueError as error:
         raise InputError(f"{where}: {error}; {camera_fields.EXPORT_AGAIN}") from error
+    if not other:
+        return camera
+    return replace(camera, dist=lens_fit.five(where, camera.size, matrix, dist, fisheye=fisheye))
 
 
 def write_toml(path: StrPath, cameras: Sequence[Camera], *, source: str, unit: str = "m") -> None:

@@ -44,16 +44,24 @@ def numbers(where: StrPath, key: str, value: object, *shapes: tuple[int, ...]) -
     return array
 
 
-def five_coefficients(where: str, value: object) -> NDArray:
-    """Return distortion as k1 k2 p1 p2 k3 (5,); missing ones are 0, further ones must be 0."""
+def distortions(where: str, value: object, *, fisheye: bool) -> NDArray:
+    """Return distortion as k1 k2 p1 p2 k3 (5,), missing ones 0; as it is if further ones are not 0.
+
+    Of a fisheye lens it is k1 k2 k3 k4 (4,).
+    """
     if isinstance(value, np.ndarray):
         value = value.ravel()
+    if fisheye:
+        of_fisheye = numbers(where, "distortions (fisheye = true)", value, (4,), (5,))
+        if np.any(of_fisheye[4:]):
+            raise InputError(
+                f"{where}: expected distortions k1 k2 k3 k4 of a fisheye lens (fisheye = true), "
+                f"found a fifth one; {EXPORT_AGAIN}"
+            )
+        return of_fisheye[:4]
     coefficients = numbers(where, "distortions", value, (4,), (5,), (8,), (12,), (14,))
     if np.any(coefficients[5:]):
-        raise InputError(
-            f"{where}: expected distortions k1 k2 p1 p2 k3, found {len(coefficients)} that are not "
-            "zero beyond the fifth; calibrate with OpenCV's standard five-coefficient model"
-        )
+        return coefficients
     return np.pad(coefficients[:5], (0, max(0, 5 - len(coefficients))))
 
 

@@ -39,7 +39,8 @@ MODELS = {
     "THIN_PRISM_FISHEYE": 12,
 }
 ONE_FOCAL = ("SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL")
-READ = (*ONE_FOCAL, "PINHOLE", "OPENCV", "FULL_OPENCV")
+FISHEYE = "OPENCV_FISHEYE"
+READ = (*ONE_FOCAL, "PINHOLE", "OPENCV", "FULL_OPENCV", FISHEYE)
 Lens = tuple[str, tuple[float, float], list[float]]  # model, size px, parameters
 Image = tuple[str, int, list[float]]  # name, number of the camera, quaternion and translation
 
@@ -157,6 +158,7 @@ def _lens_table(model: str, parameters: NDArray) -> dict[str, Any]:
     return {
         "matrix": [[focal[0], 0, centre_x - HALF_PX], [0, focal[1], centre_y - HALF_PX], [0, 0, 1]],
         "distortions": np.array([*radial, *([0.0] * max(0, 4 - len(radial)))]),
+        "fisheye": model == FISHEYE,
     }
 
 

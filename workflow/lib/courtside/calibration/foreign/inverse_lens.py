@@ -2,14 +2,11 @@
 
 from collections.abc import Callable, Sequence
 
-import numpy as np
 from numpy.typing import NDArray
 
-from courtside.geometry import camera as cameras
-from courtside.geometry import camera_fields
+from courtside.geometry import camera_fields, lens_fit
 from courtside.study.errors import InputError
 
-COLUMNS, ROWS = 32, 24  # of the grid over the picture that the coefficients are fitted to
 # ASSUME: below the noise of keypoints; lenses of Vicon are some 0.03 px off, of OptiTrack 0.1 px.
 MOST_OFF_PX = 0.25
 
@@ -26,24 +23,11 @@ def coefficients(
     `matrix` (3, 3) px. The coefficients are fitted by least squares over the whole picture. Raises
     `InputError` that begins with `where` if they miss the lens by more than 0.25 px anywhere.
     """
-    width, height = camera_fields.numbers(where, "size", size, (2,))
-    axes = np.linspace(0, width - 1, COLUMNS), np.linspace(0, height - 1, ROWS)
-    xy = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
-    focal = np.diag(matrix)[:2]
-    ideal = undistort(xy)
-    missed = (xy - matrix[:2, 2]) / focal - ideal
-    x, y = ideal[:, 0], ideal[:, 1]
-    square = x * x + y * y
-    along_x = [x * square, x * square**2, 2 * x * y, square + 2 * x * x, x * square**3]
-    along_y = [y * square, y * square**2, square + 2 * y * y, 2 * x * y, y * square**3]
-    effects = np.vstack([np.stack(along_x, -1), np.stack(along_y, -1)])
-    if not (np.isfinite(effects).all() and np.isfinite(missed).all()):
+    xy = lens_fit.grid(camera_fields.numbers(where, "size", size, (2,)))
+    found = lens_fit.fit(xy, undistort(xy), matrix)
+    if found is None:
         raise InputError(f"{where}: expected a lens, found one without limits; export it again")
-    # Columns of one size: the sixth power of a small radius vanishes beside the second.
-    scale = np.maximum(np.abs(effects).max(axis=0), np.finfo(float).tiny)
-    solved, *_ = np.linalg.lstsq(effects / scale, missed.T.ravel(), rcond=None)
-    dist = solved / scale
-    off_px = np.abs((cameras.distort(dist, ideal) - ideal - missed) * focal).max()
+    dist, off_px = found
     if not off_px <= MOST_OFF_PX:
         raise InputError(
             f"{where}: expected a lens that five coefficients of OpenCV follow to {MOST_OFF_PX:g} "
