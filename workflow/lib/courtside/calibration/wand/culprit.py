@@ -17,7 +17,9 @@ from courtside.calibration.wand.start import Disagreement, Placed
 from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError
 
-RIGHT = 0.6  # ASSUME: share of markers on which right cameras agree with the others, at least
+# ASSUME: how far others agree less if a wrong camera is among them. Right cameras of unknown lenses
+# may agree on a third of the markers only, with the focal lengths that are tried.
+WORSE = 0.5
 LOWER = 0.7  # ASSUME: share of a wrong one, relative to that of the others, at most
 CLEARER = 0.5  # ASSUME: spread of the wand's length by two right cameras, relative to other pairs
 STARTS = 2  # ASSUME: right cameras agree from one of so many starts
@@ -58,7 +60,7 @@ def _copies(wand: Wand, seen: Seen, cameras: Sequence[Sequence[Camera]]) -> str:
     for times in COPIES:
         if all(_inside(xy * times, one[0]) for xy, one in zip(seen.xy, cameras, strict=True)):
             whole = _placed(wand, replace(seen, xy=seen.xy * times), cameras)
-            if whole is not None and whole.agreeing >= start.ENOUGH:
+            if whole is not None and not whole.fault:
                 fits[times] = whole.agreeing
     if not fits:
         return ""
@@ -75,12 +77,11 @@ def _inside(xy: NDArray, camera: Camera) -> bool:
 
 
 def _placed(wand: Wand, seen: Seen, cameras: Sequence[Sequence[Camera]]) -> Placed | None:
-    """Return cameras that agree, None if they do not."""
+    """Return the cameras, with a fault if they do not agree; None if all pairs are too close."""
     try:
-        found = start.placed(wand, seen, cameras, STARTS)
-    except InputError:  # all pairs are too close
+        return start.placed(wand, seen, cameras, STARTS)
+    except InputError:
         return None
-    return None if found.fault else found
 
 
 def _odd(
@@ -92,16 +93,18 @@ def _odd(
         keep = [k for k in range(len(cameras)) if k != c]
         others = replace(seen, cameras=tuple(seen.cameras[k] for k in keep), xy=seen.xy[keep])
         rest = _placed(wand, others, [cameras[k] for k in keep])
-        if rest is not None:
-            rests[c] = rest
-        if len(keep) > 2 and rest is not None and rest.agreeing >= start.ENOUGH:
+        if rest is None:
+            continue
+        rests[c] = rest
+        if len(keep) > 2 and rest.agreeing >= start.ENOUGH:
             return c, rest  # three cameras agree so well only if all are right
     if len(cameras) > 3:
+        share = {c: rest.agreeing + bool(rest.fault) for c, rest in rests.items()}
         order = sorted(rests, key=lambda c: -rests[c].agreeing)
-        best, second = ([rests[c].agreeing for c in order] + [0.0, 0.0])[:2]
-        clear = best >= RIGHT and second < LOWER * best
+        best, second = ([share[c] for c in order] + [0.0, 0.0])[:2]
+        clear = bool(order) and not rests[order[0]].fault and second < WORSE * best
     else:
-        order = sorted(rests, key=lambda c: rests[c].spread)
+        order = sorted((c for c in rests if not rests[c].fault), key=lambda c: rests[c].spread)
         best, second = ([rests[c].spread for c in order] + [np.inf, np.inf])[:2]
         clear = best < CLEARER * second
     return (order[0], rests[order[0]]) if clear else None
@@ -117,7 +120,7 @@ def _of_one(c: int, rest: Placed, seen: Seen, cameras: Sequence[Sequence[Camera]
     )
     for xy, mend in _changes(seen.xy[c], camera):
         agreeing, tried, _ = start.resected(cameras[c], xy, xyz)
-        if agreeing >= RIGHT * tried and count < LOWER * agreeing:
+        if agreeing >= start.LEAST_AGREEING * tried and count < LOWER * agreeing:
             return f"{line}, and {agreeing} {mend}"
     return f"{line}; {CHECK}"
 
