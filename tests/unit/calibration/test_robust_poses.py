@@ -43,3 +43,17 @@ def test_points_without_any_pose_give_none():
     noise = np.random.default_rng(1).normal(size=(300, 2))
     found = robust_poses.resected(XYZ, noise, 1e-5, 0.75)
     assert found is None or found[0] < 8
+
+
+@pytest.mark.parametrize("xyz", [1e-4 * XYZ, XYZ[:, :1] * [1, 2, 3]], ids=["a point", "a line"])
+def test_points_that_any_pose_fits_give_none(xyz):
+    """OpenCV's SQPnP raises an error of its own there."""
+    in_camera = xyz + np.array([0, 0, 10])
+    views = in_camera[:, :2] / in_camera[:, 2:]
+    assert robust_poses.resected(xyz, views, 1e-3, 0.75) is None
+    assert robust_poses.placed(xyz, views, robust_poses.IDEAL, None) == []
+
+
+def test_all_right_points_give_the_pose():
+    pose, *_ = robust_poses.placed(XYZ, rays(0)[1], robust_poses.IDEAL, None)
+    np.testing.assert_allclose(pose, OTHER.cam_from_world, atol=1e-6)

@@ -245,6 +245,12 @@ def test_wrong_names_never_end_in_a_fault_of_arithmetic(seed):
         resection.nonlinear(COURT.xyz[at], xy, SIZE, name="left", **known)
 
 
+def test_clicks_in_one_place_are_refused():
+    xy = np.full((len(COURT.xyz), 2), 300.0)
+    with pytest.raises(InputError, match="camera left: expected clicks that fit a camera, found"):
+        resection.nonlinear(COURT.xyz, xy, SIZE, name="left")
+
+
 def test_a_floor_seen_square_on_does_not_show_the_focal_length():
     overhead = np.column_stack([np.diag([1.0, -1, -1]), [-3.05, 6.7, 20]])
     true = cameras.Camera("top", SIZE, camera().K, np.zeros(5), overhead)

@@ -182,6 +182,16 @@ def test_left_handed_floor_points_put_the_cameras_below_the_floor():
             assert place_checks.check_cameras(there, cameras_found, marked) == []
 
 
+def test_clicks_in_one_place_are_refused():
+    points = floor_points()
+    court, marked = points.args
+    here = {name: np.full_like(px, 300.0) for name, px in marked.items()}
+    with pytest.raises(
+        InputError, match=r"^wand: expected 4 clicked points .*, not all in one place"
+    ):
+        calibrate(seen(swung()), clicks=partial(points.func, court, here, **WEIGHTS))
+
+
 def test_clicks_have_the_loss_that_is_stated_for_them():
     """A wrong click moves the cameras only if the loss of clicks is wide."""
     points = floor_points()

@@ -1,7 +1,8 @@
 """Poses of cameras by RANSAC (Fischler & Bolles 1981) from points on their z = 1 planes.
 
 Relative poses of two cameras by the essential matrix (Nistér 2004), poses by points at known places
-(Terzakis & Lourakis 2020).
+(SQPnP, Terzakis & Lourakis 2020), which raises an error where they are nearly one view, or on a
+line: any pose fits them, and none is returned.
 """
 
 import cv2
@@ -41,12 +42,32 @@ def resected(
 
     None if no pose is found, or if a smaller share than `least_in_front` is in front of it.
     """
-    fine, vector, shift, near = cv2.solvePnPRansac(
-        xyz, rays, IDEAL, None, iterationsCount=ROUNDS, confidence=CONFIDENCE,
-        reprojectionError=limit, flags=cv2.SOLVEPNP_SQPNP,
-    )  # fmt: skip
+    try:
+        fine, vector, shift, near = cv2.solvePnPRansac(
+            xyz, rays, IDEAL, None, iterationsCount=ROUNDS, confidence=CONFIDENCE,
+            reprojectionError=limit, flags=cv2.SOLVEPNP_SQPNP,
+        )  # fmt: skip
+    except cv2.error:
+        return None
     if not fine or near is None:
         return None
     pose = np.column_stack([rotations.rotation_from_rodrigues(vector.ravel()), shift])
     depth = xyz[near[:, 0]] @ pose[2, :3] + pose[2, 3]
     return (len(near), pose) if (depth > 0).mean() >= least_in_front else None
+
+
+def placed(xyz: NDArray, xy: NDArray, matrix: NDArray, dist: NDArray | None) -> list[NDArray]:
+    """Return the poses (3, 4) by all points (N, 3) and their views (N, 2), px of such a lens.
+
+    Several fit points in one plane; none is found where any pose fits.
+    """
+    try:
+        count, turns, shifts, _ = cv2.solvePnPGeneric(
+            xyz, xy, matrix, dist, flags=cv2.SOLVEPNP_SQPNP
+        )
+    except cv2.error:
+        return []
+    return [
+        np.column_stack([rotations.rotation_from_rodrigues(turns[at].ravel()), shifts[at].ravel()])
+        for at in range(count)
+    ]

@@ -8,10 +8,10 @@ Its `lm` with differences took 170 ms and diverged where clicks were wrong.
 
 from dataclasses import dataclass, replace
 
-import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from courtside.calibration import robust_poses
 from courtside.geometry import camera, rotations
 
 # Focal lengths to start from, in picture widths (fields of view of 90 to 28 degrees), 20 to 25 %
@@ -85,23 +85,13 @@ def start(
         lenses = [np.asarray(K, float)]
     best, least = None, np.inf
     for matrix in lenses:
-        for pose in _poses(clicks, matrix, dist):
+        for pose in robust_poses.placed(clicks.xyz, clicks.xy, matrix, dist):
             state = State(matrix, dist, pose)
             off, _, depth = residuals(state, clicks)
             error = np.median(np.linalg.norm(off, axis=1))
             if depth.min() > 0 and error < least:
                 best, least = state, error
     return best
-
-
-def _poses(clicks: Clicks, matrix: NDArray, dist: NDArray) -> list[NDArray]:
-    count, turns, shifts, _ = cv2.solvePnPGeneric(
-        clicks.xyz, clicks.xy, matrix, dist, flags=cv2.SOLVEPNP_SQPNP
-    )
-    return [
-        np.column_stack([rotations.rotation_from_rodrigues(turns[at].ravel()), shifts[at].ravel()])
-        for at in range(count)
-    ]
 
 
 def residuals(state: State, clicks: Clicks) -> tuple[NDArray, NDArray, NDArray]:

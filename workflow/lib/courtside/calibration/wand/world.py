@@ -3,10 +3,10 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.calibration import robust_poses
 from courtside.calibration.people import world_frame
 from courtside.geometry import rotations, similarity
 from courtside.geometry.camera import Camera, project, undistort
@@ -76,8 +76,8 @@ def of_clicks(cameras: Sequence[Camera], points: NDArray, xy: NDArray) -> Sim3:
     found = _best(cameras, points, xy)
     if found is None:
         raise InputError(
-            f"wand: expected {FEWEST_CLICKS} clicked points or more in one camera, found fewer; "
-            "click more, or remove `court_points` and set `wand.floor`"
+            f"wand: expected {FEWEST_CLICKS} clicked points or more in one camera, not all in "
+            "one place, found fewer; click more, or remove `court_points` and set `wand.floor`"
         )
     off, world = found
     other = _best([_flipped(camera) for camera in cameras], points, xy)
@@ -110,17 +110,13 @@ def _worlds(cameras, points: NDArray, xy: NDArray) -> Iterator[Sim3]:
         at = np.isfinite(px).all(axis=1)
         if at.sum() < FEWEST_CLICKS:
             continue
-        fine, vector, shift = cv2.solvePnP(
-            points[at], undistort(camera, px[at]), np.eye(3), None, flags=cv2.SOLVEPNP_SQPNP
-        )
-        if fine:
-            turn = rotations.rotation_from_rodrigues(vector.ravel())
-            world_from_cam = rotations.invert(np.column_stack([turn, shift]))
-            moved = rotations.composed(world_from_cam, camera.cam_from_world)
+        rays = undistort(camera, px[at])
+        for pose in robust_poses.placed(points[at], rays, robust_poses.IDEAL, None)[:1]:
+            moved = rotations.composed(rotations.invert(pose), camera.cam_from_world)
             yield Sim3(1.0, moved[:, :3], moved[:, 3])
     placed = triangulate_all(cameras, xy)
     seen = np.isfinite(placed).all(axis=1)
-    if seen.sum() >= 3 and not similarity.is_collinear(points[seen]):
+    if not any(similarity.is_collinear(xyz[seen]) for xyz in (placed, points)):
         yield similarity.rigid(placed[seen], points[seen])
 
 
