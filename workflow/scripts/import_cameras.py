@@ -1,6 +1,7 @@
 """Import a calibration made elsewhere: its file -> the session's cameras, as their videos show."""
 
 from courtside.calibration import file_formats
+from courtside.calibration.file_check import stated
 from courtside.geometry import camera
 from courtside.study.execution.files import write_json
 from courtside.study.execution.script import run
@@ -14,6 +15,7 @@ def main(
     file_formats.check_apart(calibration_path, theirs)
     points_px = override.get("principal_point_px", {})
     found = file_formats.with_principal_points(theirs, points_px)
+    stated.check(calibration_path, found)
     source = f"imported from {calibration_path}"
     if points_px:
         source += f", principal points of {', '.join(points_px)} replaced: {override['reason']}"

@@ -380,3 +380,14 @@ def test_points_are_in_front_of_the_cameras_named():
     first[0] = True
     assert SEEN.in_front(VIEWED, ~nobody).all() and SEEN.in_front(behind, nobody).all()
     assert not SEEN.in_front(behind, first).any()
+
+
+@pytest.mark.filterwarnings("error")
+def test_cameras_in_one_place_leave_a_point_open_without_a_word():
+    views = [replace(view, cam_from_world=np.eye(3, 4)) for view in scene.ring(2)]
+    noise_px = np.random.default_rng(2).normal(0, 3, (2, 20, 2))
+    xy = scene.views(views, scene.points(20) + np.array([0, 0, 5])) + noise_px
+    xyz = triangulation.triangulate_all(views, xy)
+    assert xyz.shape == (20, 3)
+    found = triangulation.triangulate_robust(views, xy, np.ones(xy.shape[:2]), **LIMITS)
+    assert not np.isfinite(found.covariance).all(axis=(1, 2)).all()

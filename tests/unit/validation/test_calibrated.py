@@ -1,7 +1,10 @@
 """What the sizes of a session's cameras say, without any file of pictures."""
 
+from dataclasses import replace
+
 import pytest
 
+from courtside.geometry import camera as geometry
 from courtside.validation import calibrated
 
 SIZES = {name: {f"{name}.mp4": (320, 180)} for name in ("left", "right", "back")}
@@ -34,3 +37,11 @@ def test_a_wrong_size_names_the_key_that_mends_it(hall, size, key):
 def test_another_calibration_is_not_read_where_the_session_does_not_use_it(hall):
     hall.content["calibration"]["file"] = str(hall.root / "none.toml")
     assert faults(hall, left={"left.mp4": (640, 360)}) == []
+
+
+def test_one_pose_of_two_cameras_is_told_with_their_names(hall):
+    first, second, *others = hall.around()
+    cameras = [first, replace(second, cam_from_world=first.cam_from_world), *others]
+    geometry.write_toml(hall.root / "cameras.toml", cameras, source="test")
+    (line,) = faults(hall)
+    assert line.startswith(f"{hall.root / 'cameras.toml'}: cameras left and right: expected a pose")

@@ -312,9 +312,13 @@ class Views:
         return residual, in_cam
 
     def jacobians(self, in_cam: NDArray, weight: NDArray) -> tuple[NDArray, NDArray]:
-        """Return the derivative J (N, 2 C, 3) of residuals by points, and J'W (N, 3, 2 C)."""
-        scale = self.focal_px[:, None] / in_cam[..., 2]
-        ratio = in_cam[..., :2] / in_cam[..., 2:]
+        """Return the derivative J (N, 2 C, 3) of residuals by points, and J'W (N, 3, 2 C).
+
+        NaN for a point at a camera, where two cameras in one place put it.
+        """
+        depth = np.where(in_cam[..., 2:] == 0, np.nan, in_cam[..., 2:])
+        scale = self.focal_px[:, None] / depth[..., 0]
+        ratio = in_cam[..., :2] / depth
         rows = self.matrix[:, None, :2, :3] - ratio[..., None] * self.matrix[:, None, 2:3, :3]
         rows = rows * scale[..., None, None]
         weighted = rows * weight[..., None, None]

@@ -6,7 +6,7 @@ from itertools import combinations
 from pathlib import Path
 
 from courtside.calibration import file_formats
-from courtside.calibration.file_check import verdict
+from courtside.calibration.file_check import stated, verdict
 from courtside.geometry import camera as geometry
 from courtside.geometry import camera_fields, picture_size
 from courtside.geometry.camera import Camera
@@ -54,6 +54,7 @@ def faults(session: Session, sizes: Sizes) -> Iterator[str]:
             session, {o: known[theirs] for o, theirs in names.items() if theirs in known}
         )
         file_formats.check_apart(path, list(there.values()))
+        stated.check(path, list(there.values()))
         shown = {name: _shown(session, name, camera) for name, camera in there.items()}
         yield from _exchanged_by_points(session, shown) if not missing else ()
     except InputError as error:
