@@ -63,6 +63,7 @@ rule associate_people:
     params:
         code=code("associate_people.py"),
         several=lambda w: len(take_of(w).subjects) > 1,
+        unit=lambda w: session_of(w).calibration_unit,
     script:
         "../scripts/associate_people.py"
 

@@ -8,10 +8,11 @@ from courtside.study.execution import log
 from courtside.study.execution.script import run
 
 
-def main(paths, people_npz, *, several, calibration):
+def main(paths, people_npz, *, several, calibration, unit=None):
     seen = footage.read(paths.cameras, paths.pose2d, None, paths.sync, sure_clocks=several)
     lines = court.read(paths.court) if paths.get("court") else None
-    found, line = everybody.find(seen, skeleton.read(paths.skeleton), lines, calibration)
+    joints = skeleton.read(paths.skeleton)
+    found, line = everybody.find(seen, joints, lines, calibration, unit)
     log.logger.info("%s", line)
     people.write(people_npz, found)
 

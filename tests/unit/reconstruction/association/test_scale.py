@@ -46,6 +46,24 @@ def test_another_unit_is_named(unit, places):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize(("stated", "unit"), [("ft", "m"), ("cm", "mm"), ("mm", "m")])
+def test_a_wrong_unit_that_the_session_states_is_named(stated, unit):
+    cameras = in_unit(METRES[unit] / METRES[stated])
+    message = rf"likely in {unit} \(0\.[45]\d m\): write `unit: {unit}` instead of `unit: {stated}`"
+    with pytest.raises(InputError, match=message):
+        scale.check(cameras, seen(), stick_figures.NAMES, "file", stated)
+    assert scale.apart(cameras, "file", stated).endswith(
+        f"correct `unit: {stated}` under calibration"
+    )
+
+
+def test_a_stated_unit_is_not_that_of_other_lengths():
+    with pytest.raises(
+        InputError, match=r"correct `square_m` of the board, about .*, as if in ft$"
+    ):
+        scale.check(in_unit(METRES["ft"]), seen(), stick_figures.NAMES, "board", "cm")
+
+
 @pytest.mark.parametrize("way", ["file", None])
 def test_a_scale_of_no_unit_asks_for_a_known_length(way):
     with pytest.raises(InputError, match="calibrate again with a known length"):

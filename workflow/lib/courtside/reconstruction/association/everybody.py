@@ -19,11 +19,16 @@ SURE = 0.5  # ASSUME: score of a joint that a network sees, not guesses
 
 
 def find(
-    seen: Sequence[Footage], joints: Skeleton, court: Court | None, calibration: str | None = None
+    seen: Sequence[Footage],
+    joints: Skeleton,
+    court: Court | None,
+    calibration: str | None = None,
+    unit: str | None = None,
 ) -> tuple[People, str]:
     """Associate the tracklets of all cameras of a take; also return what the log says.
 
-    `calibration` is the name of that by which the cameras were found, for messages.
+    `calibration` is the name of that by which the cameras were found, and `unit` the
+    one that the session states for its file, for messages.
     Raises `InputError` where cameras share no time, people have not the size of people, or nobody
     can be placed.
     """
@@ -36,7 +41,7 @@ def find(
     xy = [resampling.resample(v, time_s, c)[0] for v, c in zip(limbs, clocks, strict=True)]
     trunk = [at for at, name in enumerate(names) if name.endswith(("hip", "shoulder"))]
     cameras = [one.camera for one in seen]
-    scale.check(cameras, xy, names, calibration)
+    scale.check(cameras, xy, names, calibration, unit)
     mirror = [chosen.index(joints.mirror()[joint]) for joint in chosen]
     worn = [
         v.clothing[:, resampling.nearest(v, time_s, c)] for v, c in zip(views, clocks, strict=True)
@@ -53,7 +58,8 @@ def find(
             clothing=worn,
         )
     except InputError as error:
-        raise InputError(f"{error}{_hidden(limbs)}; {scale.apart(cameras, calibration)}") from None
+        apart = scale.apart(cameras, calibration, unit)
+        raise InputError(f"{error}{_hidden(limbs)}; {apart}") from None
     frames_s = [c.to_reference(v.time_s) for c, v in zip(clocks, views, strict=True)]
     index = {
         view.camera: associate.on_frames(rows, time_s, frame_s)

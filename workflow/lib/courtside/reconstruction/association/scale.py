@@ -61,11 +61,16 @@ def _ends(joints: NDArray, ends: Sequence[int]) -> NDArray:
 
 
 def check(
-    cameras: Sequence[Camera], xy: Sequence[NDArray], names: Sequence[str], calibration: str | None
+    cameras: Sequence[Camera],
+    xy: Sequence[NDArray],
+    names: Sequence[str],
+    calibration: str | None,
+    unit: str | None = None,
 ) -> None:
     """Raise `InputError` if the people of a take are too small or too large; as for `trunks`.
 
-    `calibration` is the name of that by which the cameras were found, if it is to be mended.
+    `calibration` is the name of that by which the cameras were found, if it is to be mended, and
+    `unit` the one that the session states for its file.
     """
     found = trunks(cameras, xy, names)
     middle = float(np.median(found)) if len(found) >= LEAST_FOUND else USUAL_M
@@ -74,31 +79,35 @@ def check(
     raise InputError(
         f"cameras {', '.join(camera.name for camera in cameras)}: expected people with trunks of "
         f"{TRUNK_M[0]:g} to {TRUNK_M[1]:g} m, found {middle:.3g} m, the median of {len(found)} "
-        f"pairs of views; the scale of the calibration is wrong: {_mend(middle, calibration)}"
+        f"pairs of views; the scale of the calibration is wrong: {_mend(middle, calibration, unit)}"
     )
 
 
-def apart(cameras: Sequence[Camera], calibration: str | None) -> str:
+def apart(cameras: Sequence[Camera], calibration: str | None, unit: str | None = None) -> str:
     """Return how far apart cameras stand, and what to check where that is wrong."""
     centres = np.array([camera.centre_in_world for camera in cameras])
     apart_m = np.linalg.norm(centres[:, None] - centres, axis=-1).max()
-    lengths = _lengths(calibration) or "their unit"
+    stated = "their unit" if unit is None else f"`unit: {unit}` under calibration"
+    lengths = _lengths(calibration) or stated
     return f"the cameras stand up to {apart_m:.1f} m apart: if that is wrong, correct {lengths}"
 
 
-def _mend(trunk: float, calibration: str | None) -> str:
-    """Return what to do about trunks of such a length, in the cameras' unit."""
-    fits = {unit: trunk * metres for unit, metres in METRES.items()}
+def _mend(trunk: float, calibration: str | None, stated: str | None) -> str:
+    """Return what to do about trunks of such a length, read in the unit `stated`, or in m."""
+    lengths = _lengths(calibration)
+    in_file = trunk if lengths or stated is None else trunk / METRES[stated]
+    fits = {unit: in_file * metres for unit, metres in METRES.items()}
     unit, size_m = min(fits.items(), key=lambda pair: abs(np.log(pair[1] / USUAL_M)))
     in_unit = TRUNK_M[0] <= size_m <= TRUNK_M[1]
-    if lengths := _lengths(calibration):
+    if lengths:
         times = trunk / USUAL_M
         size = f"{times:.2g} times too large" if times > 1 else f"{1 / times:.2g} times too small"
         return f"correct {lengths}, about {size}{f', as if in {unit}' * in_unit}"
     if in_unit and calibration is not None:
+        instead = "" if stated is None else f" instead of `unit: {stated}`"
         return (
-            f"its lengths are likely in {unit} ({size_m:.2f} m): write `unit: {unit}` under "
-            "calibration in the session file"
+            f"its lengths are likely in {unit} ({size_m:.2f} m): write `unit: {unit}`{instead} "
+            "under calibration in the session file"
         )
     return "calibrate again with a known length"
 
