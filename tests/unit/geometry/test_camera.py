@@ -321,6 +321,7 @@ def test_lengths_are_read_in_the_unit_of_the_file(tmp_path, metadata, metres):
         ("rotation = [0.1, 0.2, 0.3]", "", "camera left: expected rotation .* found nothing"),
         ("[0.1, 0.2, 0.3]", '["a", "b", "c"]', "camera left: expected rotation as 3"),
         ("[0.1, 0.2, 0.3]", "[nan, 0.2, 0.3]", "camera left: expected rotation"),
+        ("[0.1, 0.2, 0.3]", "[57.3, 14.2, -3.0]", r"left: expected [^:]* found 59\.11, as in"),
         ("[0.1, 0.2, 0.3]", "[[1.0, 0, 0], [0, 1, 0], [0, 0, -1]]", "left: .*right-handed"),
         ("[0.1, 0.2, 0.3]", "[[1.0, 0, 0], [0, 1, 0], [0, 0, 2]]", "left: .*orthonormal"),
         ("[100.0, 200.0, 300.0]", "[1.0, 2.0]", "left: expected translation as 3"),

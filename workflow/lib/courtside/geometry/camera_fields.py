@@ -69,10 +69,13 @@ def pose(where: str, rotation: object, translation: object, metres: float) -> ND
     """Return `cam_from_world` (3, 4); `metres` is the unit of the translation (3,).
 
     The rotation is a Rodrigues vector (3,), radians, or a matrix (3, 3). Raises `InputError` if a
-    shape is wrong or the matrix is not a rotation; `where` (file and camera) begins messages.
+    shape is wrong, the matrix is not a rotation or the vector turns more than once; `where` (file
+    and camera) begins messages.
     """
     rotation = numbers(where, "rotation", rotation, (3,), (3, 1), (1, 3), (3, 3))
     translation = numbers(where, "translation", translation, (3,), (3, 1), (1, 3))
+    if rotation.shape != (3, 3):
+        _check_radians(where, float(np.linalg.norm(rotation)))
     try:
         if rotation.shape == (3, 3):
             rotation = rotations.nearest_rotation(rotation)
@@ -81,6 +84,14 @@ def pose(where: str, rotation: object, translation: object, metres: float) -> ND
     except ValueError as error:
         raise InputError(f"{where}: {error}; {EXPORT_AGAIN}") from error
     return np.column_stack([rotation, translation.ravel() * metres])
+
+
+def _check_radians(where: str, angle: float) -> None:
+    if angle > 2 * np.pi:
+        raise InputError(
+            f"{where}: expected rotation as a vector in radians, of a length up to 2 pi, found "
+            f"{angle:.4g}, as in degrees; multiply it by pi / 180"
+        )
 
 
 def unit_in_metres(where: StrPath, unit: object) -> float:

@@ -9,6 +9,7 @@ from courtside.geometry import camera_fields
 from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError, StrPath
 
+CORNER_PX = 2.0  # ASSUME: no principal point in px is so near to the corner of the picture
 SAME = 1e-3  # m and entries of rotations: no two cameras can be so close to each other
 
 
@@ -17,7 +18,20 @@ def check(path: StrPath, cameras: Sequence[Camera]) -> None:
 
     Their pictures are those of the file, not cropped.
     """
+    for camera in cameras:
+        _check_principal_point(path, camera)
     _check_poses_differ(path, cameras)
+
+
+def _check_principal_point(path: StrPath, camera: Camera) -> None:
+    x, y = camera.K[:2, 2]
+    if max(abs(x), abs(y)) < CORNER_PX:
+        raise InputError(
+            f"{path}: camera {camera.name}: expected the principal point in px from the upper left "
+            f"corner of the {camera_fields.times(camera.size)} px picture, found ({x:.4g}, "
+            f"{y:.4g}), as in shares of the picture or from its middle; convert it to px from the "
+            "corner"
+        )
 
 
 def _check_poses_differ(path: StrPath, cameras: Sequence[Camera]) -> None:
