@@ -293,6 +293,29 @@ def test_files_of_other_programs_are_named_with_what_to_do(tmp_path):
         assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("name", "text", "found"),
+    [
+        ("cam.json", '{"cam01": {"K": [1, 2]}}', r"a \.json file, which is none of these;"),
+        ("kalibr.yaml", "cam0:\n  camera_model: pinhole\n", r"a \.yaml file, which is none of"),
+        ("x.trc", "PathFileType\t4\t(X/Y/Z)\tx.trc\n", r"a \.trc file, .*, or write it as TOML, a"),
+        ("a.xml", '<Cameras by="Theia3D"><Camera/></Cameras>', "XML of <Cameras> .* Theia3D"),
+        ("b.xml", "<svg><path/></svg>", "XML of <svg> without cameras of these; export it"),
+        ("c.xml", "<Cameras><Camera/></Cameras>", "XML of <Cameras> without cameras of"),
+    ],
+)  # fmt: skip
+def test_files_of_no_known_form_are_told_so(tmp_path, name, text, found):
+    with pytest.raises(InputError, match=f"{name}: expected Qualisys .*, found {found}") as caught:
+        file_formats.read(write(tmp_path / name, text))
+    assert "\n" not in str(caught.value)
+    assert "Invalid" not in str(caught.value)
+
+
+def test_a_fault_of_toml_is_told_with_its_line(tmp_path):
+    with pytest.raises(InputError, match=r"\(read as TOML\), found: .* line 2"):
+        file_formats.read(write(tmp_path / "cameras.toml", "[a]\nsize = 3 4\n"))
+
+
 def test_qualisys_within_the_settings_of_a_measurement(tmp_path):
     inner = QUALISYS.partition("?>")[2]
     text = f"<QTM_Parameters_Ver_1.25>{inner}</QTM_Parameters_Ver_1.25>"

@@ -63,9 +63,17 @@ def test_a_file_without_sizes_says_which_lines_to_add(tmp_path):
 
 def test_half_a_calibration_is_refused(tmp_path):
     theirs.easymocap(tmp_path)
-    (tmp_path / "extri.yml").unlink()
-    with pytest.raises(InputError, match=r"extri\.yml: expected a file"):
+    (tmp_path / "extri.yml").rename(tmp_path / "kept.yml")
+    for given in (tmp_path, tmp_path / "intri.yml"):
+        with pytest.raises(
+            InputError, match=r": expected extri\.yml beside intri\.yml, found none"
+        ):
+            file_formats.read(given)
+    (tmp_path / "intri.yml").rename(tmp_path / "other.yml")
+    (tmp_path / "kept.yml").rename(tmp_path / "extri.yml")
+    with pytest.raises(InputError, match=r": expected intri\.yml beside extri\.yml, found none"):
         file_formats.read(tmp_path)
+    (tmp_path / "other.yml").rename(tmp_path / "intri.yml")
     (tmp_path / "extri.yml").write_text("%YAML:1.0\n---\nnames: 3\n")
     with pytest.raises(InputError, match=r"camera 01: expected rotation .* found nothing"):
         file_formats.read(tmp_path)

@@ -43,6 +43,10 @@ OF_MOTIVE = (
     "save the calibration itself with Motive 3.2 or newer (File > Save Calibration), which makes "
     "an .mcal file"
 )
+IN_OUR_TOML = (
+    "export it in one of these, or write it as TOML, a table for each camera with name, size, "
+    "matrix, distortions, rotation (from the world to the camera) and translation"
+)
 MUST_STATE = (
     "write `unit: m` under calibration in the session file if the model was scaled to metres (or "
     "mm, cm, in, ft), with z up and the floor at z = 0; else scale it first"
@@ -204,6 +208,7 @@ def _found(path: Path) -> Found:
 
 def _in_folder(path: Path) -> Found:
     if any((path / file).is_file() for file in easymocap.FILES):
+        easymocap.check_both(path)
         first, second = (_text(path / file) for file in easymocap.FILES)
         return easymocap.read(path, (first, second)), "m"
     model = colmap.files(path)
@@ -247,17 +252,32 @@ def _unit_of(*texts: str) -> str | None:
 def _read_xml(path: Path, text: str) -> list[Camera]:
     root = xml_fields.parse(path, text)
     if root.tag == "Cameras" or path.suffix.lower() == ".xcp":
-        return vicon.read(path, root)
-    if next(root.iter(optitrack.LENS), None) is not None or path.suffix.lower() == ".mcal":
-        return optitrack.read(path, root)
-    if qualisys.is_theia(root):
+        found = vicon.read(path, root)
+    elif next(root.iter(optitrack.LENS), None) is not None or path.suffix.lower() == ".mcal":
+        found = optitrack.read(path, root)
+    elif qualisys.is_theia(root):
         raise forms.refused(path, "a calibration of Theia3D, its sensors in px", OF_THEIA)
-    return qualisys.read(path, root)
+    else:
+        found = qualisys.read(path, root)
+    ours = path.suffix.lower() in (".xcp", ".mcal") or qualisys.is_one(root)
+    if found or ours:
+        return found
+    tag = f"XML of <{camera_fields.short(root.tag)}> without cameras of these"
+    if "theia" in text.lower():
+        raise forms.refused(path, f"{tag}, as of Theia3D", OF_THEIA)
+    raise forms.refused(path, tag, IN_OUR_TOML)
 
 
 def _read_toml(path: Path, text: str) -> Found:
-    with reading(path, f"{forms.FORMS} (read as TOML)", "check it"):
-        content = camera_fields.toml(text)
+    try:
+        with reading(path, f"{forms.FORMS} (read as TOML)", "check it"):
+            content = camera_fields.toml(text)
+    except InputError:
+        suffix = camera_fields.short(path.suffix)
+        if suffix.lower() in ("", ".toml"):
+            raise
+        found = f"a {suffix} file, which is none of these"
+        raise forms.refused(path, found, IN_OUR_TOML) from None
     tables, metadata = content.get("cameras", content), content.get("metadata")
     if not isinstance(tables, dict):
         raise InputError(

@@ -20,6 +20,17 @@ from courtside.study.errors import InputError
 INTRINSIC, EXTRINSIC = FILES = ("intri.yml", "extri.yml")
 
 
+def check_both(folder: Path) -> None:
+    """Raise `InputError` if one of the two files is missing."""
+    there = [file for file in FILES if (folder / file).is_file()]
+    if len(there) == 1:
+        (missing,) = set(FILES) - set(there)
+        raise InputError(
+            f"{folder}: expected {missing} beside {there[0]}, found none; put EasyMocap's two "
+            "files into one folder"
+        )
+
+
 def read(folder: Path, texts: tuple[str, str]) -> list[Camera]:
     """Return the cameras of both files' `texts`, in the order of `names`, lengths as stated."""
     kept = [opencv.opened(folder / file, text) for file, text in zip(FILES, texts, strict=True)]

@@ -28,6 +28,11 @@ def read(path: Path, root: ElementTree.Element) -> list[Camera]:
     ]
 
 
+def is_one(root: ElementTree.Element) -> bool:
+    """Return whether a file has a calibration of this form, with cameras or without."""
+    return root.tag == "calibration" or root.find(".//calibration") is not None
+
+
 def is_theia(root: ElementTree.Element) -> bool:
     """Return whether a calibration is Theia3D's own: like Qualisys's, with a sensor in px."""
     camera = root.find("cameras/camera")
