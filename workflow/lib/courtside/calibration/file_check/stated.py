@@ -5,6 +5,7 @@ from itertools import combinations
 
 import numpy as np
 
+from courtside.calibration.file_check import inverted_poses
 from courtside.geometry import camera_fields
 from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError, StrPath
@@ -21,6 +22,13 @@ def check(path: StrPath, cameras: Sequence[Camera]) -> None:
     for camera in cameras:
         _check_principal_point(path, camera)
     _check_poses_differ(path, cameras)
+    if way := inverted_poses.judge(cameras):
+        raise InputError(
+            f"{path}: cameras {', '.join(camera.name for camera in cameras)}: expected rotations "
+            "and translations from the world to the camera, with z up, found cameras on their side "
+            f"or below the floor, which stand around one place if the file has {way.what}; "
+            f"{way.advice}"
+        )
 
 
 def _check_principal_point(path: StrPath, camera: Camera) -> None:
