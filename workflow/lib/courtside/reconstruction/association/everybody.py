@@ -27,10 +27,9 @@ def find(
 ) -> tuple[People, str]:
     """Associate the tracklets of all cameras of a take; also return what the log says.
 
-    `calibration` is the name of that by which the cameras were found, and `unit` the
-    one that the session states for its file, for messages.
-    Raises `InputError` where cameras share no time, people have not the size of people, or nobody
-    can be placed.
+    For messages, `calibration` is the name of that by which the cameras were found, and `unit` what
+    the session states of its file. Raises `InputError` where cameras share no time, people have not
+    the size of people, or nobody can be placed.
     """
     views, clocks = [one.tracklets for one in seen], [one.clock for one in seen]
     names = joints.groups["limbs"]
@@ -43,9 +42,6 @@ def find(
     cameras = [one.camera for one in seen]
     scale.check(cameras, xy, names, calibration, unit)
     mirror = [chosen.index(joints.mirror()[joint]) for joint in chosen]
-    worn = [
-        v.clothing[:, resampling.nearest(v, time_s, c)] for v, c in zip(views, clocks, strict=True)
-    ]
     try:
         found = associate.associate(
             cameras,
@@ -55,15 +51,14 @@ def find(
             mirror=mirror,
             court=court,
             bones=lengths.bones(names),
-            clothing=worn,
+            clothing=[_worn(one, time_s) for one in seen],
         )
     except InputError as error:
         apart = scale.apart(cameras, calibration, unit)
         raise InputError(f"{error}{_hidden(limbs)}; {apart}") from None
-    frames_s = [c.to_reference(v.time_s) for c, v in zip(clocks, views, strict=True)]
     index = {
-        view.camera: associate.on_frames(rows, time_s, frame_s)
-        for view, rows, frame_s in zip(views, found.index, frames_s, strict=True)
+        view.camera: associate.on_frames(rows, time_s, clock.to_reference(view.time_s))
+        for view, rows, clock in zip(views, found.index, clocks, strict=True)
     }
     ids = np.array([f"person-{at + 1}" for at in range(len(found.placed))])
     confidence = identity.confidence(found.doubts, len(ids))
@@ -78,6 +73,11 @@ def _check_common(views: Sequence[Keypoints2D], time_s: NDArray) -> None:
             f"{', '.join(view.camera for view in views)}: expected cameras that film at one time, "
             "found none by their clocks; correct `clocks` of the take (t_ref = t_own - offset_s)"
         )
+
+
+def _worn(one: Footage, time_s: NDArray) -> NDArray:
+    """Return the colours of clothes in one camera at common times."""
+    return one.tracklets.clothing[:, resampling.nearest(one.tracklets, time_s, one.clock)]
 
 
 def _hidden(limbs: Sequence[Keypoints2D]) -> str:
