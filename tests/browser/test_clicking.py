@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
+from browser.waiting import until
 from courtside.geometry import camera as projection
 from courtside.pages import page as pages
 from courtside.pages.clicking import page as clicking_page
@@ -224,7 +225,7 @@ def test_a_table_of_the_workflow_is_loaded_and_saved_as_it_was(open_page, make, 
     clicks.write(path, given, court.points)
     page = open_page(make())
     page.set_input_files("#chooser", path)
-    page.wait_for_function("document.getElementById('message').textContent.startsWith('Loaded 35')")
+    until(page, "document.getElementById('message').textContent.startsWith('Loaded 35')")
     again = saved(page, tmp_path)
     assert again.name == "court_points.csv"
     read = clicks.read(again, ["back", "oblique"], court.points)
@@ -419,7 +420,7 @@ def test_ends_of_rackets_are_clicked_on_frames_of_takes(open_page, make, picture
     ]
     page.keyboard.press("Control+z")
     page.set_input_files("#chooser", path)
-    page.wait_for_function("document.getElementById('message').textContent.startsWith('Loaded 2')")
+    until(page, "document.getElementById('message').textContent.startsWith('Loaded 2')")
     assert page.input_value("#text") == path.read_text()
     assert page.is_hidden("#drawings")
 

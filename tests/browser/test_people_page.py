@@ -4,6 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
+from browser.waiting import until
 from courtside.pages import page as pages
 from courtside.pages.people import page as people_page
 from courtside.pages.people.strips import Shot
@@ -125,9 +126,9 @@ def test_a_file_of_other_takes_can_be_loaded(opened, tmp_path):
     head = ",".join([*sightings.COLUMNS, *sightings.BOUNDS])
     path.write_text(f"{head}\nrun,a,c0,1,2,3,,\nwalk,b,c0,1,2,3,,\n")
     page.set_input_files("#chooser", path)
-    page.wait_for_function("document.getElementById('message').textContent.includes('other takes')")
+    until(page, "document.getElementById('message').textContent.includes('other takes')")
     assert sightings.of_other_takes(saved(page, tmp_path)[0], "walk", ["walk", "run"]) == [OTHER]
     path.write_text("camera,point\n")
     page.set_input_files("#chooser", path)
-    page.wait_for_function("document.getElementById('message').className.includes('bad')")
+    until(page, "document.getElementById('message').className.includes('bad')")
     assert "loaded.csv: expected the columns" in page.inner_text("#message")

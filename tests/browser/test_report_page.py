@@ -2,6 +2,7 @@
 
 import pytest
 
+from browser.waiting import until
 from courtside.pages import page as pages
 from courtside.pages.report import report
 from fixtures.study import report_made
@@ -36,7 +37,7 @@ def test_wide_tables_scroll_by_keys(open_page, path):
     assert table.evaluate("(one) => one.scrollWidth > one.clientWidth")
     table.focus()
     page.keyboard.press("ArrowRight")
-    page.wait_for_function("(one) => one.scrollLeft > 0", arg=table.element_handle())
+    until(page, "(one) => one.scrollLeft > 0", arg=table.element_handle())
 
 
 @pytest.mark.parametrize("width", [400, 1280])
@@ -49,7 +50,8 @@ def test_contents_lead_to_their_places(open_page, path, width):
         name = link.get_attribute("href")[1:]
         page.evaluate("scrollTo({top: 0, behavior: 'instant'})")
         link.click()
-        page.wait_for_function(
+        until(
+            page,
             "(id) => { const top = document.getElementById(id).getBoundingClientRect().top;"
             " return top > -5"
             " && (top < 60 || scrollY + innerHeight > document.body.scrollHeight - 5); }",
@@ -74,7 +76,7 @@ def test_an_address_with_a_place_unfolds_it(open_page, path):
     page.evaluate(
         "document.querySelector('.take details table').id = 'angles'; location.hash = 'angles'"
     )
-    page.wait_for_function("document.querySelector('.take details').open")
+    until(page, "document.querySelector('.take details').open")
 
 
 def test_the_dark_page_is_dark(open_page, path):

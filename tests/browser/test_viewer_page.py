@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
+from browser.waiting import until
 from courtside.calibration.court import court
 from courtside.pages import page as pages
 from courtside.pages.viewer import layers as viewer_layers
@@ -155,10 +156,7 @@ def test_playing_ends_at_the_end_and_begins_again(opened):
     page.evaluate("courtside.viewer.seek(59.8)")
     page.click("#play")
     page.wait_for_timeout(100)
-    for _ in range(50):  # not wait_for_function, which the page's own policy refuses
-        if not page.evaluate("courtside.viewer.state()")["playing"]:
-            break
-        page.wait_for_timeout(100)
+    until(page, "!courtside.viewer.state().playing")
     assert page.evaluate("courtside.viewer.state()")["frame"] == 3599
     page.click("#play")
     page.wait_for_timeout(100)

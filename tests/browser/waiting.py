@@ -1,0 +1,15 @@
+"""Waiting for what a page does."""
+
+EVERY_MS, TRIES = 100, 150
+
+
+def until(page, expression, arg=None):
+    """Wait until an expression, or a function of `arg`, is true in a page.
+
+    Not `wait_for_function`: when it asks a second time, the pages' own policy refuses it.
+    """
+    for _ in range(TRIES):
+        if page.evaluate(expression, arg):
+            return
+        page.wait_for_timeout(EVERY_MS)
+    raise AssertionError(f"not true after {TRIES * EVERY_MS / 1000:g} s: {expression}")
