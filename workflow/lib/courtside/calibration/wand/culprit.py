@@ -24,7 +24,6 @@ LOWER = 0.7  # ASSUME: share of a wrong one, relative to that of the others, at 
 CLEARER = 0.5  # ASSUME: spread of the wand's length by two right cameras, relative to other pairs
 STARTS = 2  # ASSUME: right cameras agree from one of so many starts
 MOST = 0.98  # quantile of markers that must be in the picture of a smaller copy
-CHECK = "check its clock, that no markers are exchanged, and that its video is not mirrored"
 
 
 def named(
@@ -122,7 +121,7 @@ def _of_one(c: int, rest: Placed, seen: Seen, cameras: Sequence[Sequence[Camera]
         agreeing, tried, _ = start.resected(cameras[c], xy, xyz)
         if agreeing >= start.LEAST_AGREEING * tried and count < LOWER * agreeing:
             return f"{line}, and {agreeing} {mend}"
-    return f"{line}; {CHECK}"
+    return f"{line}; {start.CHECK}"
 
 
 def _changes(xy: NDArray, camera: Camera) -> Iterator[tuple[NDArray, str]]:

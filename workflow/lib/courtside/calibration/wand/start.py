@@ -34,6 +34,7 @@ STARTS, ENOUGH = 6, 0.8  # first pairs that are tried; share of markers that end
 LEAST_SINE = 0.05  # ASSUME: of the angle between rays (3 degrees), for enough parallax
 PAIRS = 3  # pairs of cameras that are tried, those with most common frames
 HOW = "move it through the views of all cameras, near and far, high and low, in all directions"
+CHECK = "check its clock, that no markers are exchanged, and that its video is not mirrored"
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,8 +113,7 @@ def _completed(first: _Pair, seen: Seen, cameras: Sequence[Sequence[Camera]]) ->
             fault = (
                 f"camera {camera.name}: expected {FEWEST_FRAMES} markers or more, and "
                 f"{100 * LEAST_AGREEING:.0f} %, to agree with the other cameras, found {count} of "
-                f"{shown}; check its clock, that no markers are exchanged, and that its video is "
-                "not mirrored"
+                f"{shown}; {CHECK}"
             )
             # Worse than any start with all cameras.
             return Placed(posed, share - 1, first.spread, fault, camera.name)
