@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.geometry import rotations
-from courtside.geometry.camera import Camera, project
+from courtside.geometry.camera import Camera, in_picture, project
 
 FEWEST = 3  # ASSUME: two cameras may be right either way
 UPRIGHT_DEG, TILTED_DEG = 45.0, 75.0  # ASSUME: up in a picture is surely nearer to z, or may be
@@ -93,12 +93,5 @@ def _place(cameras: Sequence[Camera]) -> NDArray | None:
     if np.linalg.eigvalsh(across.sum(axis=0))[0] < 1e-9 * len(cameras):  # they look in parallel
         return None
     place = np.linalg.solve(across.sum(axis=0), np.einsum("cij,cj->i", across, centres))
-    seen = [_is_in_picture(camera, place) for camera in cameras]
+    seen = [in_picture(camera, project(camera, place)) for camera in cameras]
     return place if all(seen) else None
-
-
-def _is_in_picture(camera: Camera, place: NDArray) -> bool:
-    if camera.cam_from_world[2] @ [*place, 1.0] <= 0:
-        return False
-    xy = project(camera, place[None])[0]
-    return bool((xy >= 0).all() and (xy < camera.size).all())
