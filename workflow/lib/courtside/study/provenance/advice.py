@@ -9,6 +9,7 @@ from courtside.study import paths
 from courtside.study.configuration import yaml_files
 from courtside.study.errors import InputError, StrPath
 from courtside.study.execution import files
+from courtside.study.provenance.run import in_folder
 
 DEFAULT = "config/config.yaml"
 
@@ -31,8 +32,7 @@ def making(
     is_known = of_run is None or session in of_run
     if is_known or not (Path(repository) / "config/sessions" / f"{session}.yaml").is_file():
         return [*words, "--force"]
-    folder = files.seen_from(Path.cwd(), repository)
-    plain = ["snakemake", *(() if folder == "." else ("--directory", folder))]
+    plain = ["snakemake", *in_folder(repository)]
     every = (path.as_posix() for path in sorted(Path(repository).glob("config/*.yaml")))
     there = [files.seen_from(path, repository) for path in every]
     for path in [*_recorded(session, sidecars), DEFAULT, *there]:

@@ -6,6 +6,7 @@ Snakemake's own list of what is out of date rests on its hidden records of setti
 
 import json
 import os
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -79,11 +80,10 @@ def ask(command: Sequence[str], repository: StrPath, targets: Sequence[str] = ()
         told = files.read_json(path, "give the command again")
     jobs = told["jobs"]
     reach = provenance.upstream(jobs)
-    settings = {
-        name: provenance.origin(jobs, reached, lambda _: None)["settings"]
-        for job, reached in zip(jobs, reach, strict=True)
-        for name in job["outputs"]
-    }
+    settings: dict[str, Settings] = {}
+    for job, reached in zip(jobs, reach, strict=True):
+        of_job = provenance.settings(jobs[at] for at in sorted(reached))
+        settings |= dict.fromkeys(job["outputs"], of_job)
     pending = [name for job in jobs if not job["done"] for name in job["outputs"]]
     left, advice = frozenset(told["remains"]), tuple(told["advice"])
     return Plan(settings, frozenset(pending), remains=left, advice=advice)
@@ -114,12 +114,11 @@ def unseen(workflow: Any, repository: Path) -> list[str]:
     rules = [job.rule.name for job in kept if _is_unknown(job, known.metadata)]
     if not rules:
         return []
-    folder = files.seen_from(Path.cwd(), repository)
-    option = "" if folder == "." else f" --directory {folder}"
+    command = shlex.join(["python", "workflow/verify_study.py", *run.in_folder(repository)])
     return [
         f"Remark: results of {len(rules)} jobs ({few(sorted(set(rules)), N_NAMED)}) are here, but "
         "not Snakemake's records of them (.snakemake/metadata): it does not see changes of their "
-        f"settings and code; `python workflow/verify_study.py{option}` tells these"
+        f"settings and code; `{command}` tells these"
     ]
 
 

@@ -161,26 +161,30 @@ def origin(
     made = {name for job in upstream_jobs for name in job["outputs"]}
     used = {name for job in upstream_jobs for name in job["inputs"]}
     kept = {name for name in used & made if name.startswith(tuple(pinned))}
-    settings: dict[str, dict] = {}
+    of_rules = settings(upstream_jobs)
     seeds: dict[str, list] = {}
-    for job in upstream_jobs:
-        params = plain(job["params"])
-        if params:
-            settings.setdefault(job["rule"], {})[json.dumps(params, sort_keys=True)] = params
-        for name, value in _seeds(params, job["rule"]):
+    for rule, each in of_rules.items():
+        for name, value in _seeds(each, rule):
             values = seeds.setdefault(name, [])
             values += [value] * (value not in values)
     return {
         "inputs": {name: sha256_of(name) for name in sorted(used - made)},
         "artefacts": {name: sha256_of(name) for name in sorted(kept)},
-        "settings": {
-            rule: [each[text] for text in sorted(each)] for rule, each in sorted(settings.items())
-        },
+        "settings": of_rules,
         "seeds": {name: sorted(values, key=str) for name, values in sorted(seeds.items())},
         "code": dict(
             sorted((job["script"], job["code"]) for job in upstream_jobs if job["script"])
         ),
     }
+
+
+def settings(jobs: Iterable[Job]) -> dict[str, list]:
+    """Return {rule: params of its jobs, each once, as JSON can hold them}."""
+    found: dict[str, dict] = {}
+    for job in jobs:
+        if params := plain(job["params"]):
+            found.setdefault(job["rule"], {})[json.dumps(params, sort_keys=True)] = params
+    return {rule: [each[text] for text in sorted(each)] for rule, each in sorted(found.items())}
 
 
 def _seeds(value: Any, where: str) -> Iterator[tuple[str, Any]]:

@@ -9,7 +9,7 @@ from typing import Any
 from courtside.study import paths
 from courtside.study.configuration import consent
 from courtside.study.configuration.sessions import Session, Study
-from courtside.study.errors import InputError, few
+from courtside.study.errors import InputError, StrPath, few
 from courtside.study.execution import files, summary
 from courtside.study.execution import verdicts as verdict_files
 from courtside.study.provenance import environment, provenance
@@ -72,9 +72,7 @@ def plain_job(job: Any, dag: Any, touched: bool) -> dict[str, Any]:
 
 def repeating_command(settings: Any, repository: Path) -> list[str]:
     """Return the command that makes files of this study, but for their names, as words."""
-    words = ["snakemake"]
-    folder = files.seen_from(Path.cwd(), repository)
-    words += [] if folder == "." else ["--directory", folder]
+    words = ["snakemake", *in_folder(repository)]
     given = [files.seen_from(path, repository) for path in settings.configfiles]
     words += ["--configfile", *given] if given else []
     changed = [
@@ -82,6 +80,12 @@ def repeating_command(settings: Any, repository: Path) -> list[str]:
         for key, value in settings.config.items()
     ]
     return words + (["--config", *changed] if changed else [])
+
+
+def in_folder(repository: StrPath) -> list[str]:
+    """Return the option of a command, given in the repository, that names the present folder."""
+    folder = files.seen_from(Path.cwd(), repository)
+    return [] if folder == "." else ["--directory", folder]
 
 
 def verdicts(workflow: Any) -> tuple[list[str], int]:

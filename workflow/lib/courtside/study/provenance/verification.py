@@ -13,6 +13,7 @@ from courtside.study.errors import InputError, StrPath, few
 from courtside.study.execution import checksums, digest, files
 from courtside.study.provenance import advice, environment, planned
 from courtside.study.provenance.provenance import FORMAT, command
+from courtside.study.provenance.run import in_folder
 
 REPEATED = {"--directory", "--configfile", "--config"}  # options of a command that is repeated
 OF_RUN = {"command": str, "config_files": dict}  # what a record must hold
@@ -178,10 +179,8 @@ def _folder(words: list[str]) -> str:
 def _here(words: list[str], repository: StrPath) -> list[str]:
     """Return the words of a run's command for the present folder: results travel."""
     at = words.index("--directory") if "--directory" in words else len(words)
-    folder = files.seen_from(Path.cwd(), repository)
-    own = [] if folder == "." else ["--directory", folder]
     rest = words[:at] + words[at + 2 :]
-    return [*rest[:1], *own, *rest[1:]]
+    return [*rest[:1], *in_folder(repository), *rest[1:]]
 
 
 def _settings(sidecar: dict[str, Any], plan: planned.Plan) -> dict[str, str]:
@@ -215,8 +214,8 @@ def report(folder: StrPath, root: StrPath, repository: StrPath) -> tuple[list[st
     """
     sidecars = read(folder)
     run = _read(Path(folder) / "provenance.json", OF_RUN)
-    words = _here(_words(run), repository)
-    now = present(repository, _folder(_words(run)))
+    recorded = _words(run)
+    words, now = _here(recorded, repository), present(repository, _folder(recorded))
     changed = [
         line
         for path, sha in run["config_files"].items()
