@@ -63,8 +63,7 @@ def test_a_take_is_shown_only_if_all_in_it_agree():
 def test_nothing_is_made_of_takes_with_somebody_who_withdrew():
     found = session(agreed("analysis", "export", "pictures"), agreed())
     assert list(found.takes) == ["alone"]
-    assert found.withheld == {"both": ("p2",)}
-    assert list(found.refused) == ["both"]
+    assert list(found.withheld) == ["both"]
     assert consent.left_out(found) == [
         "nothing is made of take both: p2 has not agreed to analysis (consent)"
     ]

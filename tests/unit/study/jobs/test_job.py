@@ -57,9 +57,10 @@ def test_joints_are_corrected_of_networks_with_offsets_only(job, study, tmp_path
 
 def test_a_take_of_somebody_who_withdrew_is_refused(job, study):
     session = study.sessions["walk-4cams-tiny"]
-    withdrawn = replace(session, takes={}, withheld={"balancing": ("p1", "p2")})
+    subjects = {"p1": replace(session.subjects["p1"], consent=())}
+    withdrawn = replace(session, subjects=subjects, takes={}, withheld=session.takes)
     one = job(replace(study, sessions={"walk-4cams-tiny": withdrawn}), **REAL)
-    with pytest.raises(InputError, match="expected analysis in the consent of p1, p2, found none"):
+    with pytest.raises(InputError, match="expected analysis in the consent of p1, found none"):
         assert one.take
 
 

@@ -75,7 +75,8 @@ def test_the_page_of_people_is_by_the_first_calibration_and_network(job):
 
 def test_takes_are_known_to_the_page_where_names_were_saved(job, study, tmp_path):
     csv = tmp_path / "people.csv"
-    session = replace(study.sessions["players-tiny"], people=str(csv), withheld={"late": ("p2",)})
+    session = study.sessions["players-tiny"]
+    session = replace(session, people=str(csv), withheld={"late": session.takes["shot"]})
     one = job(replace(study, sessions={"players-tiny": session}), **SHOT)
     assert pages.known_takes(one) == []
     csv.touch()

@@ -225,7 +225,8 @@ def test_what_is_left_out_for_want_of_consent_is_told_with_what_remains(
     monkeypatch.chdir(tmp_path)
     assert run.left_out(study) == []
     session = study.sessions["walk-4cams-tiny"]
-    withdrawn = replace(session, takes={}, withheld={"balancing": ("p1",)})
+    subjects = {"p1": replace(session.subjects["p1"], consent=())}
+    withdrawn = replace(session, subjects=subjects, takes={}, withheld=session.takes)
     study = replace(study, sessions={"walk-4cams-tiny": withdrawn})
     line = "nothing is made of take balancing: p1 has not agreed to analysis (consent)"
     assert run.left_out(study) == [f"walk-4cams-tiny: {line}"]
@@ -238,7 +239,6 @@ def test_what_is_left_out_for_want_of_consent_is_told_with_what_remains(
         "which may show it"
     )
     (tmp_path / made).rmdir()
-    withdrawn = replace(withdrawn, refused=session.takes)
     Path(pages).mkdir()
     for path in (f"{pages}/quality.html", "results/report.html"):
         Path(path).touch()

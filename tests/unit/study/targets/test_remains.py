@@ -11,7 +11,7 @@ def test_folders_of_takes_that_are_not_measured_are_found(study, tmp_path, monke
     session = study.sessions["players-tiny"]
     for take in (*session.takes, "old", "hers"):
         (Path("results/players-tiny/takes") / take).mkdir(parents=True)
-    session = replace(session, withheld={"hers": ("p1",)})
+    session = replace(session, withheld={"hers": session.takes["shot"]})
     folder = "results/players-tiny/takes"
     assert remains.of_takes(session) == {f"{folder}/hers": True, f"{folder}/old": False}
     assert remains.of_takes(study.sessions["plain-tiny"]) == {}
@@ -101,7 +101,7 @@ def test_pages_of_a_session_without_any_take_left_are_found(study, tmp_path, mon
     for path in map(Path, (page, table, overlay)):
         path.parent.mkdir(parents=True, exist_ok=True)
         path.touch()
-    refused = {"takes": {}, "refused": session.takes, "withheld": {"balancing": ("p1",)}}
+    refused = {"takes": {}, "withheld": session.takes}
     gone = replace(study, sessions={session.name: replace(session, **refused)})
     assert remains.without_consent(gone) == {session.name: sorted([page, table])}
     kept = {**study.sessions, session.name: replace(session, **refused)}  # others are tabulated

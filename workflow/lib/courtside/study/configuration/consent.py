@@ -41,18 +41,16 @@ def refusing(session: "Session", take: "Take", word: str) -> tuple[str, ...]:
     return tuple(name for name in take.subjects if word not in session.subjects[name].consent)
 
 
-def withheld(
+def by_consent(
     takes: Mapping[str, "Take"], subjects: Mapping[str, "Subject"]
-) -> dict[str, tuple[str, ...]]:
-    """Return the takes that may not be measured, each with the persons who refused.
+) -> tuple[dict[str, "Take"], dict[str, "Take"]]:
+    """Return the takes that may be measured, and those that are withheld.
 
     A recording of several persons cannot be measured without one of them.
     """
-    found = {
-        name: tuple(who for who in take.subjects if "analysis" not in subjects[who].consent)
-        for name, take in takes.items()
-    }
-    return {name: who for name, who in found.items() if who}
+    agreed = {name for name, subject in subjects.items() if "analysis" in subject.consent}
+    withheld = {name: take for name, take in takes.items() if not agreed.issuperset(take.subjects)}
+    return {name: take for name, take in takes.items() if name not in withheld}, withheld
 
 
 def left_out(session: "Session", wanted: Iterable[str] = ("export", "pictures")) -> list[str]:
@@ -63,13 +61,12 @@ def left_out(session: "Session", wanted: Iterable[str] = ("export", "pictures"))
     """
     lines = [
         f"nothing is made of {takes}: {persons} not agreed to analysis (consent)"
-        for takes, persons in _together(session.withheld)
+        for takes, persons in _together(session, session.withheld, "analysis")
     ]
     for word in wanted:
-        who = {take.name: refusing(session, take, word) for take in session.takes.values()}
         lines += [
             f"no {WORDS[word]} in {takes}: {persons} not agreed to {word} (consent)"
-            for takes, persons in _together(who)
+            for takes, persons in _together(session, session.takes, word)
         ]
     unfilmed = [take.name for take in session.takes.values() if take.cameras and not take.videos]
     if unfilmed:
@@ -96,10 +93,13 @@ def faults(file: Path, content: dict[str, Any]) -> Iterator[str]:
             )
 
 
-def _together(who: Mapping[str, tuple[str, ...]]) -> Iterator[tuple[str, str]]:
-    """Yield takes with the same persons, and these persons, in words."""
+def _together(
+    session: "Session", takes: Mapping[str, "Take"], word: str
+) -> Iterator[tuple[str, str]]:
+    """Yield takes with the same persons who have not agreed, and these persons, in words."""
+    who = {name: refusing(session, take, word) for name, take in takes.items()}
     for persons in dict.fromkeys(filter(None, who.values())):
-        takes = [name for name, others in who.items() if others == persons]
-        noun = "take" if len(takes) == 1 else "takes"
+        named = [name for name, others in who.items() if others == persons]
+        noun = "take" if len(named) == 1 else "takes"
         verb = "has" if len(persons) == 1 else "have"
-        yield f"{noun} {', '.join(takes)}", f"{', '.join(persons)} {verb}"
+        yield f"{noun} {', '.join(named)}", f"{', '.join(persons)} {verb}"

@@ -91,6 +91,7 @@ def session(
     cameras = {key: _camera(value) for key, value in content["cameras"].items()}
     for key, path in recordings.get("static", {}).items():
         cameras[key] = replace(cameras[key], static=path)
+    agreed, withheld = consent.by_consent(takes, subjects)
     return Session(
         name=name,
         file=str(file),
@@ -98,7 +99,8 @@ def session(
         court=None if content["court"] == "none" else content["court"],
         subjects=subjects,
         cameras=cameras,
-        **_by_consent(takes, subjects),
+        takes=agreed,
+        withheld=withheld,
         **_calibration(content, config),
         people=of_configuration(content.get("people"), config),
         walks=recordings.get("walks") or {k: w.get("video") or w["images"] for k, w in walks},
@@ -114,16 +116,6 @@ def session(
         parameters=_merged(parameters, content.get("override", {})),
         override=content.get("override", {}),
     )
-
-
-def _by_consent(takes: dict[str, Take], subjects: dict[str, Subject]) -> dict[str, Any]:
-    """Return the takes that may be measured, and who refused which others, as a `Session` does."""
-    withheld = consent.withheld(takes, subjects)
-    return {
-        "takes": {key: take for key, take in takes.items() if key not in withheld},
-        "withheld": withheld,
-        "refused": {key: take for key, take in takes.items() if key in withheld},
-    }
 
 
 def _point_sets(court_yaml: Path) -> frozenset[int] | None:
@@ -181,7 +173,6 @@ def variations(base: Session, name: str, content: Content) -> dict[str, Session]
             },
             takes={},
             withheld={},
-            refused={},
             walks=files["walks"],
             court_points=files["court_points"],
             virtual=virtual,

@@ -146,10 +146,8 @@ class Session:
     # Known lengths between two of them: `points`, `length_m`, perhaps `on_floor`
     known_lengths: tuple[dict[str, Any], ...] = ()
     people: str | None = None  # people.csv, in which persons are named
-    # Takes that are not among `takes`, because persons in them have not agreed to be measured: who,
-    # by take
-    withheld: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    refused: dict[str, Take] = field(default_factory=dict)  # these takes themselves
+    # Takes that are not among `takes`, because persons in them have not agreed to be measured
+    withheld: dict[str, Take] = field(default_factory=dict)
     override: dict[str, Any] = field(default_factory=dict)  # what of `parameters` its file states
 
     def calibration_camera_names(self) -> dict[str, str]:

@@ -32,7 +32,7 @@ class Job:
         """Its take; an error where somebody in it has not agreed to be measured."""
         session, name = self.session, self["take"]
         if name in session.withheld:
-            who = ", ".join(session.withheld[name])
+            who = ", ".join(consent.refusing(session, session.withheld[name], "analysis"))
             raise InputError(
                 f"{session.file}: expected analysis in the consent of {who}, "
                 f"found none: nothing is made of take {name}; ask for files of other takes"

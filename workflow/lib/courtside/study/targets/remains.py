@@ -130,7 +130,7 @@ def _not_agreed(study: Study, session: Session) -> set[str]:
 def _agreed(session: Session) -> Session:
     every = tuple(consent.WORDS)
     subjects = {name: replace(one, consent=every) for name, one in session.subjects.items()}
-    takes = {**session.takes, **session.refused}
+    takes = {**session.takes, **session.withheld}
     return replace(session, subjects=subjects, takes=takes, withheld={})
 
 
