@@ -5,6 +5,7 @@ from courtside.body_model import angles, pose, segments
 from fixtures.people import moving_model
 
 MODEL = segments.model()
+DRAWN = ("left_hip_flexion", "right_shoulder_elevation", "pelvis_tilt", "pelvis_list")
 
 
 def measured(segment, turn):
@@ -44,6 +45,15 @@ def test_rotations_have_names_planes_and_signs(segment, axis, degrees, angle, wa
     assert found[angle] == pytest.approx(wanted, abs=1e-6)
 
 
+@pytest.mark.parametrize("faces", [0, 37, 90, 170, -120])
+def test_tilt_and_list_of_the_pelvis_do_not_depend_on_where_a_person_faces(faces):
+    turned = about(1, faces) @ about(0, 12) @ about(2, -20)  # in its own axes, Y up
+    found, _ = measured("pelvis", angles.UP_Y.T @ turned)
+    assert found["pelvis_rotation"] == pytest.approx(faces, abs=1e-6)
+    assert found["pelvis_list"] == pytest.approx(12, abs=1e-6)
+    assert found["pelvis_tilt"] == pytest.approx(20, abs=1e-6)
+
+
 def test_hinges_have_their_angles_and_the_names_are_listed():
     true = moving_model.moving(5)
     found = angles.measure(MODEL, true, 1e-4 * np.eye(len(MODEL.sigma))[None].repeat(5, axis=0))
@@ -61,7 +71,7 @@ def test_standard_deviations_are_those_of_small_errors():
     for _ in range(100):
         step = rng.standard_normal((4, len(spread))) * np.sqrt(np.diag(spread))
         one = angles.measure(MODEL, pose.moved(MODEL, true, step), 0 * spread[None].repeat(4, 0))
-        drawn.append([one[name][0] for name in ("left_hip_flexion", "right_shoulder_elevation")])
+        drawn.append([one[name][0] for name in DRAWN])
     found = np.std(drawn, axis=0)
-    for name, row in zip(("left_hip_flexion", "right_shoulder_elevation"), found, strict=True):
+    for name, row in zip(DRAWN, found, strict=True):
         np.testing.assert_allclose(row, stated[name][1], rtol=0.3)

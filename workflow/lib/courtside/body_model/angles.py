@@ -3,8 +3,10 @@
 Rotations between segments are split as the International Society of Biomechanics recommends: of
 hip, trunk and neck into flexion about Z, then adduction about X, then axial rotation about Y (Grood
 & Suntay 1983; Wu et al. 2002); of the arm against the thorax into plane of elevation, elevation and
-axial rotation, Y-X-Y (Wu et al. 2005). Hinges have their angles at once. The left side is mirrored
-first, so that both sides have the signs of the right one.
+axial rotation, Y-X-Y (Wu et al. 2005). The pelvis in the hall is first rotated about the vertical,
+then split into list and tilt, Y-X-Z: so these do not depend on where a person faces (Baker 2001).
+Hinges have their angles at once. The left side is mirrored first, so that both sides have the signs
+of the right one.
 """
 
 from collections.abc import Iterator
@@ -19,11 +21,11 @@ from courtside.body_model.pose import Pose
 from courtside.body_model.segments import SIDES, Model
 from courtside.kinematics.shared_errors import NETWORK_SHARE
 
-ZXY, YXY = (2, 0, 1), (1, 0, 1)
-# Segment, its ancestor, sequence; names and signs of the three angles. OpenSim's pelvis angles are
-# the same rotations in a world with Y up.
+ZXY, YXY, YXZ = (2, 0, 1), (1, 0, 1), (1, 0, 2)
+# Segment, its ancestor, sequence; names and signs of the three angles. OpenSim splits the pelvis,
+# too, Z-X-Y: those angles are in `exports.opensim_model` alone.
 FREE = {
-    "pelvis": (None, ZXY, (("pelvis_tilt", -1), ("pelvis_list", 1), ("pelvis_rotation", 1))),
+    "pelvis": (None, YXZ, (("pelvis_rotation", 1), ("pelvis_list", 1), ("pelvis_tilt", -1))),
     "thorax": ("pelvis", ZXY, (("trunk_flexion", -1), ("trunk_bending", 1), ("trunk_rotation", 1))),
     "head": ("thorax", ZXY, (("neck_flexion", -1), ("neck_bending", 1), ("neck_rotation", 1))),
     "femur": (
@@ -111,14 +113,18 @@ def _of_rotation(
 def split(rotation: NDArray, order: tuple[int, int, int]) -> tuple[NDArray, NDArray]:
     """Return the angles (T, 3) rad of rotations (T, 3, 3), and the axes (T, 3, 3) of their rates.
 
-    `order` is `ZXY` or `YXY`, of which the elevation is negative. Columns of the rates are in the
-    axes of the turned segment.
+    `order` is `ZXY`, `YXZ` or `YXY`, of which the elevation is negative. Columns of the rates are
+    in the axes of the turned segment.
     """
     r = rotation
     if order == ZXY:
         first = np.arctan2(-r[:, 0, 1], r[:, 1, 1])
         middle = np.arcsin(np.clip(r[:, 2, 1], -1, 1))
         last = np.arctan2(-r[:, 2, 0], r[:, 2, 2])
+    elif order == YXZ:
+        first = np.arctan2(r[:, 0, 2], r[:, 2, 2])
+        middle = -np.arcsin(np.clip(r[:, 1, 2], -1, 1))
+        last = np.arctan2(r[:, 1, 0], r[:, 1, 1])
     else:
         first = np.arctan2(-r[:, 0, 1], -r[:, 2, 1])
         middle = -np.arccos(np.clip(r[:, 1, 1], -1, 1))
