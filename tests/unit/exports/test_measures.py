@@ -1,5 +1,6 @@
 """The tables of kinematics: their columns are described, their numbers those of the measures."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -79,8 +80,10 @@ def test_every_measure_is_described(people):
 def test_the_summary_is_that_of_the_frames(people):
     rows = measures.summary(people, "filtered").set_index("measure")
     frames = measures.frames(people)
+    runs = np.lib.stride_tricks.sliding_window_view(frames.neck_speed_m_s.to_numpy(), 3)
+    runs = [runs[:, k] for k in range(3)]
     assert rows.loc["neck_speed_max", "value"] == pytest.approx(
-        frames.neck_speed_m_s.max(), abs=1e-4
+        np.nanmax((runs[0] + runs[1] + runs[2]) / 3), abs=1e-4
     )
     knee = frames.left_knee_flexion_deg
     assert rows.loc["left_knee_flexion_max", "value"] == pytest.approx(knee.max(), abs=0.01)
@@ -123,6 +126,27 @@ def test_what_the_cameras_add_stands_beside_what_the_keypoints_add():
     assert largest.sigma_camera == pytest.approx(0.05 * largest.value, rel=1e-3)
     both = np.hypot(narrow.neck_speed_sd_m_s, 0.05 * narrow.neck_speed_m_s)
     np.testing.assert_allclose(wide.neck_speed_sd_m_s, both, atol=2e-4)
+
+
+@pytest.mark.parametrize(("rate_hz", "n"), [(12, 3), (30, 3), (60, 6)])
+def test_a_largest_speed_is_a_mean_over_a_tenth_of_a_second_away_from_gaps(people, rate_hz, n):
+    """A bad derivative beside a gap does not count, one in the middle by its share alone."""
+    point, steady = people[0].points["neck"], np.full(len(people[0].time_s), 2.0)
+    steady[40] = np.nan
+    steady[[0, 39, 41, -1]] = 50.0
+    steady[100] = 5.0
+    vectors = steady[:, None] * [1.0, 0, 0]
+    spread = (np.eye(3) * 0.1**2)[None].repeat(len(steady), axis=0)
+    point = replace(point, velocity=vectors, acceleration=vectors, covariance=(spread,) * 3)
+    person = replace(
+        people[0], time_s=np.arange(len(steady)) / rate_hz, points={"neck": point}, angles={}
+    )
+    rows = measures.summary([person], "filtered").set_index("measure")
+    speed, change = rows.loc["neck_speed_max"], rows.loc["neck_acceleration_max"]
+    assert (speed.value, speed.sigma) == (pytest.approx(2 + 3 / n), pytest.approx(0.1))
+    assert speed.n == len(steady) - 5
+    assert change.value == speed.value and np.isnan(change.sigma)
+    assert "largest mean over 0.1 s" in speed.definition
 
 
 def test_nobody_seen_is_a_table_of_missing_values():

@@ -18,6 +18,8 @@ SUMMARY_COLUMNS = (
 )  # fmt: skip
 # measure, value, sigma, sigma_camera, unit, n
 Row = tuple[str, float, float, float, str, int]
+# Over which a largest speed is a mean: one frame with a large error would be the largest of all.
+PEAK_S = 0.1
 
 
 def frames(people: Sequence[measures.Person]) -> pd.DataFrame:
@@ -64,16 +66,17 @@ def summary(people: Sequence[measures.Person], stage: str) -> pd.DataFrame:
     """Return the measures of the whole take, in `SUMMARY_COLUMNS`.
 
     `stage` says in each definition which joints were measured: `filtered` or `corrected`. Largest
-    values are those of one frame, with its sigma: of many noisy frames the largest lies above the
-    true one, by one to three sigma.
+    speeds and accelerations are means over `PEAK_S` away from gaps; those of accelerations have no
+    sigma, as the filter lowers short peaks. Largest angles are those of one frame, with its sigma:
+    of many noisy frames the largest lies above the true one.
     """
     rows = []
     for person in people:
         for name, point in person.points.items():
-            found = [*_distances(point), *_extremes(point), *_noise(point)]
-            rows += [
-                (person.person, f"{name}_{row[0]}", *row[1:], point.definition) for row in found
-            ]
+            words, peak = point.definition, f"{point.definition}; largest mean over {PEAK_S} s"
+            found = [(*row, words) for row in (*_distances(point), *_noise(point))]
+            found += [(*row, peak) for row in _peaks(person.time_s, point)]
+            rows += [(person.person, f"{name}_{row[0]}", *row[1:]) for row in found]
         for name, angle in person.angles.items():
             rows += [(person.person, *row) for row in _angle_rows(name, angle)]
     table = pd.DataFrame(rows, columns=list(SUMMARY_COLUMNS))
@@ -99,15 +102,27 @@ def _distances(point: measures.Point) -> Iterator[Row]:
         yield f"{prefix}speed_mean", *mean, "m/s", n_frames
 
 
-def _extremes(point: measures.Point) -> Iterator[Row]:
+def _peaks(time_s: NDArray, point: measures.Point) -> Iterator[Row]:
+    """Yield the largest speed and acceleration, each a mean over `PEAK_S`.
+
+    The first and last frame of a stretch without gaps are left out: splines have large errors at
+    their ends. Errors of neighbouring frames are taken as equal.
+    """
+    n = max(3, round(PEAK_S / float(np.median(np.diff(time_s)))) if len(time_s) > 1 else 3)
     for name, vectors, order, unit in (
         ("speed_max", point.velocity, 1, "m/s"),
         ("acceleration_max", point.acceleration, 2, "m/s2"),
     ):
         value, sigma = measures.size(vectors, point.covariance[order])
         _, camera = measures.size(vectors, point.camera_covariance[order])
-        at, n_frames = _largest(value)
-        yield name, value[at], sigma[at], camera[at] or float("nan"), unit, n_frames
+        inside = pd.Series(np.isfinite(value)).rolling(3, center=True).sum() == 3
+        frames = pd.DataFrame({"value": value, "sigma": sigma, "camera": camera})
+        means = frames.where(inside).rolling(n).mean()
+        at, _ = _largest(means["value"].to_numpy())
+        largest, spread, of_cameras = means.iloc[at]
+        if name == "acceleration_max":
+            spread = of_cameras = float("nan")
+        yield name, largest, spread, of_cameras or float("nan"), unit, int(inside.sum())
 
 
 def _largest(values: NDArray) -> tuple[int, int]:
