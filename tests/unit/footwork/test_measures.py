@@ -39,7 +39,7 @@ def test_counts_and_times_of_a_run():
     assert found.loc["lunges", "value"] == 0
     assert found.loc["stance_time", "value"] == pytest.approx(0.25)
     assert found.loc["stance_time", "n"] == 8
-    assert found.loc["stance_time", "sigma"] == pytest.approx(0.01 * np.sqrt(2 / 8))
+    assert found.loc["stance_time", "sigma"] == pytest.approx(0.01 * np.sqrt(2))
     assert found.loc["swing_time_left", "value"] == pytest.approx(0.35)
     assert found.loc["flight_time", "value"] == pytest.approx(0.05)
 
@@ -99,5 +99,12 @@ def test_one_landing_and_no_landing_have_measures():
     found = values(feet)
     assert found.loc["steps", "value"] == 0
     assert np.isnan(found.loc["stance_time", "value"])
+
+
+def test_one_or_two_landings_are_no_rally():
     single = {"left": run(1)["left"], "right": []}
-    assert values(single).loc["rally_1_time", "value"] == 0
+    assert values(single).loc["steps", "value"] == 1
+    assert not values(single).index.str.startswith("rally").any()
+    later = run(late_s=20.0)
+    both = {"left": single["left"] + later["left"], "right": later["right"]}
+    assert values(both).loc["rally_1_time", "value"] == pytest.approx(0.3 * 9)

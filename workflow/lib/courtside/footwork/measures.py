@@ -12,6 +12,7 @@ from courtside.records import footwork
 
 COLUMNS = ("person", "measure", "value", "sigma", "unit", "n", "definition")
 PAUSE_S = 3.0  # ASSUME: a rally is over when no foot lands for longer
+LEAST_LANDINGS = 3  # of a rally: fewer say nothing of a path or a rate
 COUNTED = {"step": "steps", "lunge": "lunges", "split_step": "split_steps", "jump": "jumps"}
 DEPTHS, SIDES = ("front", "mid", "rear"), ("left", "right")
 Row = tuple[str, float, float, str, int, str]  # measure, value, sigma, unit, n, definition
@@ -22,7 +23,8 @@ def summary(steps: pd.DataFrame, events: pd.DataFrame, court: Court | None) -> p
     """Return the measures of a take, rows of `COLUMNS`; `steps` and `events` of `records.footwork`.
 
     Sigma is a standard deviation from those of onsets, ends and places; NaN where nothing is known,
-    as of counts.
+    as of counts. Mean times have that of one of them: how a person sets down and lifts the feet
+    shifts the times of all of them alike.
     """
     rows = []
     for person, own in steps.groupby("person", sort=False):
@@ -65,7 +67,7 @@ def _sigmas(rows: pd.DataFrame) -> tuple[pd.Series, pd.Series]:
 
 def _mean(name: str, start: pd.Series, stop: pd.Series, *sigmas: pd.Series) -> Row:
     n, words = len(start), name.split("_")[0] + " of a foot, mean of those that are seen whole"
-    spread = np.sqrt(sum((one**2).sum() for one in sigmas)) / n if n else NAN
+    spread = np.sqrt(sum((one**2).mean() for one in sigmas)) if n else NAN
     return name, float((stop - start).mean()) if n else NAN, float(spread), "s", n, words
 
 
@@ -90,7 +92,7 @@ def _flights(steps: pd.DataFrame) -> Row:
             lasts.append(row.onset_s - last.end_s)
             variances.append(row.onset_sigma_s**2 + last.end_sigma_s**2)
     n, words = len(lasts), f"neither foot stands, mean of those of {LEAST_FLIGHT_S:g} s and more"
-    spread = np.sqrt(sum(variances)) / n if n else NAN
+    spread = np.sqrt(np.mean(variances)) if n else NAN
     return "flight_time", float(np.mean(lasts)) if n else NAN, float(spread), "s", n, words
 
 
@@ -122,18 +124,18 @@ def _corners(steps: pd.DataFrame, court: Court | None) -> Iterator[Row]:
 def _rallies(steps: pd.DataFrame) -> Iterator[Row]:
     landed = steps[steps.onset_s.notna()].sort_values("onset_s")
     number = (landed.onset_s.diff() > PAUSE_S).cumsum()
-    for at, own in landed.groupby(number):
+    rallies = [own for _, own in landed.groupby(number) if len(own) >= LEAST_LANDINGS]
+    for at, own in enumerate(rallies, start=1):
         lasts = own.onset_s.iloc[-1] - own.onset_s.iloc[0]
         spread = float(np.hypot(own.onset_sigma_s.iloc[-1], own.onset_sigma_s.iloc[0]))
-        n, name = len(own), f"rally_{int(at) + 1}"
+        n, name = len(own), f"rally_{at}"
         words = f"from its first to its last landing, no pause over {PAUSE_S:g} s between landings"
         yield f"{name}_time", float(lasts), spread, "s", n, words
         length, error = _path(own)
-        words = "ground path through the middles of successive landings"
+        words = "path of the midpoints between each landing and the one before"
         yield f"{name}_distance", length, error, "m", n, words
-        rate, words = (n - 1) / lasts if lasts > 0 else NAN, "landings after the first, per second"
-        error = rate * spread / lasts if lasts > 0 else NAN
-        yield f"{name}_step_rate", rate, error, "1/s", n, words
+        rate, words = (n - 1) / lasts, "landings after the first, per second"
+        yield f"{name}_step_rate", rate, rate * spread / lasts, "1/s", n, words
 
 
 def _path(steps: pd.DataFrame) -> tuple[float, float]:
@@ -143,8 +145,6 @@ def _path(steps: pd.DataFrame) -> tuple[float, float]:
     before. An error of one place moves it by half, where the path turns.
     """
     xy, sigma = steps[["x_m", "y_m"]].to_numpy(), steps.sigma_m.to_numpy()
-    if len(xy) < 3:
-        return NAN, NAN
     middle = (xy[1:] + xy[:-1]) / 2
     legs = np.diff(middle, axis=0)
     length = np.linalg.norm(legs, axis=1)
