@@ -1,5 +1,6 @@
 """Proposed court points in drawn pictures, from cameras some pixels off, against exact places."""
 
+import cv2
 import numpy as np
 import pytest
 
@@ -84,3 +85,18 @@ def test_dark_lines_are_asked_for(views, pictures, court):
 def test_the_picture_must_be_the_camera_s(views, pictures, court):
     with pytest.raises(ValueError, match="expected a picture of"):
         proposals.propose(views[0], pictures[0][:-1], court, search_px=4.0)
+
+
+def test_a_camera_that_other_lines_fit_by_chance_gives_no_points(views, court):
+    """A floor with lines everywhere: near any expected one lies another, half the search away."""
+    rng = np.random.default_rng(0)
+    picture = np.full((*SIZE[::-1], 3), 120, np.uint8)
+    for _ in range(40):
+        ends = rng.uniform([-200, 0], [SIZE[0] + 200, SIZE[1]], (2, 2)).astype(int).tolist()
+        width = int(rng.integers(2, 6))
+        cv2.line(picture, *ends, color=(230, 230, 230), thickness=width, lineType=cv2.LINE_AA)
+    picture = np.clip(picture + rng.normal(0, 4, picture.shape), 0, 255).astype(np.uint8)
+    found = proposals.propose(views[0], picture, court, search_px=24.0)
+    assert np.isnan(found.xy).all()
+    (reason,) = set(found.reason)
+    assert "from where an adjusted camera expects them" in reason

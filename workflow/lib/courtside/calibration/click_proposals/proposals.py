@@ -23,10 +23,18 @@ FEWEST = 5  # stretches by which a camera is moved
 SIDE_PX, SIDE_M = 45.0, (0.5, 2.5)  # of line on each side of a point
 NEAR_PX = 2.5  # search around a point, once the camera is moved
 CAMERA_PX = 0.6  # of a point on the floor by the moved camera: paint is some mm off the model
+# Of the search, median by which lines may miss the moved camera: lines found by chance miss it by
+# half.
+MOST_MISFIT = 0.35
 HEIGHT_M = 0.03  # of one above the floor: lines on the floor determine heights badly
 OFF_SIGMA = 4.0  # an edge farther from where the camera expects it is another one
 PAINT_PX = 0.1  # error not in the fit of a profile: codec, neighbouring paint
+MEDIAN_TO_SIGMA = 1.4826  # of the absolute values of normal errors
 NO_LINES = "the court file has no painted lines"
+MISFIT = (
+    "painted lines are {:.1f} px from where an adjusted camera expects them: another lens or court?"
+)
+TOO_FEW = "too few painted lines are seen where they are expected"
 _Found = tuple[NDArray, NDArray, float, str]
 
 
@@ -40,6 +48,15 @@ class Proposals:
     confidence: NDArray
     reason: tuple[str, ...]  # P: why nothing is proposed; empty where something is
     camera: Camera  # the given one, moved so that the lines fit
+
+
+@dataclass(frozen=True, eq=False)
+class Registered:
+    """A view whose camera was moved to the lines in its picture, or why it was not."""
+
+    view: View
+    camera_px: float = np.inf  # standard deviation, per axis, of a point on the floor by it
+    reason: str = ""  # empty where the lines fit
 
 
 def propose(
@@ -66,27 +83,27 @@ def propose(
     """
     if image.shape[1::-1] != tuple(camera.size):
         raise ValueError(f"expected a picture of {camera.size} px, found {image.shape[1::-1]}")
-    view, reason = register(View.of(image, camera, court, lines), search_px)
+    moved = register(View.of(image, camera, court, lines), search_px)
     n = len(court.points)
-    if reason:
-        nothing = np.full(n, np.nan)
-        return Proposals(np.full((n, 2), np.nan), nothing, np.zeros(n), (reason,) * n, view.camera)
-    found = [_point(view, at) for at in range(n)]
-    return _checked(view, found, max_sigma_px)
+    if moved.reason:
+        nothing, reasons = np.full(n, np.nan), (moved.reason,) * n
+        return Proposals(np.full((n, 2), np.nan), nothing, np.zeros(n), reasons, moved.view.camera)
+    found = [_point(moved.view, at) for at in range(n)]
+    return _checked(moved, found, max_sigma_px)
 
 
-def register(view: View, search_px: float) -> tuple[View, str]:
-    """Move a view's camera so that the lines fit; also return why not, empty if it was moved."""
+def register(view: View, search_px: float) -> Registered:
+    """Move a view's camera so that the lines fit, if they do."""
     line, ends = line_edges.stretches(view.court, STRETCH_M)
     if not len(line):
-        return view, NO_LINES
+        return Registered(view, reason=NO_LINES)
     middle = ends.mean(axis=1)
     for share in SHARES:
         reach = max(share * search_px, LEAST_PX)
         shifts = [view.shift(*each, reach) for each in zip(line, ends, middle, strict=True)]
         good = np.array([is_reliable(shift) for shift in shifts])
         if good.sum() < FEWEST or len({line[at] for at in np.flatnonzero(good)}) < 3:
-            return view, "too few painted lines are seen where they are expected"
+            return Registered(view, reason=TOO_FEW)
         halves = np.array([line_edges.middle_line(view.court, at)[1] for at in line[good]])
         along = ends[good, 1] - ends[good, 0]
         normal = line_profiles.tangent_and_normal(view.camera, middle[good], along, halves)[1]
@@ -94,8 +111,12 @@ def register(view: View, search_px: float) -> tuple[View, str]:
         offset = np.array([(shift.low_px + shift.high_px) / 2 for shift in used])
         sigma = np.array([shift.sigma_px for shift in used])
         moved = refine_pose.refine(view.camera, middle[good], normal, offset, sigma)
+        rest = offset - refine_pose.shifts(view.camera, moved, middle[good], normal)
+        misfit_px = float(np.median(np.abs(rest)))
         view = replace(view, camera=moved)
-    return view, ""
+    if misfit_px > MOST_MISFIT * reach:
+        return Registered(view, reason=MISFIT.format(misfit_px))
+    return Registered(view, max(CAMERA_PX, MEDIAN_TO_SIGMA * misfit_px))
 
 
 def is_reliable(shift: Shift | None) -> bool:
@@ -166,8 +187,9 @@ def _meet(one: Ray, other: Ray) -> _Found:
     return xy, covariance, min(one.share, other.share), ""
 
 
-def _checked(view: View, found: Sequence[_Found], max_sigma_px: float) -> Proposals:
+def _checked(moved: Registered, found: Sequence[_Found], max_sigma_px: float) -> Proposals:
     """Return proposals without those that are uncertain or far from the camera's prediction."""
+    view = moved.view
     expected = project(view.camera, view.court.xyz)
     n = len(found)
     xy, sigma_px, confidence = np.full((n, 2), np.nan), np.full(n, np.nan), np.zeros(n)
@@ -177,10 +199,10 @@ def _checked(view: View, found: Sequence[_Found], max_sigma_px: float) -> Propos
             off, alone = place - expected[at], covariance
             if view.court.on_floor[at]:
                 # Together with where the camera, moved to fit all lines, has it.
-                gain = covariance @ np.linalg.inv(covariance + CAMERA_PX**2 * np.eye(2))
+                gain = covariance @ np.linalg.inv(covariance + moved.camera_px**2 * np.eye(2))
                 place, covariance = place - gain @ off, covariance - gain @ covariance
             sigma = float(np.sqrt(np.linalg.eigvalsh(covariance)[-1]))
-            allowed = alone + _model_error(view, at) ** 2 * np.eye(2)
+            allowed = alone + _model_error(moved, at) ** 2 * np.eye(2)
             reason = _why_not(off, allowed, sigma, max_sigma_px)
             if not reason:
                 xy[at], sigma_px[at], confidence[at] = place, sigma, share / (1 + sigma**2)
@@ -188,12 +210,13 @@ def _checked(view: View, found: Sequence[_Found], max_sigma_px: float) -> Propos
     return Proposals(xy, sigma_px, confidence, tuple(reasons), view.camera)
 
 
-def _model_error(view: View, at: int) -> float:
+def _model_error(moved: Registered, at: int) -> float:
     """Return the standard deviation, px, of where the moved camera projects a point."""
-    place, court = view.court.xyz[at], view.court
+    view, court = moved.view, moved.view.court
+    place = court.xyz[at]
     away = np.linalg.norm(place - view.camera.centre_in_world)
     off_m = np.hypot(court.sigma_m[at], HEIGHT_M * (not court.on_floor[at]))
-    return np.hypot(CAMERA_PX, off_m * view.camera.K[0, 0] / away)
+    return np.hypot(moved.camera_px, off_m * view.camera.K[0, 0] / away)
 
 
 def _why_not(off: NDArray, allowed: NDArray, sigma: float, max_sigma_px: float) -> str:

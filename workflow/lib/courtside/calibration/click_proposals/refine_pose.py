@@ -41,15 +41,18 @@ def refine(
     from where the camera expects the line to where it is seen, with a standard deviation of
     `sigma_px` (M,).
     """
-    start = project(camera, xyz)
     sigma = np.hypot(sigma_px, FLOOR_PX)
 
     def residuals(scaled: NDArray) -> NDArray:
-        there = project(moved(camera, scaled * PRIOR_SIGMA), xyz)
-        rest = offset_px - np.sum((there - start) * normal, axis=1)
+        rest = offset_px - shifts(camera, moved(camera, scaled * PRIOR_SIGMA), xyz, normal)
         return np.concatenate([np.nan_to_num(rest, nan=1e3) / sigma, scaled])
 
     found = scipy.optimize.least_squares(
         residuals, np.zeros(len(PRIOR_SIGMA)), loss="cauchy", f_scale=2.0, x_scale=1.0
     )
     return moved(camera, found.x * PRIOR_SIGMA)
+
+
+def shifts(camera: Camera, other: Camera, xyz: NDArray, normal: NDArray) -> NDArray:
+    """Return how far points (M, 3) m shift along `normal` (M, 2) from a camera to another, px."""
+    return np.sum((project(other, xyz) - project(camera, xyz)) * normal, axis=1)

@@ -38,9 +38,10 @@ def measure(
     If too few lines are found, the reason is returned in place of edges.
     """
     view = View.of(image, camera, court, lines)
-    view, reason = proposals.register(view, search_px)
-    if reason:
-        return None, reason
+    moved = proposals.register(view, search_px)
+    if moved.reason:
+        return None, moved.reason
+    view = moved.view
     rows = []
     for line, ends in zip(*line_edges.stretches(court, STRETCH_M), strict=True):
         middle, half = ends.mean(axis=0), line_edges.middle_line(court, line)[1]
