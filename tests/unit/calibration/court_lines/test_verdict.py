@@ -66,6 +66,7 @@ def test_other_pictures_are_refused(court, what):
     assert said.outcome != verdict.FOUND and said.reason
     found = verdict.proposed(said, image, court, search_px=6.0)
     assert np.isnan(found.xy).all() and said.reason in found.reason[0]
+    assert (said.outcome == verdict.AMBIGUOUS) or "lines: any" in said.reason
     assert "f_px" not in verdict.report(said, found)
 
 

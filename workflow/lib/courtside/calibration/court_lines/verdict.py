@@ -23,6 +23,7 @@ FOUND, AMBIGUOUS, NOT_FOUND = "found", "ambiguous", "not found"
 MOST_RIVAL, LEAST_MARGIN = 0.92, 30.0  # of the next best: share of the score, and difference
 LIKE_SCORE, WHITER, LEAST_WHITE = 0.4, 1.3, 0.3  # score and whiteness of like courts
 
+OTHERS = "; if its lines are not white, set propose_court_points: {lines: any}"
 BLUR_PX = 0.8  # of pictures, standard deviation
 SAME_TURN, SAME_ZOOM = 0.08, 0.12  # rotations and logarithms of focal lengths of one camera
 
@@ -64,7 +65,8 @@ def judge(found: Found, court: Court, name: str, size: tuple[int, int], lines: s
     """
     symmetric = views.is_symmetric(court)
     if not found.candidates:
-        reason = "no lines that fit the court" if len(court.lines_m) else proposals.NO_LINES
+        none = "no lines that fit the court" + OTHERS * (lines == "light")
+        reason = none if len(court.lines_m) else proposals.NO_LINES
         return Verdict(NOT_FOUND, reason, None, 0.0, 0.0, None, symmetric)
     paint = np.ones(len(found.candidates))
     if lines == "light":
@@ -75,9 +77,9 @@ def judge(found: Found, court: Court, name: str, size: tuple[int, int], lines: s
     rival = np.delete(value, first).max(initial=0.0) / paint[first]
     outcome, reason = FOUND, ""
     if fault := search.fault(best, court):
-        outcome, reason = NOT_FOUND, fault
+        outcome, reason = NOT_FOUND, fault + OTHERS * (lines == "light")
     elif lines == "light" and paint[first] < LEAST_WHITE:
-        outcome, reason = AMBIGUOUS, "the lines that fit the court are not white"
+        outcome, reason = AMBIGUOUS, "the lines that fit the court are not white" + OTHERS
     elif _has_like(found.candidates, best, paint, court):
         outcome, reason = (
             AMBIGUOUS,
