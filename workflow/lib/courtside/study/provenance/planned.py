@@ -115,8 +115,9 @@ def unseen(workflow: Any, repository: Path) -> list[str]:
     if not rules:
         return []
     command = shlex.join(["python", "workflow/verify_study.py", *run.in_folder(repository)])
+    jobs = "1 job" if len(rules) == 1 else f"{len(rules)} jobs"
     return [
-        f"Remark: results of {len(rules)} jobs ({few(sorted(set(rules)), N_NAMED)}) are here, but "
+        f"Remark: results of {jobs} ({few(sorted(set(rules)), N_NAMED)}) are here, but "
         "not Snakemake's records of them (.snakemake/metadata): it does not see changes of their "
         f"settings and code; `{command}` tells these"
     ]
