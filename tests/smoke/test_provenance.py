@@ -69,7 +69,7 @@ def test_results_that_came_without_snakemakes_records_are_told(drawn):
     kept = hidden.rename(hidden.with_name("kept"))
     done = run("-n", "--", FIGURE, root=drawn, anew=True)
     said = done.stdout + done.stderr
-    assert "Remark: results of 1 jobs (draw_court_points) are here, but not" in said
+    assert "Remark: results of 1 job (draw_court_points) are here, but not" in said
     assert f"verify_study.py --directory {FOLDER.as_posix()}`" in said
     assert verify(drawn).returncode == 0
     shutil.rmtree(hidden)

@@ -80,7 +80,7 @@ def test_results_that_snakemake_has_no_records_of_are_told_in_one_line(tmp_path,
     dag = SimpleNamespace(jobs=jobs, needrun=lambda job: job.rule.name == "cut")
     records = SimpleNamespace(metadata={"b.txt": 1}.get)
     (line,) = planned.unseen(SimpleNamespace(dag=dag, persistence=records), tmp_path)
-    assert line.startswith("Remark: results of 1 jobs (draw) are here, but not Snakemake's records")
+    assert line.startswith("Remark: results of 1 job (draw) are here, but not Snakemake's records")
     assert "`python workflow/verify_study.py` tells" in line
     (line,) = planned.unseen(SimpleNamespace(dag=dag, persistence=records), tmp_path.parent)
     assert f"verify_study.py --directory {tmp_path.name}` tells" in line
