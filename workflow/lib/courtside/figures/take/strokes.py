@@ -12,7 +12,8 @@ from courtside.strokes import signals
 
 BEFORE_S, AFTER_S, STEP_S = 0.8, 0.6, 0.02
 FEWEST = 3  # strokes of a band
-HEIGHT_MM = 130
+A_ROW = 4  # entries of the legend
+HEIGHT_MM, EMPTY_MM = 130, 20
 KINDS = {True: "overhead strokes", False: "low strokes"}
 LINES = {
     "reach_m": "wrist from waist (m)",
@@ -44,7 +45,14 @@ def table(strokes: pd.DataFrame, points: Keypoints3D) -> pd.DataFrame:
 
 
 def draw(rows: pd.DataFrame) -> Figure:
-    """Draw overhead and low strokes side by side: each, their mean and a band of 90 %."""
+    """Draw overhead and low strokes side by side: each, their mean and a band of 90 %.
+
+    Without any stroke one sentence says so in place of panels.
+    """
+    if rows.empty:
+        drawing = style.figure(EMPTY_MM)
+        drawing.text(0.5, 0.5, "No stroke was found in this take.", ha="center", va="center")
+        return drawing
     drawing = style.figure(HEIGHT_MM)
     axes = drawing.subplots(len(LINES), len(KINDS), sharex=True, sharey="row")
     people = list(dict.fromkeys(rows.person))
@@ -61,21 +69,24 @@ def draw(rows: pd.DataFrame) -> Figure:
     for axis, words in zip(axes[:, 0], LINES.values(), strict=True):
         axis.set_ylabel(words)
         axis.set_ylim(bottom=0)
-    if rows.empty:
-        axes[0, 0].set_xlim(-BEFORE_S, AFTER_S)
-        drawing.suptitle("no stroke found", fontsize=8)
-    named = bars.named(axes[0])
-    drawing.legend(named.values(), named, loc="outside upper right", ncols=max(len(named), 1))
+    axes[0, 0].set_xlim(-BEFORE_S - STEP_S, AFTER_S + STEP_S)
+    named = dict(sorted(bars.named(axes.ravel()).items()))
+    drawing.legend(named.values(), named, loc="outside upper right", ncols=min(len(named), A_ROW))
     return drawing
 
 
 def _draw_lines(axis: Axes, part: pd.DataFrame, name: str, colour: str, person: str) -> None:
+    """Draw a person's strokes; their mean where all are known: else it jumps where one ends."""
     wide = part.pivot(index="phase_s", columns="stroke", values=name)
-    axis.plot(wide.index, wide, color=colour, linewidth=0.5, alpha=0.6)
-    axis.plot(wide.index, wide.mean(axis=1), color=colour, linewidth=1.6, label=f"{person}: mean")
-    full = wide.count(axis=1) >= FEWEST
-    if full.any():
-        middle, reach = wide.mean(axis=1)[full], WITHIN_90 * wide.std(axis=1)[full]
-        axis.fill_between(
-            wide.index[full], middle - reach, middle + reach, color=colour, alpha=0.15, lw=0
-        )
+    each = axis.plot(wide.index, wide, color=colour, linewidth=0.5, alpha=0.6)
+    each[0].set_label(f"{person}: each stroke")
+    n_strokes = wide.shape[1]
+    if n_strokes < 2:
+        return
+    middle = wide.mean(axis=1, skipna=False)
+    if middle.notna().any():
+        axis.plot(wide.index, middle, color=colour, linewidth=1.6, label=f"{person}: mean of all")
+    if n_strokes >= FEWEST:
+        reach = WITHIN_90 * wide.std(axis=1, skipna=False)
+        low, high = middle - reach, middle + reach
+        axis.fill_between(wide.index, low, high, color=colour, alpha=0.15, lw=0)
