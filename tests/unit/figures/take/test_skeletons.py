@@ -40,6 +40,20 @@ def test_labels_of_the_panels_do_not_overlap():
     assert middle_px + label.get_window_extent().width / 2 < above.get_tightbbox().x0
 
 
+@pytest.mark.parametrize("radius_m", [6.0, 120.0])
+def test_the_direction_of_a_camera_is_seen_in_a_hall_of_any_size(radius_m):
+    cameras = scene.ring(4, radius_m)
+    drawing = skeletons.draw(walker.points(), cameras, walker.SKELETON)
+    drawing.draw_without_rendering()
+    arrows = [text for text in drawing.axes[1].texts if text.arrow_patch is not None]
+    for camera, arrow in zip(cameras, arrows, strict=True):
+        tail = drawing.axes[1].transData.transform(arrow.xy)
+        way = arrow.get_transform().transform(arrow.get_position()) - tail
+        forward = camera.cam_from_world[2, :2]
+        points = skeletons.ARROW_POINTS * drawing.dpi / 72
+        np.testing.assert_allclose(way, points * forward, atol=0.5)
+
+
 @pytest.mark.parametrize(("down_m", "bottom_m"), [(0.0, 0.0), (1.2, -1.5)])
 def test_people_below_the_origin_are_drawn_in_the_box(down_m, bottom_m):
     record = walker.points()

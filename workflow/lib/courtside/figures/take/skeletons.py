@@ -16,7 +16,7 @@ from courtside.records.keypoints.skeleton import Skeleton
 
 PATHS = ("left_wrist", "right_wrist", "left_ankle", "right_ankle")
 PERCENTILES = (0.5, 99.5)  # of the joints' positions, shown: without gross outliers
-ARROW_M = 0.6
+ARROW_POINTS, AWAY_POINTS = 18, 5  # of a camera's direction, and from its tip to the name
 BELOW_MM = 10.5  # from the panel to the legend, for the numbers and the label of the axis
 N_POSES = 5
 DEEP_M = 0.5  # the box of people on the floor begins so far below it; others are not on z = 0
@@ -102,13 +102,7 @@ def _draw_above(axis: Axes, points: Keypoints3D, cameras: list[Camera], skeleton
     for path, colour in _paths(points):
         axis.plot(*path[:, :2].T, color=colour, linewidth=0.6, alpha=0.8)
     for camera in cameras:
-        x, y, z = camera.centre_in_world
-        forward = camera.cam_from_world[2, :2] * ARROW_M
-        axis.plot(x, y, "ks", markersize=4)
-        axis.annotate("", (x + forward[0], y + forward[1]), (x, y), arrowprops={"arrowstyle": "->"})
-        axis.annotate(
-            f"{camera.name}\nz = {z:.1f} m", (x, y), (5, 5), textcoords="offset points", fontsize=7
-        )
+        _draw_camera(axis, camera)
     for label, colour in (("left", style.LEFT), ("right", style.RIGHT), ("middle", style.MIDDLE)):
         axis.plot([], [], color=colour, label=label)
     style.legend_below(axis, BELOW_MM, ncols=3)
@@ -116,3 +110,18 @@ def _draw_above(axis: Axes, points: Keypoints3D, cameras: list[Camera], skeleton
     axis.set_aspect("equal", adjustable="datalim")
     axis.margins(0.12)
     axis.grid()
+
+
+def _draw_camera(axis: Axes, camera: Camera) -> None:
+    """Draw a camera, its direction as long in any hall, and its name beyond: there is room."""
+    x, y, z = camera.centre_in_world
+    forward = camera.cam_from_world[2, :2]
+    axis.plot(x, y, "ks", markersize=4)
+    look: dict = {"textcoords": "offset points", "ha": "center"}
+    arrow = {"arrowstyle": "<-", "shrinkA": 0, "shrinkB": 0, "linewidth": 1.0}
+    axis.annotate("", (x, y), tuple(ARROW_POINTS * forward), arrowprops=arrow, **look)
+    up = forward[1] >= 0
+    right, ahead = ARROW_POINTS * forward
+    place = (right, ahead + (AWAY_POINTS if up else -AWAY_POINTS))
+    look |= {"va": "bottom" if up else "top", "fontsize": 7}
+    axis.annotate(f"{camera.name}\nz = {z:.1f} m", (x, y), place, **look)
