@@ -219,6 +219,10 @@ def test_a_session_may_not_be_named_like_a_folder_of_results(folder, name):
         ({"filter_motion": {"max_gap_s": float("nan")}}, "expected a number, found nan"),
         ({"filter_motion": {"max_gap_s": float("inf")}}, "expected a number, found inf"),
         ({"filter_motion": {"max_gap_s": 10**400}}, "expected a number, found 1000"),
+        (
+            {"filter_motion": {"max_gap_s": 200}},
+            "filter_motion.max_gap_s: expected at most 2 (seconds, not milliseconds), found 200",
+        ),
         ({"draw_overlay": {"n_frames": 3.0}}, "expected a whole number, found 3.0"),
         ({"draw_overlay": {"n_frames": True}}, "expected a whole number, found True"),
         ({"triangulate": {"fix_sides": "yes"}}, "expected true or false, found 'yes'"),
