@@ -66,11 +66,19 @@ def test_a_take_without_consent_and_a_value_of_the_default_file_are_not_told():
          "['alma', 'bert'], found carla; correct the name, or the list of sessions"),
         ({"takes": ["pre", "mid"]}, "takes: expected how names of takes of spring, autumn begin, "
          "['post1', 'pre1'], found mid; correct it, or remove it"),
-        ({"subject": "carla", "sessions": ["spring", "winter"]}, None),
+        ({"subject": "carla", "sessions": ["spring", "walk-4cams"]}, None),
+        ({"sessions": ["spring", "capture-speed-0"]}, None),
+        ({"sessions": ["sprin", "autumn"]}, "sessions: expected sessions with a file in "
+         "config/sessions, found 'sprin'; did you mean 'spring'?"),
+        ({"sessions": ["spring", "xy"]}, "sessions: expected sessions with a file in "
+         "config/sessions, found 'xy'; correct the name, or remove it"),
+        ({"measures": ["neck_distance", "rally_3_time"]}, None),
+        ({"measures": ["neck_distence"]}, "measures: expected measures of study.csv, such as "
+         "neck_distance, found 'neck_distence'; did you mean 'neck_distance'?"),
         ({"subject": "carla", "sessions": []}, None),
     ],
 )  # fmt: skip
-def test_persons_and_beginnings_of_takes_that_are_compared_are_known(change, words):
+def test_what_is_compared_over_sessions_is_known(change, words):
     step = COMPARED | {"subject": "alma", "sessions": ["spring", "autumn"]} | change
     where = "season.yaml: compare_sessions"
     assert said(study(compare_sessions=step)) == ([f"{where}.{words}"] if words else [])

@@ -2,6 +2,7 @@
 
 errors: `InputError`, an error that a user can mend; `reading`, which raises it on damaged files;
     `StrPath`, the type of paths
+measure_names: the names of all measures, checked before any is measured
 methods: `Calibration`, `Variant` and `Fusion`, parsed from their names
 paths: the name of every file
 configuration: YAML files checked as a whole, `Study`, `Session` and `Take`

@@ -1,8 +1,10 @@
-"""Names of takes and persons in the steps of a study that no session of it has."""
+"""Names of takes, persons, sessions and measures in the steps of a study that nothing has."""
 
+import difflib
 from collections.abc import Iterator
 from typing import Any
 
+from courtside.study import measure_names
 from courtside.study.configuration import yaml_files
 from courtside.study.configuration.sessions import DEFAULT, Session, Study
 
@@ -32,7 +34,11 @@ def find(config_file: str, study: Study) -> Iterator[str]:
                 f"{_takes(session)}, found {name}; correct the name, or remove it"
             )
     if is_own("compare_sessions"):
-        yield from _compared(f"{config_file}: compare_sessions", study)
+        where = f"{config_file}: compare_sessions"
+        yield from _unknown_sessions(f"{where}.sessions", study)
+        measures = study.parameters["compare_sessions"]["measures"]
+        yield from measure_names.unknown(f"{where}.measures", measures or [])
+        yield from _compared(where, study)
 
 
 def _named(parameters: dict[str, Any]) -> Iterator[tuple[str, str]]:
@@ -47,6 +53,18 @@ def _named(parameters: dict[str, Any]) -> Iterator[tuple[str, str]]:
 def _takes(session: Session) -> list[str]:
     """Return the takes of a session's file, those without consent among them."""
     return sorted([*session.takes, *session.withheld])
+
+
+def _unknown_sessions(where: str, study: Study) -> Iterator[str]:
+    """Yield a fault for each session that is compared and is nowhere: neither run nor a file."""
+    folder = study.folder / "sessions"
+    there = sorted({*study.sessions, *(path.stem for path in folder.glob("*.yaml"))})
+    for name in study.parameters["compare_sessions"]["sessions"]:
+        of_condition = name.rpartition("-")[0] in study.parameters["conditions"]
+        if name not in there and not of_condition:
+            close = difflib.get_close_matches(name, there, n=1)
+            advice = f"did you mean {close[0]!r}?" if close else "correct the name, or remove it"
+            yield f"{where}: expected sessions with a file in {folder}, found {name!r}; {advice}"
 
 
 def _compared(where: str, study: Study) -> Iterator[str]:
