@@ -21,7 +21,10 @@ FACTS |= {"footwork": {}, "strokes": {}}
         (146.305, 27.6, "degrees", "146 &plusmn; 28&deg;"),
         (-15.25, 2.86, "degrees", "&minus;15.2 &plusmn; 2.9&deg;"),
         (1.2254, 0.0156, "m/s", "1.225 &plusmn; 0.016 m/s"),
-        (2.65, math.nan, "m/s", "2.650 m/s"),
+        (2.65, math.nan, "m/s", "2.6 m/s (error unknown)"),
+        (3.432, math.nan, "degrees", "3&deg; (error unknown)"),
+        (0.4, math.nan, "degrees", "0&deg; (error unknown)"),
+        (0.0, math.nan, "m", "0.000 m (error unknown)"),
         (math.nan, math.nan, "m", "not known"),
     ],
 )

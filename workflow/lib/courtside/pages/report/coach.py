@@ -26,11 +26,13 @@ def with_error(value: float, half: float, unit: str) -> Markup:
     if math.isnan(value):
         return Markup("not known")
     known = math.isfinite(half) and half > 0
-    size = half if known else max(abs(value) / 100, 1e-3)
-    digits = min(max(0, 1 - math.floor(math.log10(size))), 3)
+    # Without an error, whole degrees, and two digits of anything else.
+    rough = 10.0 if unit == "degrees" else max(abs(value), 1e-3)
+    digits = min(max(0, 1 - math.floor(math.log10(half if known else rough))), 3)
     error = Markup(f" &plusmn; {half:.{digits}f}") if known else ""
     sign = Markup("&deg;") if unit == "degrees" else f" {unit}"
-    return Markup(f"{value:.{digits}f}".replace("-", "&minus;")) + error + sign
+    last = "" if known else " (error unknown)"
+    return Markup(f"{value:.{digits}f}".replace("-", "&minus;")) + error + sign + last
 
 
 def take(
