@@ -11,6 +11,7 @@ from courtside.exports import measures
 from courtside.kinematics import joint_angles, skeleton_filter
 from courtside.kinematics import measures as kinematics
 from courtside.records.keypoints import derived_joints, missing_reason
+from courtside.study import measure_names
 from fixtures.people import footwork, moving_model, walker
 from fixtures.study import data_dictionary
 
@@ -75,6 +76,8 @@ def test_every_measure_is_described(people):
     found = [*measures.summary(people, "filtered")["measure"], "neck_height_max"]
     dictionary = data_dictionary.Dictionary(README.read_text(encoding="utf-8"))
     assert dictionary.undescribed(found, data_dictionary.OF_KINEMATICS) == ["neck_height_max"]
+    (fault,) = measure_names.unknown("a.yaml", found)
+    assert "neck_height_max" in fault
 
 
 def test_the_summary_is_that_of_the_frames(people):
