@@ -24,7 +24,7 @@ SIDE_PX, SIDE_M = 45.0, (0.5, 2.5)  # of line on each side of a point
 NEAR_PX = 2.5  # search around a point, once the camera is moved
 CAMERA_PX = 0.6  # of a point on the floor by the moved camera: paint is some mm off the model
 # Of the search, median by which lines may miss the moved camera: lines found by chance miss it by
-# half.
+# half, those of right virtual cameras by a tenth.
 MOST_MISFIT = 0.35
 HEIGHT_M = 0.03  # of one above the floor: lines on the floor determine heights badly
 OFF_SIGMA = 4.0  # an edge farther from where the camera expects it is another one
