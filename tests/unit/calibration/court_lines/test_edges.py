@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from courtside.calibration.click_proposals.proposals import Registered
 from courtside.calibration.court_lines import edges
 from courtside.geometry import camera as cameras
 from fixtures.cameras import court_pictures
@@ -33,7 +34,7 @@ def test_a_picture_without_lines_gives_a_reason(court):
 
 def test_lines_that_are_not_seen_once_the_camera_is_moved_give_a_reason(court, monkeypatch):
     width, height = CAMERA.size
-    monkeypatch.setattr(edges.proposals, "register", lambda view, _: (view, ""))
+    monkeypatch.setattr(edges.proposals, "register", lambda view, _: Registered(view))
     image = np.full((height, width, 3), 100, dtype=np.uint8)
     seen, reason = edges.measure(CAMERA, image, court, search_px=6.0)
     assert seen is None and reason.startswith("no painted line is seen")
