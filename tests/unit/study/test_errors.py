@@ -11,7 +11,7 @@ import pytest
 import yaml
 
 from courtside.study import errors
-from courtside.study.errors import InputError, few
+from courtside.study.errors import InputError, few, nearest
 
 
 def test_a_plain_message_stays_as_it_is():
@@ -122,3 +122,8 @@ def test_lines_begin_with_the_file_that_they_are_about():
     assert caught.value.lines == ["a.csv: one", "a.csv: two"]
     with pytest.raises(KeyError), errors.about("a.csv"):
         raise KeyError("three")
+
+
+def test_the_nearest_name_is_advised():
+    assert nearest("sprnig", ["autumn", "spring"], "remove it") == "did you mean 'spring'?"
+    assert nearest("xy", ["autumn", "spring"], "remove it") == "remove it"

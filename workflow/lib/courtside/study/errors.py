@@ -2,6 +2,7 @@
 
 import contextlib
 import csv
+import difflib
 import lzma
 import os
 import struct
@@ -62,6 +63,12 @@ def few(names: Sequence[str], n_named: int) -> str:
     """Return at most so many names in words; the others are counted."""
     more = f" and {len(names) - n_named} more" if len(names) > n_named else ""
     return ", ".join(names[:n_named]) + more
+
+
+def nearest(name: str, known: Sequence[str], otherwise: str) -> str:
+    """Return the advice for a name that is not known: the nearest one, else `otherwise`."""
+    close = difflib.get_close_matches(name, known, n=1)
+    return f"did you mean {close[0]!r}?" if close else otherwise
 
 
 def message(error: BaseException) -> str:

@@ -1,8 +1,9 @@
 """The names of measures in the table of a study, known before any is measured."""
 
-import difflib
 import re
 from collections.abc import Iterable, Iterator
+
+from courtside.study.errors import nearest
 
 POINTS = ("neck", "centre", "mass")
 DISTANCES = (
@@ -38,9 +39,7 @@ def unknown(where: str, names: Iterable[str]) -> Iterator[str]:
     """Yield a fault for each name of no measure; rallies of any number are known."""
     for name in names:
         if name not in NAMES and not RALLY.fullmatch(name):
-            close = difflib.get_close_matches(name, NAMES, n=1)
-            advice = f"did you mean {close[0]!r}?" if close else "correct the name, or remove it"
             yield (
                 f"{where}: expected measures of study.csv, such as {NAMES[0]}, found {name!r}; "
-                f"{advice}"
+                f"{nearest(name, NAMES, 'correct the name, or remove it')}"
             )

@@ -1,6 +1,5 @@
 """Reading and checking all configuration at once: every fault, one line each."""
 
-import difflib
 import itertools
 import re
 from collections.abc import Iterable, Iterator
@@ -18,7 +17,7 @@ from courtside.study.configuration import (
 )
 from courtside.study.configuration.sessions import Model, Session, Study
 from courtside.study.configuration.yaml_files import Content
-from courtside.study.errors import InputError, StrPath
+from courtside.study.errors import InputError, StrPath, nearest
 from courtside.study.execution.artefacts import Artefact
 
 # Folders of results/ that are no session.
@@ -222,6 +221,5 @@ def _name_faults(where: str, name: str, file: Path) -> Iterator[str]:
         yield f"{where}: expected none of {RESERVED}, found {name!r}; rename it"
     elif not file.is_file():
         there = sorted(path.stem for path in file.parent.glob("*.yaml"))
-        close = difflib.get_close_matches(name, there, n=1)
-        advice = f"did you mean {close[0]!r}?" if close else "correct the name"
+        advice = nearest(name, there, "correct the name")
         yield f"{where}: expected a file {file}, found {there}; {advice}"

@@ -1,12 +1,12 @@
 """Names of takes, persons, sessions and measures in the steps of a study that nothing has."""
 
-import difflib
 from collections.abc import Iterator
 from typing import Any
 
 from courtside.study import measure_names
 from courtside.study.configuration import yaml_files
 from courtside.study.configuration.sessions import DEFAULT, Session, Study
+from courtside.study.errors import nearest
 
 WITH_TAKES = (
     *("export_overlay_video", "evaluate_networks", "evaluate_round_trip", "draw_stroke"),
@@ -62,8 +62,7 @@ def _unknown_sessions(where: str, study: Study) -> Iterator[str]:
     for name in study.parameters["compare_sessions"]["sessions"]:
         of_condition = name.rpartition("-")[0] in study.parameters["conditions"]
         if name not in there and not of_condition:
-            close = difflib.get_close_matches(name, there, n=1)
-            advice = f"did you mean {close[0]!r}?" if close else "correct the name, or remove it"
+            advice = nearest(name, there, "correct the name, or remove it")
             yield f"{where}: expected sessions with a file in {folder}, found {name!r}; {advice}"
 
 

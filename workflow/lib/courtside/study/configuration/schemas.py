@@ -1,7 +1,6 @@
 """Check YAML files against JSON schemas, with one line for each fault."""
 
 import copy
-import difflib
 import functools
 import sys
 from collections.abc import Iterator
@@ -13,7 +12,7 @@ import yaml
 
 from courtside.study.configuration import yaml_files
 from courtside.study.configuration.yaml_files import Content
-from courtside.study.errors import InputError, StrPath
+from courtside.study.errors import InputError, StrPath, nearest
 
 SCHEMAS = Path(__file__).parents[4] / "schemas"
 # JSON Schema lets 3.0 pass for an integer, and a comparison lets nan pass for any number.
@@ -167,11 +166,10 @@ def _key_lines(error: Any, where: str) -> Iterator[str]:
         return
     for key in error.instance:
         if key not in known:
-            close = difflib.get_close_matches(key, known, n=1)
-            advice = f"did you mean {close[0]!r}?" if close else "remove it"
             if key in REPLACED:
                 yield f"{where}: expected no key {key!r} any more, found it; {REPLACED[key]}"
                 continue
+            advice = nearest(key, known, "remove it")
             yield f"{where}: expected keys of {known}, found {key!r}; {advice}"
 
 
