@@ -109,20 +109,24 @@ def _peaks(time_s: NDArray, point: measures.Point) -> Iterator[Row]:
     their ends. Errors of neighbouring frames are taken as equal.
     """
     n = max(3, round(PEAK_S / float(np.median(np.diff(time_s)))) if len(time_s) > 1 else 3)
-    for name, vectors, order, unit in (
-        ("speed_max", point.velocity, 1, "m/s"),
-        ("acceleration_max", point.acceleration, 2, "m/s2"),
-    ):
-        value, sigma = measures.size(vectors, point.covariance[order])
-        _, camera = measures.size(vectors, point.camera_covariance[order])
-        inside = pd.Series(np.isfinite(value)).rolling(3, center=True).sum() == 3
-        frames = pd.DataFrame({"value": value, "sigma": sigma, "camera": camera})
-        means = frames.where(inside).rolling(n).mean()
-        at, _ = _largest(means["value"].to_numpy())
-        largest, spread, of_cameras = means.iloc[at]
-        if name == "acceleration_max":
-            spread = of_cameras = float("nan")
-        yield name, largest, spread, of_cameras or float("nan"), unit, int(inside.sum())
+    unknown = float("nan")
+    speed, sigma = measures.size(point.velocity, point.covariance[1])
+    _, camera = measures.size(point.velocity, point.camera_covariance[1])
+    means, n_frames = _running_means({"value": speed, "sigma": sigma, "camera": camera}, n)
+    value, spread, of_cameras = means.iloc[_largest(means["value"].to_numpy())[0]]
+    yield "speed_max", value, spread, of_cameras or unknown, "m/s", n_frames
+    means, n_frames = _running_means({"value": np.linalg.norm(point.acceleration, axis=1)}, n)
+    yield "acceleration_max", means["value"].max(), unknown, unknown, "m/s2", n_frames
+
+
+def _running_means(columns: dict[str, NDArray], n: int) -> tuple[pd.DataFrame, int]:
+    """Return means over n frames of columns (T,), and how many frames they are of.
+
+    Known frames count, whose `value` is known, with a known one before and after.
+    """
+    table = pd.DataFrame(columns)
+    inside = table["value"].notna().rolling(3, center=True).sum() == 3
+    return table.where(inside).rolling(n).mean(), int(inside.sum())
 
 
 def _largest(values: NDArray) -> tuple[int, int]:
