@@ -13,6 +13,7 @@ from courtside.geometry.camera import Camera
 
 WITHIN_90 = 1.645  # standard deviations to either side hold 90 % of normal errors
 PLACES = 4096  # at once, for the memory that their derivatives need
+MEDIAN_TO_SIGMA = 1.4826  # of the absolute values of normal errors
 MEDIAN_2D = 1.177  # median length of a normal vector in two dimensions, sigma 1 per axis
 
 

@@ -19,6 +19,7 @@ from courtside.calibration.boards.corners import Corners
 from courtside.calibration.bundle import problem, selection
 from courtside.calibration.bundle.problem import IMAGE, POSE, Network
 from courtside.calibration.people import world_frame
+from courtside.calibration.point_covariance import MEDIAN_TO_SIGMA
 from courtside.geometry import camera as cameras
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
@@ -226,7 +227,7 @@ def _adjusted(state: _State, fixed: _Problem) -> tuple[_State, float]:
 
 def _spread(off: NDArray) -> float:
     """Return the sigma of residuals along an axis by their median."""
-    return max(LEAST_SIGMA_PX, 1.4826 * float(np.nanmedian(np.abs(off))))
+    return max(LEAST_SIGMA_PX, MEDIAN_TO_SIGMA * float(np.nanmedian(np.abs(off))))
 
 
 def _weight(off: NDArray, sigma_px: float) -> NDArray:

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from courtside.calibration.bundle import problem, solver
 from courtside.calibration.bundle.problem import Network
+from courtside.calibration.point_covariance import MEDIAN_TO_SIGMA
 from courtside.geometry.camera import Camera
 from courtside.geometry.similarity import Sim3
 
@@ -97,7 +98,7 @@ def centres(network: Network) -> NDArray:
 def residual_spread(network: Network) -> float:
     """Return the robust standard deviation of all residuals per axis, px; at least `LEAST_PX`."""
     residual = problem.residuals(network)
-    return max(1.4826 * float(np.nanmedian(np.abs(residual))), LEAST_PX)
+    return max(MEDIAN_TO_SIGMA * float(np.nanmedian(np.abs(residual))), LEAST_PX)
 
 
 def weigh(network: Network, *, sigma_px: float, loss_scale: float) -> Network:

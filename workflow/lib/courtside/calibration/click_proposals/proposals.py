@@ -12,6 +12,7 @@ from courtside.calibration.click_proposals.view import NO_PLACE, Ray, View
 from courtside.calibration.court import line_edges
 from courtside.calibration.court.court import Court
 from courtside.calibration.court.line_edges import Edge
+from courtside.calibration.point_covariance import MEDIAN_TO_SIGMA
 from courtside.geometry.camera import Camera, project
 
 # ASSUME: all of these are tuned by hand on the virtual sessions.
@@ -29,7 +30,6 @@ MOST_MISFIT = 0.35
 HEIGHT_M = 0.03  # of one above the floor: lines on the floor determine heights badly
 OFF_SIGMA = 4.0  # an edge farther from where the camera expects it is another one
 PAINT_PX = 0.1  # error not in the fit of a profile: codec, neighbouring paint
-MEDIAN_TO_SIGMA = 1.4826  # of the absolute values of normal errors
 NO_LINES = "the court file has no painted lines"
 MISFIT = (
     "painted lines are {:.1f} px from where an adjusted camera expects them: another lens or court?"

@@ -18,12 +18,12 @@ from courtside.calibration.court import joint_adjustment, line_edges
 from courtside.calibration.court.court import ClickedPoints, Court
 from courtside.calibration.people import prior
 from courtside.calibration.people.views import Limits, Seen, placed
+from courtside.calibration.point_covariance import MEDIAN_TO_SIGMA
 from courtside.geometry.camera import Camera, distort, undistort
 
 # Limits in units of the last: cameras that are a little wrong must not lose the views that say so.
 WIDENED = (4.0, 2.0, 1.0, 1.0)
 LOSS = 2.0  # scale of the Cauchy loss, in standard deviations of a joint, times these
-MEDIAN_TO_SIGMA = 1.4826  # of the absolute values of normal errors
 SCATTERS = (0.3, 3.0)  # ASSUME: clicks scatter so much less or more than stated
 LEAST_SHARE = 1e-3  # of the person's height: no network places a joint better
 MAX_ITERATIONS, TOLERANCE = 10, 1e-4  # of a round: limits change the cost far more

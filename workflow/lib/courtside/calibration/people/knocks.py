@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 
 from courtside.calibration.file_check import residuals
 from courtside.calibration.people import adjustment, held_out, prior
-from courtside.calibration.people.adjustment import LOSS, MEDIAN_TO_SIGMA
+from courtside.calibration.people.adjustment import LOSS
 from courtside.calibration.people.views import Limits, Seen, check, joined
+from courtside.calibration.point_covariance import MEDIAN_TO_SIGMA
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance
 from courtside.geometry import camera as camera_models

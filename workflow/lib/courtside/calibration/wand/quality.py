@@ -9,6 +9,7 @@ from courtside.calibration import point_covariance
 from courtside.calibration.bundle.problem import IMAGE, LENS, POSE
 from courtside.calibration.court import place_checks
 from courtside.calibration.people import world_frame
+from courtside.calibration.point_covariance import MEDIAN_TO_SIGMA
 from courtside.calibration.wand import timing, world
 from courtside.calibration.wand.adjustment import WRONG_SIGMAS
 from courtside.calibration.wand.calibration import Found
@@ -83,7 +84,7 @@ def _length_mm(found: Found, wand: Wand) -> dict[str, float | int]:
     apart = np.linalg.norm(found.xyz[:, -1] - found.xyz[:, 0], axis=1)
     off = 1000 * (apart[np.isfinite(apart)] - wand.length_m)
     middle = float(np.median(off)) if len(off) else np.nan
-    spread = 1.4826 * float(np.median(np.abs(off - middle))) if len(off) else np.nan
+    spread = MEDIAN_TO_SIGMA * float(np.median(np.abs(off - middle))) if len(off) else np.nan
     return {"median": middle, "spread": spread, "n": len(off)}
 
 

@@ -5,12 +5,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.calibration.point_covariance import MEDIAN_TO_SIGMA
 from courtside.calibration.wand.points import Seen
 from courtside.geometry.camera import Camera, project
 
 FAST = 0.5  # share of the markers that is used, the fastest
 FEWEST = 20  # markers with a speed
-MEDIAN_SIGMA = 1.4826 * 1.2533  # sigma of a median, over median deviation / root of the number
+# Sigma of a median, over the median deviation / root of the number.
+MEDIAN_SIGMA = MEDIAN_TO_SIGMA * 1.2533
 
 
 def delays(cameras: Sequence[Camera], seen: Seen, xyz: NDArray) -> tuple[NDArray, NDArray]:
