@@ -32,7 +32,8 @@ OFF_SIGMA = 4.0  # an edge farther from where the camera expects it is another o
 PAINT_PX = 0.1  # error not in the fit of a profile: codec, neighbouring paint
 NO_LINES = "the court file has no painted lines"
 MISFIT = (
-    "painted lines are {:.1f} px from where an adjusted camera expects them: another lens or court?"
+    "expected painted lines at most {:.1f} px from where an adjusted camera expects them, found "
+    "{:.1f} px; click its points, or correct its lens or the court's file"
 )
 TOO_FEW = "too few painted lines are seen where they are expected"
 _Found = tuple[NDArray, NDArray, float, str]
@@ -114,8 +115,8 @@ def register(view: View, search_px: float) -> Registered:
         rest = offset - refine_pose.shifts(view.camera, moved, middle[good], normal)
         misfit_px = float(np.median(np.abs(rest)))
         view = replace(view, camera=moved)
-    if misfit_px > MOST_MISFIT * reach:
-        return Registered(view, reason=MISFIT.format(misfit_px))
+    if misfit_px > (most_px := MOST_MISFIT * reach):
+        return Registered(view, reason=MISFIT.format(most_px, misfit_px))
     return Registered(view, max(CAMERA_PX, MEDIAN_TO_SIGMA * misfit_px))
 
 
