@@ -15,8 +15,7 @@ def main(pictures, court_yaml, proposals_csv, found_json, *, names, **step):
     for name, path in log.progress(given, len(names), "court lines: cameras"):
         judged, one = verdict.examine(images.read(path), court, name, **step)
         proposed[name], said[name] = one, verdict.report(judged, one)
-        words = judged.reason or f"{said[name]['n_proposed']} of {len(court.points)} points"
-        log.logger.info("%s: court %s: %s", name, judged.outcome, words)
+        log.logger.info("%s: %s", name, verdict.in_words(judged, one))
     click_proposals.write(proposals_csv, proposed, court.points)
     write_json(found_json, said)
 

@@ -51,6 +51,9 @@ def test_the_court_s_points_are_proposed_for_either_end(court):
     assert table["outcome"] == "found" and table["either_end"] is True
     assert abs(table["f_px"] - 900) < 5 * table["f_sigma_px"] < 30
     assert table["n_proposed"] == given.sum()
+    assert verdict.in_words(said, found) == f"court found: {given.sum()} of {len(given)} points"
+    none = replace(found, xy=found.xy * np.nan, reason=("a misfit",) * len(given))
+    assert verdict.in_words(said, none) == "court found: no point is proposed: a misfit"
 
 
 @pytest.mark.parametrize("what", ["noise", "another court", "one line"])
@@ -66,6 +69,7 @@ def test_other_pictures_are_refused(court, what):
     assert said.outcome != verdict.FOUND and said.reason
     found = verdict.proposed(said, image, court, search_px=6.0)
     assert np.isnan(found.xy).all() and said.reason in found.reason[0]
+    assert verdict.in_words(said, found) == f"court {said.outcome}: {said.reason}"
     assert (said.outcome == verdict.AMBIGUOUS) or "lines: any" in said.reason
     assert "f_px" not in verdict.report(said, found)
 

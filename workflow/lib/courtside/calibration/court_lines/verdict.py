@@ -182,6 +182,16 @@ def proposed(
     return replace(found, reason=tuple(reason or EITHER for reason in found.reason))
 
 
+def in_words(verdict: Verdict, found: Proposals) -> str:
+    """Return the outcome, and how many points are proposed or why none is."""
+    proposed_points = np.isfinite(found.xy[:, 0])
+    why = verdict.reason
+    if not why and not proposed_points.any() and len(set(found.reason)) == 1:
+        why = f"no point is proposed: {found.reason[0]}"
+    counted = f"{proposed_points.sum()} of {len(proposed_points)} points"
+    return f"court {verdict.outcome}: {why or counted}"
+
+
 def report(verdict: Verdict, found: Proposals) -> dict:
     """Return a verdict for JSON: the camera and its uncertainty from floor lines."""
     said: dict = {
