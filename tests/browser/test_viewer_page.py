@@ -101,6 +101,21 @@ def test_a_minute_of_three_layers_is_small_and_opens_within_two_seconds(made, op
     assert [layer["shown"] for layer in state["layers"]] == [True, False, False]
 
 
+def test_it_opens_at_the_first_frame_that_shows_a_person(open_page, tmp_path):
+    points = long_take()
+    points.xyz[:, :90] = np.nan
+    layer = viewer_layers.of_points("raw", points, walker.SKELETON, shown=True)
+    path = tmp_path / "viewer.html"
+    pages.write(path, viewer.build("A take", [layer], scene.ring(4), court.read(COURT)))
+    page = open_page(path)
+    page.evaluate("courtside.viewer.ready")
+    assert page.evaluate("courtside.viewer.state()")["frame"] == 90
+    assert len(page.evaluate("courtside.viewer.drawn()")) == len(points.joints)
+    page.keyboard.press("Home")
+    page.wait_for_timeout(60)
+    assert page.evaluate("courtside.viewer.drawn()") == []
+
+
 def test_positions_and_covariances_are_the_inputs(opened):
     page, points = opened
     ask = "([person, joint, frame]) => courtside.viewer.NAME('raw', person, joint, frame)"

@@ -21,7 +21,7 @@ class Viewer {
     const wrists = layers.flatMap((layer) => layer.joints).filter((joint) => joint.endsWith("_wrist"));
     const shown = layers.filter((layer) => layer.shown).length;
     this.view = {
-      layers, time_s: main.time_s[0], cameras: true, names: true, picked: null, magnified: 1, trail_s: 1,
+      layers, time_s: main.firstShown_s, cameras: true, names: true, picked: null, magnified: 1, trail_s: 1,
       trails: new Set(wrists), colour: shown > 1 ? "layer" : "side", against: main, end: {},
       layerColour: (layer) => scene.colours.layers[layer.index % scene.colours.layers.length],
       jointColour: (layer, ...where) => this.jointColour(layer, ...where),

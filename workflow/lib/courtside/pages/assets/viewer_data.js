@@ -66,6 +66,16 @@ class Layer {
     return Math.abs(times[at] - time_s) <= Math.max(step, 0.02) ? at : -1;
   }
 
+  /** Time of the first frame that shows a joint; of the first frame if none does. */
+  get firstShown_s() {
+    const { length, known } = this;
+    let first = length;
+    for (let row = 0; row < known.length; row += length) {
+      for (let frame = 0; frame < first; frame++) if (known[row + frame]) first = frame;
+    }
+    return this.time_s[first < length ? first : 0];
+  }
+
   at(person, joint, frame) { return (person * this.joints.length + joint) * this.length + frame; }
 
   /** Metres, or null where the joint is missing. */
