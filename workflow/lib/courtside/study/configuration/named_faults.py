@@ -25,20 +25,17 @@ def find(config_file: str, study: Study) -> Iterator[str]:
         default = study.folder / DEFAULT
         return yaml_files.file_of(key, study.parameters, config_file, default) == config_file
 
-    for key, name in filter(lambda named: is_own(named[0]), _named(study.parameters)):
+    for key, name in _named(study.parameters):
         session_name, _, take = name.partition("/")
         session = study.sessions.get(session_name)
-        if session and take not in _takes(session):
+        if session and take not in _takes(session) and is_own(key):
             yield (
                 f"{config_file}: {key}: expected one of the takes of session {session_name}, "
                 f"{_takes(session)}, found {name}; correct the name, or remove it"
             )
-    if is_own("compare_sessions"):
-        where = f"{config_file}: compare_sessions"
-        yield from _unknown_sessions(f"{where}.sessions", study)
-        measures = study.parameters["compare_sessions"]["measures"]
-        yield from measure_names.unknown(f"{where}.measures", measures or [])
-        yield from _compared(where, study)
+    faults = list(_faults_of_comparison(f"{config_file}: compare_sessions", study))
+    if faults and is_own("compare_sessions"):
+        yield from faults
 
 
 def _named(parameters: dict[str, Any]) -> Iterator[tuple[str, str]]:
@@ -53,6 +50,13 @@ def _named(parameters: dict[str, Any]) -> Iterator[tuple[str, str]]:
 def _takes(session: Session) -> list[str]:
     """Return the takes of a session's file, those without consent among them."""
     return sorted([*session.takes, *session.withheld])
+
+
+def _faults_of_comparison(where: str, study: Study) -> Iterator[str]:
+    step = study.parameters["compare_sessions"]
+    yield from _unknown_sessions(f"{where}.sessions", study)
+    yield from measure_names.unknown(f"{where}.measures", step["measures"] or [])
+    yield from _compared(where, study)
 
 
 def _unknown_sessions(where: str, study: Study) -> Iterator[str]:
