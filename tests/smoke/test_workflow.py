@@ -1,16 +1,8 @@
 """What reruns after a change, what a kill leaves behind, and what a bad configuration says."""
 
-import hashlib
-import os
-import shutil
-import signal
-import subprocess
-import sys
-import time
 
-import pytest
 
-from smoke.snakemake_runs import FOLDER, TINY, copy_repository, edited, planned, run
+from smoke.snakemake_runs import edited, planned, run
 
 # The real take: all cameras, and two without filter. Two virtual takes: five ways to fuse, and one
 # of them with two cameras for table 1.
@@ -134,53 +126,3 @@ def test_a_missing_video_is_named_before_any_job(kept):
     assert done.returncode != 0
     assert "cameras.cam03.static: expected a file" in output
     assert "data/gym/cam03.mp4" in output
-
-
-@pytest.fixture
-def copy(tiny_study, tmp_path):
-    """Return a copy of the repository with the results of the tiny study, to be changed."""
-    copy_repository(tmp_path, FOLDER)
-    return tmp_path
-
-
-def checksums(root):
-    """Return the checksum of every result but logs and timings."""
-    folder = root / FOLDER / "results"
-    return {
-        str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
-        for path in sorted(folder.rglob("*"))
-        if path.is_file() and not {"logs", "benchmarks", "run"} & set(path.parts)
-    }
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("after_s", [4.0, 7.0, 11.0])
-def test_killed_and_restarted_it_ends_with_the_same_files(copy, after_s):
-    untouched = checksums(copy)
-    results = copy / FOLDER / "results"
-    for folder in results.iterdir():
-        if folder.name != "external":
-            shutil.rmtree(folder)
-    command = [
-        sys.executable,
-        "-m",
-        "snakemake",
-        "--directory",
-        str(FOLDER),
-        "--configfile",
-        str(TINY),
-    ]
-    process = subprocess.Popen(
-        command,
-        cwd=copy,
-        start_new_session=True,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )
-    time.sleep(after_s)
-    os.killpg(process.pid, signal.SIGKILL)
-    process.wait()
-    run("--unlock", root=copy)
-    run(root=copy)
-    assert checksums(copy) == untouched
-    assert planned(root=copy) == {}
