@@ -1,7 +1,5 @@
 """What reruns after a change, what a kill leaves behind, and what a bad configuration says."""
 
-
-
 from smoke.snakemake_runs import edited, planned, run
 
 # The real take: all cameras, and two without filter. Two virtual takes: five ways to fuse, and one
