@@ -13,14 +13,14 @@ from courtside.exports.trees import gltf
 from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy, forward
 from courtside.study.errors import InputError
 
+PARENTS = [NO_PARENT, 0, 1, 1, 0]
+NAMES = ("root", "chest", "left_arm", "right_arm", "leg")
 TIPS = {"leg": np.array([0, -0.4, 0.1]), "right_arm": np.array([0, -0.3, 0.0])}
 
 
 def made(n_frames=30):
     rng = np.random.default_rng(5)
     offsets = rng.normal(0, 0.3, (5, 3))
-    parents = np.array([NO_PARENT, 0, 1, 1, 0])
-    names = ("root", "chest", "left_arm", "right_arm", "leg")
     translation = np.repeat(offsets[None], n_frames, axis=0)
     translation[:, 0] = rng.normal(0, 2, (n_frames, 3))
     steps = Rotation.from_rotvec(rng.normal(0, 0.5, (n_frames * 5, 3))).as_matrix()
@@ -28,7 +28,9 @@ def made(n_frames=30):
     for frame in range(1, n_frames):
         turns[frame] = turns[frame - 1] @ turns[frame]
     time_s = 7.5 + np.arange(n_frames) / 60
-    return PosedHierarchy(Hierarchy(names, parents, offsets, TIPS), time_s, translation, turns)
+    return PosedHierarchy(
+        Hierarchy(NAMES, np.array(PARENTS), offsets, TIPS), time_s, translation, turns
+    )
 
 
 def values(read, index):
@@ -36,7 +38,7 @@ def values(read, index):
     accessor = read.accessors[index]
     view = read.bufferViews[accessor.bufferView]
     kind = {pygltflib.FLOAT: "<f4", pygltflib.UNSIGNED_SHORT: "<u2"}[accessor.componentType]
-    width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[accessor.type]
+    width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4, "MAT4": 16}[accessor.type]
     raw = read.binary_blob()[view.byteOffset : view.byteOffset + view.byteLength]
     found = np.frombuffer(raw, kind).reshape(accessor.count, width)
     assert found.min(axis=0).tolist() == accessor.min
@@ -110,34 +112,52 @@ def test_times_start_at_zero_and_only_the_root_is_moved(written):
 
 
 def test_sticks_reach_from_joint_to_joint_and_to_tips(written):
-    found, xyz = world(written, 11), forward(made())[0][11]
-    sticks = [at for at, node in enumerate(written.nodes) if node.mesh is not None]
-    assert len(sticks) == 4 + len(TIPS)
-    (part,) = written.meshes[0].primitives
-    corners = values(written, part.attributes.POSITION)
-    top = [*corners[corners[:, 1].argmax()], 1]
-    assert "left_arm stick" not in found  # nothing hangs on it, and it has no tip
-    np.testing.assert_allclose((found["right_arm stick"] @ top)[:3], tip("right_arm"), atol=3e-6)
-    np.testing.assert_allclose((found["leg stick"] @ top)[:3], tip("leg"), atol=3e-6)
-    ends = [(matrix(written, 11, at) @ top)[:3] for at in sticks[:4]]
-    np.testing.assert_allclose(ends, xyz[1:], atol=3e-6)
-    normals = values(written, part.attributes.NORMAL)
-    assert (np.sum(normals * (corners - [0, 0.4, 0]), axis=1) > 0).all()  # outwards
-    assert values(written, part.indices).max() == len(corners) - 1
+    """By the specification a skinned vertex is at joint times inverse bind matrix (3.7.3.3)."""
+    (skin,), (mesh,) = written.skins, written.meshes
+    keys = vars(mesh.primitives[0].attributes)
+    corners, normals, owners, weights = (
+        values(written, keys[key]) for key in ("POSITION", "NORMAL", "JOINTS_0", "WEIGHTS_0")
+    )
+    assert weights.tolist() == [[1, 0, 0, 0]] * len(weights)
+    unbound = values(written, skin.inverseBindMatrices).reshape(-1, 4, 4).swapaxes(1, 2)
+    names, posed = [written.nodes[node].name for node in skin.joints], world(written, 11)
+    at = owners[:, 0].astype(int)
+    moves = np.array([posed[name] @ own for name, own in zip(names, unbound, strict=True)])[at]
+    moved = np.einsum("nij,nj->ni", moves[:, :3, :3], corners) + moves[:, :3, 3]
+    sticks = moved.reshape(4 + len(TIPS), -1, 3)
+    xyz = forward(made())[0][11]
+    starts = [*xyz[PARENTS[1:]], *(xyz[NAMES.index(name)] for name in TIPS)]
+    ends = [*xyz[1:], *(tip(name) for name in TIPS)]
+    for stick, start, end in zip(sticks, starts, ends, strict=True):
+        along = (stick - start) @ (end - start) / np.sum((end - start) ** 2)
+        np.testing.assert_allclose(stick[along.argmin()], start, atol=3e-6)
+        np.testing.assert_allclose(stick[along.argmax()], end, atol=3e-6)
+    outwards = corners.reshape(len(sticks), -1, 3)
+    outwards = outwards - outwards.mean(axis=1, keepdims=True)
+    assert (np.sum(normals * outwards.reshape(-1, 3), axis=1) > 0).all()
+
+
+def test_one_skin_binds_every_joint_at_rest_below_a_node_of_the_clip_s_name(written):
+    """Programs make an armature of a skin alone; Blender binds the root only below `skeleton`."""
+    (skin,) = written.skins
+    above = written.nodes[skin.skeleton]
+    assert (above.name, [written.nodes[node].name for node in above.children]) == (
+        "p1 walk",
+        ["root"],
+    )
+    assert [written.nodes[node].name for node in skin.joints] == list(NAMES)
+    unbound = values(written, skin.inverseBindMatrices).reshape(-1, 4, 4).swapaxes(1, 2)
+    still = replace(made(1), parent_from_joint=np.tile(np.eye(3), (1, 5, 1, 1)))
+    still.translation[:, 0] = still.hierarchy.offsets[0]
+    rest = np.tile(np.eye(4), (5, 1, 1))
+    rest[:, :3, 3] = forward(still)[0][0]
+    np.testing.assert_allclose(unbound @ rest, np.tile(np.eye(4), (5, 1, 1)), atol=1e-6)
 
 
 def tip(name, frame=11):
     xyz, turns = forward(made())
-    at = made().hierarchy.joints.index(name)
+    at = NAMES.index(name)
     return xyz[frame, at] + turns[frame, at] @ TIPS[name]
-
-
-def matrix(read, frame, node):
-    """Return the matrix of a node by its index: sticks of one joint share a name."""
-    name, read.nodes[node].name = read.nodes[node].name, "wanted"
-    found = world(read, frame)["wanted"]
-    read.nodes[node].name = name
-    return found
 
 
 def test_gaps_are_refused(tmp_path):

@@ -1,6 +1,6 @@
-"""GLB (glTF 2.0, binary): a tree of joints in motion, with sticks to be seen, for 3D programs.
+"""GLB (glTF 2.0, binary): a tree of joints in motion, with a skin of sticks, for 3D programs.
 
-As the glTF 2.0 specification of the Khronos Group has nodes, meshes, animations and binary files.
+As the glTF 2.0 specification of the Khronos Group has nodes, skins, animations and binary files.
 """
 
 import json
@@ -17,7 +17,7 @@ from courtside.study.execution.files import atomic
 
 MAGIC, VERSION = b"glTF", 2
 FLOAT, SHORT = 5126, 5123  # component types: float32, uint16
-VERTICES, INDICES = 34962, 34963  # targets of buffer views
+VERTICES = 34962  # target of buffer views of a mesh
 THICK = 0.12  # width of a stick, of its length
 THIN_M, WIDE_M = 0.01, 0.05  # least and largest width
 CONSTANT_M = 1e-6  # a joint that moves less in its parent needs no keys
@@ -27,7 +27,7 @@ CORNERS = [(0, 0, 0), (0.5, WAIST, 0), (0, WAIST, 0.5), (-0.5, WAIST, 0), (0, WA
 CORNERS += [(0, 1, 0)]
 FACES = [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 1), (5, 2, 1), (5, 3, 2), (5, 4, 3), (5, 1, 4)]
 LOOK = {"baseColorFactor": [0.85, 0.4, 0.1, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.8}
-TYPES = {1: "SCALAR", 3: "VEC3", 4: "VEC4"}
+TYPES = {1: "SCALAR", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 
 
 def write(path: StrPath, posed: PosedHierarchy, name: str) -> None:
@@ -42,14 +42,14 @@ def write(path: StrPath, posed: PosedHierarchy, name: str) -> None:
     made: dict[str, Any] = {
         "asset": {"version": "2.0", "generator": "courtside"},
         "scene": 0,
-        "scenes": [{"nodes": np.flatnonzero(posed.hierarchy.parents == NO_PARENT).tolist()}],
+        "scenes": [{"nodes": [len(posed.hierarchy.joints)]}],
         "nodes": [],
         "materials": [{"pbrMetallicRoughness": dict(LOOK)}],
         "accessors": [],
         "bufferViews": [],
     }
     binary = bytearray()
-    _nodes(made, posed)
+    _nodes(made, posed, name)
     _sticks(made, binary, posed)
     if len(posed.time_s):
         _animation(made, binary, posed, name)
@@ -75,10 +75,11 @@ def _check(path: StrPath, posed: PosedHierarchy) -> None:
         )
 
 
-def _nodes(made: dict[str, Any], posed: PosedHierarchy) -> None:
-    """Add a node for each joint, in their order, as it is in the first frame."""
-    for joint, name in enumerate(posed.hierarchy.joints):
-        made["nodes"].append({"name": name, "translation": posed.hierarchy.offsets[joint].tolist()})
+def _nodes(made: dict[str, Any], posed: PosedHierarchy, name: str) -> None:
+    """Add a node for each joint, in their order, as in the first frame, and one above them."""
+    for joint, called in enumerate(posed.hierarchy.joints):
+        place = posed.hierarchy.offsets[joint].tolist()
+        made["nodes"].append({"name": called, "translation": place})
     if len(posed.time_s):
         turns = _quaternions(posed.parent_from_joint[:1])[0]
         for node, place, turn in zip(made["nodes"], posed.translation[0], turns, strict=True):
@@ -86,11 +87,17 @@ def _nodes(made: dict[str, Any], posed: PosedHierarchy) -> None:
     for joint, parent in enumerate(posed.hierarchy.parents.tolist()):
         if parent != NO_PARENT:
             made["nodes"][parent].setdefault("children", []).append(joint)
+    roots = np.flatnonzero(posed.hierarchy.parents == NO_PARENT).tolist()
+    made["nodes"].append({"name": name, "children": roots})
 
 
 def _sticks(made: dict[str, Any], binary: bytearray, posed: PosedHierarchy) -> None:
-    """Add a stick for each bone and each tip: nodes of one mesh, in the axes where it begins."""
-    shape, nodes = posed.hierarchy, made["nodes"]
+    """Add a stick for each bone and each tip: one mesh, skinned to the joints where they begin."""
+    shape = posed.hierarchy
+    rest = shape.offsets.copy()
+    for joint, parent in enumerate(shape.parents):
+        if parent != NO_PARENT:
+            rest[joint] += rest[parent]
     bones = [
         (int(parent), shape.offsets[joint])
         for joint, parent in enumerate(shape.parents)
@@ -101,21 +108,41 @@ def _sticks(made: dict[str, Any], binary: bytearray, posed: PosedHierarchy) -> N
     if not bones:
         return
     # Every face has corners of its own, so that its normal is flat.
-    corners = np.array(CORNERS, dtype=float)[np.array(FACES)]
+    corners = np.concatenate([rest[joint] + _stick(bone) for joint, bone in bones])
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals = np.repeat(normals / np.linalg.norm(normals, axis=1, keepdims=True), 3, axis=0)
-    places = _accessor(made, binary, corners.reshape(-1, 3), VERTICES)
-    attributes = {"POSITION": places, "NORMAL": _accessor(made, binary, normals, VERTICES)}
-    indices = _accessor(made, binary, np.arange(len(normals), dtype="<u2"), INDICES)
-    part = {"attributes": attributes, "indices": indices, "material": 0}
-    made["meshes"] = [{"name": "stick", "primitives": [part]}]
-    for joint, bone in bones:
-        length = float(np.linalg.norm(bone))
-        wide = float(np.clip(THICK * length, THIN_M, WIDE_M))
-        turn = scipy.spatial.transform.Rotation.align_vectors([bone / length], [[0.0, 1.0, 0.0]])
-        nodes[joint].setdefault("children", []).append(len(nodes))
-        stick = {"rotation": turn[0].as_quat().tolist(), "scale": [wide, length, wide]}
-        nodes.append({"name": f"{shape.joints[joint]} stick", "mesh": 0, **stick})
+    owners = np.zeros((len(normals), 4), dtype="<u2")
+    owners[:, 0] = np.repeat([joint for joint, _ in bones], len(normals) // len(bones))
+    values = {
+        "POSITION": corners.reshape(-1, 3),
+        "NORMAL": normals,
+        "JOINTS_0": owners,
+        "WEIGHTS_0": np.tile([1.0, 0, 0, 0], (len(normals), 1)),
+    }
+    attributes = {key: _accessor(made, binary, each, VERTICES) for key, each in values.items()}
+    made["meshes"] = [{"name": "sticks", "primitives": [{"attributes": attributes, "material": 0}]}]
+    _skin(made, binary, rest)
+    made["scenes"][0]["nodes"].append(len(made["nodes"]))
+    made["nodes"].append({"name": "sticks", "mesh": 0, "skin": 0})
+
+
+def _skin(made: dict[str, Any], binary: bytearray, rest: NDArray) -> None:
+    """Add the skin of all joints, (J, 3) at rest: programs make an armature of a skin alone."""
+    inverse = np.tile(np.eye(4), (len(rest), 1, 1))
+    inverse[:, 3, :3] = -rest  # columns first, as glTF has matrices
+    skin = {"inverseBindMatrices": _accessor(made, binary, inverse)}
+    # Blender takes the root's pose at rest from the skin only if `skeleton` is above the root.
+    above = made["scenes"][0]["nodes"][0]
+    made["skins"] = [skin | {"joints": list(range(len(rest))), "skeleton": above}]
+
+
+def _stick(bone: NDArray) -> NDArray:
+    """Return the corners of the faces of a stick from the origin along a bone, (8, 3, 3)."""
+    length = float(np.linalg.norm(bone))
+    wide = float(np.clip(THICK * length, THIN_M, WIDE_M))
+    turn = scipy.spatial.transform.Rotation.align_vectors([bone / length], [[0.0, 1.0, 0.0]])[0]
+    corners = turn.apply(np.array(CORNERS) * [wide, length, wide])
+    return corners[np.array(FACES)]
 
 
 def _animation(made: dict[str, Any], binary: bytearray, posed: PosedHierarchy, name: str) -> None:
