@@ -20,7 +20,7 @@ def main(
     known = {"mass_kg": mass_kg_of[person], "sex": sex_of[person]}
     opensim_model.write(osim_path, motion, column, **known)
     posed = posing.turned(motion.posed(column)[0])
-    bvh.write(bvh_path, posing.even(posed))
+    bvh.write(bvh_path, posing.even(posed), only_root_moves=True)
     gltf.write(glb_path, posed, person)
 
 

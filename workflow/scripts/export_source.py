@@ -12,7 +12,7 @@ def main(device_npz, skeleton_yaml, bvh_path, glb_path, *, person):
     kept = motion.performed
     upright = device_motion.upright(motion)
     posed = posing.turned(posing.of_joints(motion.time_s[kept], upright[kept], joints))
-    bvh.write(bvh_path, posing.even(posed))
+    bvh.write(bvh_path, posing.even(posed), only_root_moves=True)
     gltf.write(glb_path, posed, person)
 
 

@@ -90,6 +90,48 @@ def test_bvhio_places_it_the_same(tmp_path):
         np.testing.assert_allclose(0.01 * np.array(places), xyz[frame], rtol=1e-6, atol=1e-6)
 
 
+def added(path, frame):
+    """Return {joint: place} in a frame by the rule of programs that add positions to offsets."""
+    lines, found, stack = path.read_text().splitlines(), {}, []
+    numbers = iter(map(float, lines[lines.index("MOTION") + 3 + frame].split()))
+    for words in map(str.split, lines[: lines.index("MOTION")]):
+        if words[0] in ("ROOT", "JOINT", "End"):
+            stack.append([stack[-1][1] if stack else np.eye(4), None, " ".join(words[1:])])
+        elif words[0] == "OFFSET":
+            own = np.eye(4)
+            own[:3, 3] = [0.01 * float(word) for word in words[1:]]
+            stack[-1][1] = stack[-1][0] @ own
+        elif words[0] == "CHANNELS":
+            read = {word: next(numbers) for word in words[2:]}
+            own = np.eye(4)
+            own[:3, 3] = [0.01 * read.get(f"{axis}position", 0) for axis in "XYZ"]
+            angles = [read[word] for word in words[-3:]]
+            order = "".join(word[0] for word in words[-3:])
+            own[:3, :3] = Rotation.from_euler(order, angles, degrees=True).as_matrix()
+            stack[-1][1] = stack[-1][1] @ own
+        elif words[0] == "}":
+            _, place, name = stack.pop()
+            found[name] = place[:3, 3]
+    return found
+
+
+def test_programs_that_add_positions_to_offsets_place_constant_bones_the_same(tmp_path):
+    """three.js' BVHLoader adds them; Blender and bvhio do not: both must find one body."""
+    posed = made()
+    posed.hierarchy.offsets[0] = 0
+    bvh.write(tmp_path / "a.bvh", posed, only_root_moves=True)
+    root, xyz = bvhio.readAsHierarchy(str(tmp_path / "a.bvh")), forward(posed)[0]
+    for frame in (0, 11, 39):
+        root.loadPose(frame)
+        places = {joint.Name: joint.PositionWorld for joint, _, _ in root.layout()}
+        sums = added(tmp_path / "a.bvh", frame)
+        for joint, name in enumerate(NAMES):
+            np.testing.assert_allclose(0.01 * np.array(places[name]), xyz[frame, joint], atol=1e-6)
+            np.testing.assert_allclose(sums[name], xyz[frame, joint], atol=1e-6)
+    bvh.write(tmp_path / "b.bvh", posed)
+    assert np.abs(added(tmp_path / "b.bvh", 0)["leg"] - xyz[0, 4]).max() > 0.1
+
+
 def test_joints_are_written_chain_by_chain(tmp_path):
     posed = made(n_frames=3)
     mixed = [0, 1, 4, 2, 3]  # the leg before the arms: parents first, but no longer depth first

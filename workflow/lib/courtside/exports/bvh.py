@@ -17,11 +17,13 @@ NO_TIP = np.zeros(3)
 EVEN_S = 1e-4  # deviation of a frame from an even grid: BVH has one frame time. ASSUME: harmless
 
 
-def write(path: StrPath, posed: PosedHierarchy) -> None:
+def write(path: StrPath, posed: PosedHierarchy, *, only_root_moves: bool = False) -> None:
     """Write a posed hierarchy with one root, its frames even in time.
 
     Every joint gets six channels, as in mocopi's files: its position in its parent, cm, then its
-    rotation R = Rz Rx Ry, with six decimals each. Joints stand depth first, each chain to its end.
+    rotation R = Rz Rx Ry, with six decimals each. With `only_root_moves` other joints have the
+    rotation alone and stay at their offsets: some programs (three.js) add a position to the offset,
+    others (Blender, bvhio) put it in its place. Joints stand depth first, each chain to its end.
     BVH has no start time: the first frame's time is lost. A joint at the end of a chain without a
     tip gets one of length zero, because many readers require one. If the middle angle is 90 degrees
     the other two are not unique; the last is then zero. Raises `InputError` if a value is missing,
@@ -33,12 +35,14 @@ def write(path: StrPath, posed: PosedHierarchy) -> None:
         raise ValueError(f"expected one root, found parents {shape.parents}")
     frame_time_s = _check(path, posed)
     sequence = _depth_first(shape.parents)
-    head = ["HIERARCHY", *_lines(shape, sequence), "MOTION"]
+    placed = sequence[:1] if only_root_moves else sequence
+    head = ["HIERARCHY", *_lines(shape, sequence, placed), "MOTION"]
     head += [f"Frames: {len(posed.time_s)}", f"Frame Time: {frame_time_s:.9g}"]
     values = np.concatenate(
         [posed.translation / UNIT_M, _angles_deg(posed.parent_from_joint)], axis=-1
     )
-    rows = values[:, sequence].reshape(len(values), 6 * len(sequence))
+    columns = [values[:, joint, 0 if joint in placed else 3 :] for joint in sequence]
+    rows = np.concatenate(columns, axis=1)
     with atomic(path) as temporary, temporary.open("w", encoding="utf-8", newline="\n") as stream:
         stream.write("\n".join(head) + "\n")
         np.savetxt(stream, rows, fmt="%.6f")
@@ -87,11 +91,9 @@ def _depth_first(parents: NDArray) -> list[int]:
     return sequence
 
 
-def _lines(shape: Hierarchy, sequence: Sequence[int]) -> Iterator[str]:
+def _lines(shape: Hierarchy, sequence: Sequence[int], placed: Sequence[int]) -> Iterator[str]:
     """Yield the lines of the hierarchy."""
-    channels = " ".join(
-        [f"{axis}position" for axis in "XYZ"] + [f"{axis}rotation" for axis in ORDER]
-    )
+    turns = " ".join(f"{axis}rotation" for axis in ORDER)
     inner = set(shape.parents.tolist())
     open_joints: list[int] = []
     for joint in sequence:
@@ -102,7 +104,8 @@ def _lines(shape: Hierarchy, sequence: Sequence[int]) -> Iterator[str]:
         yield f"{indent}{'JOINT' if open_joints else 'ROOT'} {shape.joints[joint]}"
         yield f"{indent}{{"
         yield f"{indent}{INDENT}OFFSET {_three(shape.offsets[joint] / UNIT_M)}"
-        yield f"{indent}{INDENT}CHANNELS 6 {channels}"
+        channels = f"6 Xposition Yposition Zposition {turns}" if joint in placed else f"3 {turns}"
+        yield f"{indent}{INDENT}CHANNELS {channels}"
         open_joints.append(joint)
         if joint not in inner or shape.joints[joint] in shape.ends:
             tip = shape.ends.get(shape.joints[joint], NO_TIP) / UNIT_M
