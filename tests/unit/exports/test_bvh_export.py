@@ -62,6 +62,19 @@ def test_the_middle_angle_may_be_90_degrees(tmp_path):
     assert turned_deg(found.parent_from_joint, posed.parent_from_joint) < 2e-6
 
 
+def test_channels_do_not_jump_where_a_joint_turns_on(tmp_path):
+    """Programs interpolate channels: a jump of 360 degrees is a whole turn between two frames."""
+    deg = 7.03 * np.arange(110)  # never where the middle angle leaves the others open
+    about = [np.outer(deg, np.eye(3)[axis]) for axis in range(3)]  # Z, X, Y
+    about.append(np.stack([20 + deg / 7, deg, -deg / 9], axis=1))  # a knee that swings sideways
+    angles = np.stack([*about, np.zeros((110, 3))], axis=1)
+    turns = Rotation.from_euler("ZXY", angles.reshape(-1, 3), degrees=True).as_matrix()
+    bvh.write(tmp_path / "a.bvh", replace(made(110), parent_from_joint=turns.reshape(110, 5, 3, 3)))
+    lines = (tmp_path / "a.bvh").read_text().splitlines()
+    found = np.loadtxt(lines[lines.index("MOTION") + 3 :]).reshape(110, 5, 6)[:, :, 3:]
+    np.testing.assert_allclose(found, angles, atol=2e-6)
+
+
 def test_the_text_is_what_the_format_wants(tmp_path):
     shape = Hierarchy(
         ("root", "tail"), np.array([NO_PARENT, 0]), np.array([[0, 0.9, 0], [0, 0, -0.2]])

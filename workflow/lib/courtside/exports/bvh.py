@@ -122,10 +122,21 @@ def _three(values: NDArray) -> str:
 
 
 def _angles_deg(rotations: NDArray) -> NDArray:
-    """Return the angles of (T, J, 3, 3) rotations in their channels' order, (T, J, 3) degrees."""
+    """Return the angles of (T, J, 3, 3) rotations in their channels' order, (T, J, 3) degrees.
+
+    Programs interpolate each channel alone. Of all angles of the same rotation those nearest to the
+    frame before are taken, also beyond 180 degrees.
+    """
     if not len(rotations):
         return np.empty(rotations.shape[:3])
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Gimbal lock", category=UserWarning)
         turns = scipy.spatial.transform.Rotation.from_matrix(rotations.reshape(-1, 3, 3))
-        return turns.as_euler(ORDER, degrees=True).reshape(rotations.shape[:3])
+        angles = turns.as_euler(ORDER, degrees=True).reshape(rotations.shape[:3])
+    same = np.stack([angles, angles * [1, -1, 1] + 180])  # Tait-Bryan angles have these two
+    for frame in range(1, len(angles)):
+        before = angles[frame - 1]
+        near = before + (same[:, frame] - before + 180) % 360 - 180
+        first = np.abs(near - before).sum(axis=-1).argmin(axis=0)
+        angles[frame] = near[first, np.arange(len(first))]
+    return angles
