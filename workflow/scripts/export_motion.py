@@ -1,5 +1,6 @@
 """Export the skeletal motion of one person: .osim, .mot, BVH, GLB; of its joints TRC, C3D, CSV."""
 
+from courtside.body_model import segments
 from courtside.exports import bvh, c3d, opensim, opensim_model, tidy, trc
 from courtside.exports.trees import gltf, posing
 from courtside.records.keypoints import keypoints, skeletal_motion
@@ -19,7 +20,8 @@ def main(
     opensim.write_motion(mot_path, motion, column)
     known = {"mass_kg": mass_kg_of[person], "sex": sex_of[person]}
     opensim_model.write(osim_path, motion, column, **known)
-    posed = posing.turned(motion.posed(column)[0])
+    t_pose = segments.model().rest
+    posed = posing.turned(posing.rested(motion.posed(column)[0], t_pose))
     bvh.write(bvh_path, posing.even(posed), only_root_moves=True)
     gltf.write(glb_path, posed, person)
 

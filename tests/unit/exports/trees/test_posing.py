@@ -4,10 +4,18 @@ import bvhio
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from courtside.body_model import segments
 from courtside.exports import bvh
 from courtside.exports.trees import posing
-from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy, forward
+from courtside.records.devices.hierarchy import (
+    NO_PARENT,
+    Hierarchy,
+    PosedHierarchy,
+    at_rest,
+    forward,
+)
 from courtside.records.keypoints.skeleton import Skeleton
+from fixtures.people import moving_model
 
 SHAPE = Hierarchy(("hip", "knee"), np.array([NO_PARENT, 0]), np.array([[0, 0, 0], [0, -0.4, 0.0]]))
 
@@ -26,6 +34,61 @@ def test_z_up_becomes_y_up():
     xyz = forward(posing.turned(posed))[0]
     x, y, z = np.moveaxis(forward(posed)[0], -1, 0)
     np.testing.assert_allclose(xyz, np.stack([x, z, -y], axis=-1), atol=1e-12)
+
+
+def of_model(turns):
+    """Return rotations (T, S, 3, 3) of the skeletal model's segments as a motion, with tips."""
+    names, offsets = segments.model().names, moving_model.body().offsets
+    ends = {f"{side}_foot": np.array([0.15, -0.07, 0]) for side in segments.SIDES}
+    shape = Hierarchy(names, segments.model().parents, offsets, ends)
+    places = np.repeat(offsets[None], len(turns), axis=0)
+    places[:, 0] = np.arange(len(turns))[:, None] * [1.0, 2, 0] + [0, 0, 0.95]
+    return PosedHierarchy(shape, np.arange(len(turns)) / 60, places, turns)
+
+
+def test_a_skeletal_model_is_at_rest_in_a_t_pose_that_faces_z():
+    """Wu et al. 2005: axes forwards, up, right. BVH, glTF and mocopi: left, up, forwards."""
+    turns = np.repeat(segments.model().rest[None], 2, axis=0)
+    turns[:, 0] = [[1, 0, 0], [0, 0, -1], [0, 1, 0]]  # stands, faces the world's x
+    found = posing.turned(posing.rested(of_model(turns), segments.model().rest))
+    quarter = Rotation.from_euler("Y", 90, degrees=True).as_matrix()  # from z to x
+    expected = np.tile(np.eye(3), (len(segments.model().names), 1, 1))
+    expected[0] = quarter
+    np.testing.assert_allclose(found.parent_from_joint[1], expected, atol=1e-12)
+    at = found.hierarchy.joints.index
+    places, (xyz, _) = at_rest(found.hierarchy), forward(found)
+    np.testing.assert_allclose(xyz[0], [0, 0.95, 0] + (places - places[0]) @ quarter.T, atol=1e-9)
+    arm = places[at("left_hand")] - places[at("left_humerus")]
+    np.testing.assert_allclose(arm, [np.linalg.norm(arm), 0, 0], atol=1e-9)
+    np.testing.assert_allclose(
+        places[at("right_hand")], places[at("left_hand")] * [-1, 1, 1], atol=1e-9
+    )
+    np.testing.assert_allclose(found.hierarchy.ends["left_foot"], [0, -0.07, 0.15], atol=1e-12)
+    lowest = places[at("left_foot"), 1] - 0.07
+    assert abs(lowest) < 1e-9 and (places[:, 1] > 0).all()
+
+
+def test_another_pose_at_rest_moves_nothing():
+    n_joints = len(segments.model().names)
+    turns = Rotation.random(12 * n_joints, rng=4).as_matrix().reshape(12, n_joints, 3, 3)
+    posed = of_model(turns)
+    found = posing.rested(posed, segments.model().rest)
+    (xyz, turned), (wanted, before) = forward(found), forward(posed)
+    np.testing.assert_allclose(xyz, wanted, atol=1e-12)
+    for name, tip in posed.hierarchy.ends.items():
+        at = posed.hierarchy.joints.index(name)
+        moved = turned[:, at] @ found.hierarchy.ends[name]
+        np.testing.assert_allclose(moved, before[:, at] @ tip, atol=1e-12)
+
+
+def test_joints_are_at_rest_upright_on_the_floor():
+    time_s, xyz = moving()
+    found = posing.turned(posing.of_joints(time_s, xyz, BODY)).hierarchy
+    own = [at for at, name in enumerate(found.joints) if name in BODY.joints]
+    x, y, z = np.moveaxis(xyz[0], -1, 0)  # all frames have all joints: the first is the pose
+    wanted = np.stack([x, z, -y], axis=-1)[[BODY.joints.index(found.joints[at]) for at in own]]
+    wanted -= [*wanted[0, :1], wanted[:, 1].min(), wanted[0, 2]]
+    np.testing.assert_allclose(at_rest(found)[own], wanted, atol=1e-6)
 
 
 def test_missing_frames_are_interpolated_and_others_kept():

@@ -2,6 +2,7 @@
 
 import warnings
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 import scipy
@@ -22,11 +23,12 @@ def write(path: StrPath, posed: PosedHierarchy, *, only_root_moves: bool = False
 
     Every joint gets six channels, as in mocopi's files: its position in its parent, cm, then its
     rotation R = Rz Rx Ry, with six decimals each. With `only_root_moves` other joints have the
-    rotation alone and stay at their offsets: some programs (three.js) add a position to the offset,
-    others (Blender, bvhio) put it in its place. Joints stand depth first, each chain to its end.
-    BVH has no start time: the first frame's time is lost. A joint at the end of a chain without a
-    tip gets one of length zero, because many readers require one. If the middle angle is 90 degrees
-    the other two are not unique; the last is then zero. Raises `InputError` if a value is missing,
+    rotation alone and stay at their offsets, and the root's offset is zero: some programs
+    (three.js) add a position to the offset, others (Blender, bvhio) put it in its place. Joints
+    stand depth first, each chain to its end. BVH has no start time: the first frame's time is lost.
+    A joint at the end of a chain without a tip gets one of length zero, because many readers
+    require one. If the middle angle is 90 degrees the other two are not unique; the last is then
+    zero. Raises `InputError` if a value is missing,
     two joints have one name, a name is blank or has blanks in it, or the frames are not even in
     time, `ValueError` if there is not one root at the front.
     """
@@ -35,7 +37,10 @@ def write(path: StrPath, posed: PosedHierarchy, *, only_root_moves: bool = False
         raise ValueError(f"expected one root, found parents {shape.parents}")
     frame_time_s = _check(path, posed)
     sequence = _depth_first(shape.parents)
-    placed = sequence[:1] if only_root_moves else sequence
+    placed = sequence
+    if only_root_moves:
+        placed, root = sequence[:1], shape.parents == NO_PARENT
+        shape = replace(shape, offsets=np.where(root[:, None], 0.0, shape.offsets))
     head = ["HIERARCHY", *_lines(shape, sequence, placed), "MOTION"]
     head += [f"Frames: {len(posed.time_s)}", f"Frame Time: {frame_time_s:.9g}"]
     values = np.concatenate(

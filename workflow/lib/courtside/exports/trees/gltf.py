@@ -11,7 +11,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
-from courtside.records.devices.hierarchy import NO_PARENT, PosedHierarchy
+from courtside.records.devices.hierarchy import NO_PARENT, PosedHierarchy, at_rest
 from courtside.study.errors import InputError, StrPath
 from courtside.study.execution.files import atomic
 
@@ -94,10 +94,7 @@ def _nodes(made: dict[str, Any], posed: PosedHierarchy, name: str) -> None:
 def _sticks(made: dict[str, Any], binary: bytearray, posed: PosedHierarchy) -> None:
     """Add a stick for each bone and each tip: one mesh, skinned to the joints where they begin."""
     shape = posed.hierarchy
-    rest = shape.offsets.copy()
-    for joint, parent in enumerate(shape.parents):
-        if parent != NO_PARENT:
-            rest[joint] += rest[parent]
+    rest = at_rest(shape)
     bones = [
         (int(parent), shape.offsets[joint])
         for joint, parent in enumerate(shape.parents)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from courtside.geometry import interpolation, rotations
 from courtside.geometry.similarity import kabsch
-from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy
+from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy, at_rest
 from courtside.records.keypoints.skeleton import Skeleton
 
 ROOTS = ("waist", "root", "pelvis", "mid_hip", "left_hip")  # the first that a skeleton has
@@ -16,15 +16,47 @@ EVEN_S = 5e-5  # ASSUME: harmless; half of what `bvh.write` takes
 TINY_M = 1e-9  # a bone shorter than this has no direction
 FEEBLE = 1e-6  # weight of a parent's turn: decides only what directions of bones leave open
 Y_UP_FROM_Z = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
+# Axes to the left, backwards and up (columns) in those of a segment: forwards, up, to the right
+Z_UP_IN_SEGMENT = np.array([[0.0, -1, 0], [0, 0, 1], [-1, 0, 0]])
 
 
 def turned(posed: PosedHierarchy) -> PosedHierarchy:
-    """Return the same motion in other axes of the world: z up becomes y up."""
-    root = posed.hierarchy.parents == NO_PARENT
-    translation, turns = posed.translation.copy(), posed.parent_from_joint.copy()
-    translation[:, root] = translation[:, root] @ Y_UP_FROM_Z.T
-    turns[:, root] = Y_UP_FROM_Z @ turns[:, root]
-    return replace(posed, translation=translation, parent_from_joint=turns)
+    """Return the same motion with y up in place of z, in the world and in the pose at rest.
+
+    At rest it stands on the floor at the origin: programs that retarget take the height of the root
+    at rest as the size of the body.
+    """
+    shape, turn = posed.hierarchy, Y_UP_FROM_Z
+    ends = {name: turn @ tip for name, tip in shape.ends.items()}
+    shape = replace(shape, offsets=shape.offsets @ turn.T, ends=ends)
+    places = at_rest(shape)
+    tips = [places[shape.joints.index(name)] + tip for name, tip in ends.items()]
+    floor_m = np.vstack([places, *tips])[:, 1].min()
+    shape.offsets[shape.parents == NO_PARENT] -= [0, floor_m, 0]
+    return PosedHierarchy(
+        shape, posed.time_s, posed.translation @ turn.T, turn @ posed.parent_from_joint @ turn.T
+    )
+
+
+def rested(posed: PosedHierarchy, rest: NDArray) -> PosedHierarchy:
+    """Return the motion of a skeletal model, world z up, with another pose at rest.
+
+    `rest` (J, 3, 3) are the rotations of the segments in their parents in this pose, in which all
+    now have the same axes: to the left, backwards and up. Programs that retarget expect a T-pose.
+    """
+    shape = posed.hierarchy
+    in_body = rest.copy()
+    for joint, parent in enumerate(shape.parents):
+        if parent != NO_PARENT:
+            in_body[joint] = in_body[parent] @ rest[joint]
+    axes = np.swapaxes(in_body, 1, 2) @ Z_UP_IN_SEGMENT
+    root = (shape.parents == NO_PARENT)[:, None, None]
+    back = np.swapaxes(np.where(root, np.eye(3), axes[shape.parents]), 1, 2)
+    ends = {name: axes[shape.joints.index(name)].T @ tip for name, tip in shape.ends.items()}
+    offsets = np.einsum("jab,jb->ja", back, shape.offsets)
+    places = np.einsum("jab,tjb->tja", back, posed.translation)
+    turns = back @ posed.parent_from_joint @ axes
+    return PosedHierarchy(replace(shape, offsets=offsets, ends=ends), posed.time_s, places, turns)
 
 
 def even(posed: PosedHierarchy) -> PosedHierarchy:

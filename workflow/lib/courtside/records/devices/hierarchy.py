@@ -52,6 +52,15 @@ class PosedHierarchy:
             )
 
 
+def at_rest(shape: Hierarchy) -> NDArray:
+    """Return the places (J, 3) of the joints where none is turned, metres."""
+    places = shape.offsets.copy()
+    for joint, parent in enumerate(shape.parents):
+        if parent != NO_PARENT:
+            places[joint] += places[parent]
+    return places
+
+
 def forward(posed: PosedHierarchy) -> tuple[NDArray, NDArray]:
     """Compute every joint's pose in the device's world: forward kinematics.
 
