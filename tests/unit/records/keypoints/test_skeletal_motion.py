@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -51,3 +53,22 @@ def test_the_posed_hierarchy_holds_the_fitted_frames_and_the_tips():
     np.testing.assert_allclose(xyz[:, 1], [[0, -0.1, 1], [1, -0.1, 1]])
     tip = xyz[1, 1] + turned[1, 1] @ posed.hierarchy.ends["femur"]
     np.testing.assert_allclose(tip, [1.4, -0.1, 1])
+
+
+def test_a_tip_is_the_farthest_point_and_between_both_sides_of_a_head():
+    """A hand ends at its finger, not at the thumb, and a head does not end at one ear."""
+    points = [[0.0, -0.1, 0.01], [0.02, -0.07, 0.03], [0.05, 0.2, 0.03], [0.05, 0.2, -0.03]]
+    motion = replace(
+        made(),
+        segments=np.array(["thorax", "hand", "head"]),
+        parents=np.array([-1, 0, 0]),
+        offsets=np.zeros((1, 3, 3)),
+        joints=np.array(["index", "thumb", "left_ear", "right_ear"]),
+        segment_of=np.array([1, 1, 2, 2]),
+        places=np.array([points]),
+        parent_from_segment=np.tile(np.eye(3), (1, 3, 3, 1, 1)),
+    )
+    ends = motion.posed(0)[0].hierarchy.ends
+    assert sorted(ends) == ["hand", "head"]
+    np.testing.assert_allclose(ends["hand"], points[0])
+    np.testing.assert_allclose(ends["head"], [0.05, 0.2, 0])

@@ -11,6 +11,7 @@ from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHiera
 from courtside.study.errors import StrPath
 
 FORM = "courtside skeletal motion 1"
+SAME_M = 1e-6  # points that are so much nearer to a segment's origin are as far as the farthest
 
 
 @dataclass(frozen=True)
@@ -43,17 +44,18 @@ class SkeletalMotion:
     def posed(self, person: int) -> tuple[PosedHierarchy, NDArray]:
         """Return one person's motion over the fitted frames, and which of (T,) these are.
 
-        Points of the segments that nothing hangs on become tips (`Hierarchy.ends`): the last of
-        each segment.
+        Points of the segments that nothing hangs on become tips (`Hierarchy.ends`): the farthest of
+        each segment, or the middle of points equally far (on the head those of both sides).
         """
         fitted = np.isfinite(self.root[person]).all(axis=1)
         inner = set(self.parents.tolist())
         names = self.segments.tolist()
-        ends = {
-            names[at]: self.places[person, joint]
-            for joint, at in enumerate(self.segment_of.tolist())
-            if at not in inner and self.places[person, joint].any()
-        }
+        ends = {}
+        for at in sorted(set(self.segment_of.tolist()) - inner):
+            own = self.places[person, self.segment_of == at]
+            away = np.linalg.norm(own, axis=1)
+            if away.any():
+                ends[names[at]] = own[away > away.max() - SAME_M].mean(axis=0)
         shape = Hierarchy(tuple(names), self.parents, self.offsets[person], ends)
         translation = np.repeat(self.offsets[person][None], int(fitted.sum()), axis=0)
         translation[:, self.parents == NO_PARENT] = self.root[person, fitted][:, None]
