@@ -23,7 +23,7 @@ def main(
     t_pose = segments.model().rest
     posed = posing.turned(posing.rested(motion.posed(column)[0], t_pose))
     bvh.write(bvh_path, posing.even(posed), only_root_moves=True)
-    gltf.write(glb_path, posed, person)
+    gltf.write(glb_path, posed, person, zero_s=motion.time_s[0])
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ def main(pose3d_npz, skeleton_yaml, trc_path, c3d_path, csv_path, bvh_path, glb_
     joints = skeleton.read(skeleton_yaml)
     posed = posing.turned(posing.of_joints(points.time_s, points.xyz[column], joints))
     bvh.write(bvh_path, posing.even(posed), only_root_moves=True)
-    gltf.write(glb_path, posed, person)
+    gltf.write(glb_path, posed, person, zero_s=points.time_s[0])
 
 
 if __name__ == "__main__":

@@ -111,6 +111,15 @@ def test_times_start_at_zero_and_only_the_root_is_moved(written):
             assert (np.sum(keys[1:] * keys[:-1], axis=1) >= 0).all()
 
 
+def test_persons_of_one_take_share_its_time(tmp_path):
+    """One who enters later moves later when both files are opened together."""
+    gltf.write(tmp_path / "a.glb", made(), "late", zero_s=5.0)
+    (animation,) = (read := pygltflib.GLTF2().load(str(tmp_path / "a.glb"))).animations
+    times = values(read, animation.samplers[0].input)[:, 0]
+    np.testing.assert_allclose(times, 2.5 + np.arange(30) / 60, atol=1e-6)
+    assert animation.extras == {"start_s": 7.5}
+
+
 def test_sticks_reach_from_joint_to_joint_and_to_tips(written):
     """By the specification a skinned vertex is at joint times inverse bind matrix (3.7.3.3)."""
     (skin,), (mesh,) = written.skins, written.meshes

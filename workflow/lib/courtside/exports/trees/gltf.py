@@ -30,13 +30,14 @@ LOOK = {"baseColorFactor": [0.85, 0.4, 0.1, 1.0], "metallicFactor": 0.0, "roughn
 TYPES = {1: "SCALAR", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 
 
-def write(path: StrPath, posed: PosedHierarchy, name: str) -> None:
+def write(path: StrPath, posed: PosedHierarchy, name: str, zero_s: float | None = None) -> None:
     """Write a posed hierarchy, y up, as one animation called `name`.
 
     Each joint is a node: its offset, rotations as keys at the frames' times, translations as keys
-    where they change (the root's). Times start at zero; `extras` of the animation has the first
-    (`start_s`). Between keys viewers interpolate, across missing frames too. Raises `InputError`
-    if a value is missing, or times do not increase; without frames there is the pose at rest alone.
+    where they change (the root's). Times are those after `zero_s`, by default the first frame's;
+    `extras` of the animation has the first frame's own (`start_s`). Between keys viewers
+    interpolate, across missing frames too. Raises `InputError` if a value is missing, or times do
+    not increase; without frames there is the pose at rest alone.
     """
     _check(path, posed)
     made: dict[str, Any] = {
@@ -52,7 +53,7 @@ def write(path: StrPath, posed: PosedHierarchy, name: str) -> None:
     _nodes(made, posed, name)
     _sticks(made, binary, posed)
     if len(posed.time_s):
-        _animation(made, binary, posed, name)
+        _animation(made, binary, posed, name, posed.time_s[0] if zero_s is None else zero_s)
     made["buffers"] = [{"byteLength": len(binary)}] if binary else []
     made = {key: value for key, value in made.items() if value != []}  # glTF has no empty lists
     text = json.dumps(made, separators=(",", ":"), allow_nan=False).encode()
@@ -142,10 +143,11 @@ def _stick(bone: NDArray) -> NDArray:
     return corners[np.array(FACES)]
 
 
-def _animation(made: dict[str, Any], binary: bytearray, posed: PosedHierarchy, name: str) -> None:
+def _animation(
+    made: dict[str, Any], binary: bytearray, posed: PosedHierarchy, name: str, zero_s: float
+) -> None:
     """Add the keys of every joint."""
-    start_s = float(posed.time_s[0])
-    times = _accessor(made, binary, posed.time_s - start_s)
+    times = _accessor(made, binary, posed.time_s - zero_s)
     samplers: list[dict] = []
     channels: list[dict] = []
     turns = _quaternions(posed.parent_from_joint)
@@ -157,7 +159,7 @@ def _animation(made: dict[str, Any], binary: bytearray, posed: PosedHierarchy, n
             target = {"node": joint, "path": path}
             channels.append({"sampler": len(samplers), "target": target})
             samplers.append({"input": times, "output": _accessor(made, binary, values)})
-    about = {"name": name, "extras": {"start_s": start_s}}
+    about = {"name": name, "extras": {"start_s": float(posed.time_s[0])}}
     made["animations"] = [{**about, "samplers": samplers, "channels": channels}]
 
 
