@@ -43,6 +43,7 @@ PINS = {
         numpy==2.4.6 opencv-contrib-python==5.0.0.93 opt_einsum==3.4.0 pandas==3.1.1
         python-dateutil==4.0.0 scipy==1.17.1 toml==0.10.2 tqdm==4.70.1 tzdata==2026.6
     """,
+    "blender": "bpy==5.0.1 numpy==1.26.4",
     "caliscope": """
         caliscope==0.11.8 numpy==2.4.6 opencv-python-headless==5.0.0.93 pandas==3.1.1
         platformdirs==4.14.7 python-dateutil==4.0.0 rtoml==0.14.0 scipy==1.17.1 tzdata==2026.6
@@ -59,7 +60,7 @@ PINS = {
 }
 THREADS = "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"
 ONE_THREAD = dict.fromkeys(THREADS, "1")
-NEWEST_PYTHON = {"mediapipe": (3, 12)}  # its wheels end there
+NEWEST_PYTHON = {"blender": (3, 11), "mediapipe": (3, 12)}  # their wheels end there
 
 
 def interpreter(peer, folder=FOLDER):

@@ -18,6 +18,7 @@ import pandas as pd
 import pytest
 
 sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))  # last: both have a `scene`
+import blender
 import body_model
 import device_angles
 import find_persons
@@ -378,6 +379,23 @@ def test_cameras_whose_court_is_not_found_are_clicked():
     clicks = {"back": np.zeros((2, 2)), "side": np.ones((2, 2))}
     found = ways_to_calibrate.together({"back": np.full((2, 2), 5.0), "side": None}, clicks)
     assert (found["back"] == 5).all() and found["side"] is clicks["side"]
+
+
+def test_bones_in_blender_are_compared_at_the_frames_of_the_record():
+    time_s, xyz = 5 + np.arange(10) / 50, np.zeros((10, 2, 3))
+    xyz[:, :, 0] = np.arange(10)[:, None]
+    xyz[:2] = np.nan  # the person enters with the third frame
+    head = {"bones": np.array(["hip", "hip_to_knee", "knee"]), "time_s": np.arange(8) / 50}
+    moved = np.tile([0, 0.003, 0], (8, 3, 1))
+    moved[:, :, 0] = np.arange(2, 10)[:, None]
+    record = ["hip", "knee"], time_s, xyz
+    apart, frames = blender.distances_mm(*record, None, head | {"xyz": moved})
+    assert frames == 8 and apart.shape == (8, 2)
+    np.testing.assert_allclose(apart, 3)
+    of_take = head | {"xyz": moved, "time_s": np.arange(2, 10) / 50}
+    np.testing.assert_allclose(blender.distances_mm(*record, 5.0, of_take)[0], 3)
+    late = head | {"xyz": moved, "time_s": head["time_s"] + 0.01}
+    assert blender.distances_mm(*record, None, late)[0].shape == (0, 2)
 
 
 def test_joints_set_by_hand_are_read_as_keypoints_of_another_program(tmp_path):
