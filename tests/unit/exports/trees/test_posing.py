@@ -171,15 +171,36 @@ def test_what_hangs_on_one_joint_turns_it_together():
         )
 
 
-def test_a_missing_end_goes_on_with_its_parent_and_a_missing_root_leaves_the_frame_out():
+def test_a_missing_joint_is_bridged_and_a_missing_root_leaves_the_frame_out():
     time_s, xyz = moving()
-    full = posing.of_joints(time_s, xyz, BODY)
-    xyz[4, BODY.joints.index("ankle")] = np.nan
-    xyz[7, BODY.joints.index("left_hip")] = np.nan
+    column = BODY.joints.index
+    whole = xyz.copy()
+    xyz[4:6, column("ankle")] = np.nan
+    xyz[7, column("left_hip")] = np.nan
+    xyz[:2, column("hand")] = np.nan
     found = posing.of_joints(time_s, xyz, BODY)
     assert found.time_s.tolist() == np.delete(time_s, 7).tolist()
-    knee = full.hierarchy.joints.index("knee")
-    np.testing.assert_allclose(found.parent_from_joint[4, knee], np.eye(3), atol=1e-9)
+    made, node = forward(found)[0], found.hierarchy.joints.index
+    about = whole - whole[:, column("left_hip"), None]
+    ankle = (2 * about[3, column("ankle")] + about[6, column("ankle")]) / 3
+    for frame, name, place in (
+        (4, "ankle", ankle - about[4, column("knee")]),
+        (0, "hand", about[2, column("hand")] - about[0, column("chest")]),
+    ):
+        parent = {"ankle": "knee", "hand": "chest"}[name]
+        bone = made[frame, node(name)] - made[frame, node(parent)]
+        length = np.linalg.norm(whole[0, column(name)] - whole[0, column(parent)])
+        np.testing.assert_allclose(bone, length * place / np.linalg.norm(place), atol=3e-6)
+    knee = made[4:6, node("knee")]
+    np.testing.assert_allclose(knee, whole[4:6, column("knee")], atol=3e-6)  # is as measured
+
+
+def test_the_bone_of_a_joint_that_is_never_seen_goes_on_with_its_parent():
+    time_s, xyz = moving()
+    xyz[:, BODY.joints.index("ankle")] = np.nan
+    found = posing.of_joints(time_s, xyz, BODY)
+    knee = found.parent_from_joint[:, found.hierarchy.joints.index("knee")]
+    np.testing.assert_allclose(knee, np.tile(np.eye(3), (25, 1, 1)), atol=1e-9)
     assert np.isfinite(forward(found)[0]).all()
     nobody = posing.of_joints(time_s, np.full_like(xyz, np.nan), BODY)
     assert len(nobody.time_s) == 0 and not nobody.hierarchy.offsets.any()

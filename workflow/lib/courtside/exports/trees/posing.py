@@ -92,9 +92,9 @@ def of_joints(time_s: NDArray, xyz: NDArray, skeleton: Skeleton) -> PosedHierarc
     The tree follows the skeleton's bones from the hips; joints without a bone to them are left out.
     A bone has its median length and points to the measured joint; where several hang on a joint, it
     turns as they do together (Kabsch 1976), and each has a node of its own there (`hip_to_knee`).
-    Turns about a bone are not measured: they are its parent's. Where an end is missing, its bone
-    goes on with its parent. Frames without the root are left out. Its rest pose is that of the
-    frame with most joints.
+    Turns about a bone are not measured: they are its parent's. Missing joints are bridged linearly
+    about the root; the bone of one that is never known goes on with its parent. Frames without the
+    root are left out. Its rest pose is that of the frame with most joints.
     """
     nodes = _tree(skeleton)
     parents = np.array([node.parent for node in nodes])
@@ -103,11 +103,13 @@ def of_joints(time_s: NDArray, xyz: NDArray, skeleton: Skeleton) -> PosedHierarc
     known = np.isfinite(xyz[:, at[0]]).all(axis=1)
     time_s, xyz = time_s[known], xyz[known]
     above = np.maximum(parents, 0)
-    bones = xyz[:, target] - xyz[:, at[above]]
-    length = np.linalg.norm(bones, axis=2)
+    length = np.linalg.norm(xyz[:, target] - xyz[:, at[above]], axis=2)
     median = np.ma.median(np.ma.masked_invalid(length), axis=0).filled(0.0)
     median = np.where(at == target, median, 0.0)
-    pointing = np.nan_to_num(bones / np.maximum(length, TINY_M)[:, :, None])
+    about = _bridged(time_s, xyz - xyz[:, at[:1]])
+    bones = about[:, target] - about[:, at[above]]
+    length = np.linalg.norm(bones, axis=2, keepdims=True)
+    pointing = np.nan_to_num(bones / np.maximum(length, TINY_M))
     best = _at_rest(pointing, np.isfinite(xyz).all(axis=2).sum(axis=1))
     names = tuple(node.name for node in nodes)
     shape = Hierarchy(names, parents, median[:, None] * best)
@@ -121,6 +123,19 @@ def of_joints(time_s: NDArray, xyz: NDArray, skeleton: Skeleton) -> PosedHierarc
     places = np.repeat(shape.offsets[None], len(xyz), axis=0)
     places[:, 0] = xyz[:, at[0]]
     return PosedHierarchy(shape, time_s, places, local)
+
+
+def _bridged(time_s: NDArray, xyz: NDArray) -> NDArray:
+    """Return joints (T, J, 3) without gaps; before the first and after the last known the nearest.
+
+    A joint that is known in fewer than two frames stays as it is.
+    """
+    bridged = xyz.copy()
+    for joint in range(xyz.shape[1]):
+        known = np.isfinite(xyz[:, joint]).all(axis=1)
+        if known.sum() > 1:
+            bridged[:, joint] = interpolation.linear(time_s[known], xyz[known, joint], time_s)
+    return bridged
 
 
 def _at_rest(pointing: NDArray, n_joints: NDArray) -> NDArray:
