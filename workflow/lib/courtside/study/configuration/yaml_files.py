@@ -1,5 +1,6 @@
 """YAML files without YAML's surprises: no duplicate keys, names stay text."""
 
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -68,7 +69,15 @@ def file_of(key: str, content: Content, own: str, default: Path) -> str:
     Of a content that was merged from a `default` file and a user's `own`: the default one if it
     has the same value.
     """
-    return str(default) if default.is_file() and same(key, content, read(default)) else own
+    if default.is_file() and same(key, content, _of_default(default, default.stat().st_mtime_ns)):
+        return str(default)
+    return own
+
+
+@lru_cache(maxsize=1)
+def _of_default(path: Path, mtime_ns: int) -> Content:
+    """Read the default file once for all faults of a configuration."""
+    return read(path)
 
 
 def same(key: str, one: Any, other: Any) -> bool:
