@@ -229,6 +229,16 @@ def test_walks_and_devices_are_looked_at(hall):
     assert [line.split(":")[0] for line in faults] == [str(walk), str(webcam)]
 
 
+def test_files_of_suits_and_of_nuitrack_are_read_with_the_skeletons_of_the_study(hall):
+    devices = {name: hall.root / f"lob.{end}" for name, end in (("suit", "bvh"), ("n", "csv"))}
+    for path in devices.values():
+        path.write_text("another file", encoding="utf-8")
+    hall.content["takes"]["lob"]["devices"] = {n: {"file": str(p)} for n, p in devices.items()}
+    suit, nuitrack = hall.said()[0]
+    assert f"{devices['suit']}: line 1: expected HIERARCHY" in suit
+    assert f"{devices['n']}: expected columns timestamp, id and JOINT" in nuitrack
+
+
 def test_photos_of_a_walk_are_decoded(hall):
     folder = hall.root / "walk"
     folder.mkdir()

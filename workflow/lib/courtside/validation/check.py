@@ -80,7 +80,7 @@ class _Session:
         self._devices = [
             line
             for take in session.takes.values()
-            for line in devices.faults(take, remembered, study.skeleton_file)
+            for line in devices.faults(take, remembered, study.skeleton_yaml)
         ]
         for path in (*session.walks.values(), *_filmed_by_devices(session)):
             self._look(path)

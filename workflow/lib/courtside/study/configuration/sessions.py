@@ -426,7 +426,11 @@ class Study:
 
     def skeleton_file(self, model: str) -> Path:
         """Return the file of the skeleton of a network."""
-        return self.folder / paths.SKELETON_YAML.format(skeleton=self.models[model].skeleton)
+        return self.skeleton_yaml(self.models[model].skeleton)
+
+    def skeleton_yaml(self, name: str) -> Path:
+        """Return the file of a skeleton."""
+        return self.folder / paths.SKELETON_YAML.format(skeleton=name)
 
 
 def model(name: str, content: dict[str, Any], detectors: dict[str, Any]) -> Model:

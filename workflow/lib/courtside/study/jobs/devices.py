@@ -63,7 +63,7 @@ def bodies(job: Job, pattern: str = paths.BODY, corrected: bool = True) -> list[
 
 def skeleton_file(job: Job) -> Path:
     """Return the skeleton that a device comes with."""
-    return job.study.folder / paths.SKELETON_YAML.format(skeleton=job.device.skeleton)
+    return job.study.skeleton_yaml(str(job.device.skeleton))
 
 
 def exported(job: Job) -> str:
@@ -85,7 +85,7 @@ def _demand_export(job: Job) -> None:
 def source_skeleton(job: Job) -> Path:
     """Return the skeleton of a source."""
     name = sources(job)[job["source"]].skeleton
-    return job.study.folder / paths.SKELETON_YAML.format(skeleton=name)
+    return job.study.skeleton_yaml(name)
 
 
 def colour_frames(job: Job) -> str | list:
@@ -232,7 +232,7 @@ def events(job: Job) -> str:
 def plates(job: Job) -> list[Path]:
     """Return the skeletons that are drawn side by side, those of a take's own sources included."""
     names = dict.fromkeys((*PLATES, *skeletons(job).values()))
-    return [job.study.folder / paths.SKELETON_YAML.format(skeleton=name) for name in names]
+    return [job.study.skeleton_yaml(name) for name in names]
 
 
 def thesis_file(study: Study, what: str) -> str:

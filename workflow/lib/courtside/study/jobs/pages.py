@@ -48,7 +48,7 @@ def _fused_layers(job: Job) -> list[dict[str, Any]]:
 def skeleton_files(job: Job) -> list[Path]:
     """Return the skeletons of a viewer's layers, each once, in their order."""
     names = dict.fromkeys(layer["of"] for layer in layers(job))
-    return [job.study.folder / paths.SKELETON_YAML.format(skeleton=name) for name in names]
+    return [job.study.skeleton_yaml(name) for name in names]
 
 
 def people_target(job: Job) -> str:
