@@ -371,6 +371,22 @@ def test_good_sessions_have_no_fault(root, content):
             | {"takes": {"t": {"videos": {"a": "a.mp4"}, "clocks": {"a": {"offset_s": 1.0}}}}},
             ["takes.t.clocks.a: expected no offset or drift of the first camera"],
         ),
+        (
+            RECORDED
+            | {"subjects": {"p1": {}}, "synchronised": True}
+            | {"takes": {"t": {"videos": AB, "clocks": {"b": {"offset_s": 1.0}}}}},
+            ["takes.t.clocks: expected none of cameras that share a clock", "found b; remove"],
+        ),
+        (
+            RECORDED
+            | {"subjects": {"p1": {}}}
+            | {"takes": {"t": {"devices": {"d": {"file": "a.mp4"}, "e": {"file": "a.mp4"}}}}},
+            ["takes.t.devices: expected a recording of each device, found a.mp4 twice"],
+        ),
+        (
+            RECORDED | {"halfbody": {"centre": "a", "left": "b", "right": "a"}},
+            ["halfbody: expected three different cameras, found a, b, a; correct one"],
+        ),
         (PLAYERS | {"views": {"two": ["side", "up"]}}, ["views.two: expected one of", "'up'"]),
         (
             RECORDED | {"subjects": {"p1": {}}, "takes": {"t": FILMED}},

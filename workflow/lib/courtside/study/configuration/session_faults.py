@@ -6,7 +6,12 @@ from itertools import product
 from pathlib import Path
 
 from courtside.study.configuration import consent, sighting_faults, take_faults
-from courtside.study.configuration.session_files import has_places, is_there, of_configuration
+from courtside.study.configuration.session_files import (
+    FOR_ALL_TAKES,
+    has_places,
+    is_there,
+    of_configuration,
+)
 from courtside.study.configuration.sessions import FEWEST_ALONE, Session, Study
 from courtside.study.configuration.yaml_files import Content
 from courtside.study.execution.artefacts import Artefact
@@ -46,14 +51,13 @@ def find(
     yield from _people_faults(file, content)
     yield from consent.faults(file, content)
     yield from sighting_faults.find(file, content)
-    for key, views in content.get("views", {}).items():
-        yield from take_faults.unknown(f"{file}: views.{key}", views, cameras)
-    players = content.get("halfbody", {}).values()
-    yield from take_faults.unknown(f"{file}: halfbody", players, cameras)
+    yield from _view_faults(file, content)
     paths = dict(_paths(content))
     if static := of_configuration(content.get("static_points"), folder):
         paths["static_points"] = static
-    for name, take in content.get("takes", {}).items():
+    shared = {key: content[key] for key in FOR_ALL_TAKES if key in content}
+    for name, own in content.get("takes", {}).items():
+        take = shared | own
         yield from take_faults.find(f"{file}: takes.{name}", take, cameras, subjects, virtual)
         if not _refused(content, take):  # else its recordings may be gone
             paths |= dict(_take_paths(f"takes.{name}", take))
@@ -73,6 +77,19 @@ def _name_faults(file: Path, content: Content) -> Iterator[str]:
             )
     for name in sorted(set(content["cameras"]) & set(content.get("walks", {}))):
         yield f"{file}: walks.{name}: expected a name that no camera has, found {name!r}; rename it"
+
+
+def _view_faults(file: Path, content: Content) -> Iterator[str]:
+    """Yield the faults of sets of cameras."""
+    cameras, players = content["cameras"], content.get("halfbody", {}).values()
+    for key, views in content.get("views", {}).items():
+        yield from take_faults.unknown(f"{file}: views.{key}", views, cameras)
+    yield from take_faults.unknown(f"{file}: halfbody", players, cameras)
+    if len(set(players)) < len(players):
+        yield (
+            f"{file}: halfbody: expected three different cameras, found {', '.join(players)}; "
+            "correct one"
+        )
 
 
 def unmeasured(study: Study, session: Session) -> Iterator[str]:

@@ -136,16 +136,7 @@ def find(
     yield from unknown(f"{where}.videos", take.get("videos", {}), cameras)
     yield from unknown(f"{where}.subjects", there, subjects)
     yield from _device_faults(where, take, cameras, there)
-    made = take.get("virtual", {}).get("devices", {})
-    recorded = [*(cameras if virtual else cameras_of(take)), *take.get("devices", {}), *made]
-    yield from unknown(f"{where}.clocks", take.get("clocks", {}), recorded)
-    first = _reference(take)
-    if any(take.get("clocks", {}).get(first, {}).get(key, 0) for key in ("offset_s", "drift_ppm")):
-        yield (
-            f"{where}.clocks.{first}: expected no offset or drift of the first "
-            f"{'camera' if cameras_of(take) else 'device'}, whose clock is the reference, found "
-            "one; state the other clocks against it"
-        )
+    yield from _clock_faults(where, take, cameras, virtual)
     yield from _virtual_faults(where, take.get("virtual"), cameras, there)
     if take.get("steady") and not virtual:
         for name in (n for n in take.get("videos", {}) if "static" not in cameras.get(n, {})):
@@ -161,6 +152,27 @@ def find(
     start_s, stop_s = take.get("trim_s", (0, 1))
     if start_s >= stop_s:
         yield f"{where}.trim_s: expected a start before the stop, found [{start_s}, {stop_s}]"
+
+
+def _clock_faults(where: str, take: Content, cameras: Content, virtual: bool) -> Iterator[str]:
+    """Check the clocks that a take states."""
+    made = take.get("virtual", {}).get("devices", {})
+    recorded = [*(cameras if virtual else cameras_of(take)), *take.get("devices", {}), *made]
+    yield from unknown(f"{where}.clocks", take.get("clocks", {}), recorded)
+    timed = [name for name in take.get("clocks", {}) if name in cameras]
+    if take.get("synchronised") and timed:
+        yield (
+            f"{where}.clocks: expected none of cameras that share a clock, as `synchronised: true` "
+            f"of the take or the session says, found {', '.join(timed)}; remove these, or say "
+            "`synchronised: false` in the take"
+        )
+    first = _reference(take)
+    if any(take.get("clocks", {}).get(first, {}).get(key, 0) for key in ("offset_s", "drift_ppm")):
+        yield (
+            f"{where}.clocks.{first}: expected no offset or drift of the first "
+            f"{'camera' if cameras_of(take) else 'device'}, whose clock is the reference, found "
+            "one; state the other clocks against it"
+        )
 
 
 def _reference(take: Content) -> str | None:
@@ -204,6 +216,11 @@ def _device_faults(
         yield (
             f"{where}.devices: expected one subject for all, found {sorted(worn)}; make a take "
             "for each"
+        )
+    files = [device["file"] for device in devices.values() if "file" in device]
+    for path in sorted({path for path in files if files.count(path) > 1}):
+        yield (
+            f"{where}.devices: expected a recording of each device, found {path} twice; correct one"
         )
     for name, device in devices.items():
         named = [device["subject"]] if "subject" in device else []
