@@ -1,5 +1,7 @@
 """Times and pixels that do not lie in the videos: each is one line, before any job."""
 
+import pytest
+
 from fixtures.recordings import rooms_filmed
 
 
@@ -31,6 +33,27 @@ def test_a_time_outside_of_the_part_that_is_used_is_told(hall):
 def test_a_pixel_outside_of_the_picture_is_told(hall):
     said = seen(hall, at_px=[400, 90]).fault()
     assert "expected a pixel of left's pictures of 320 x 180 px, found (400, 90)" in said
+
+
+@pytest.mark.parametrize(
+    ("row", "said"),
+    [
+        ("serv,p1,left,0.5,160,90", "line 3: expected a take of serve, lob, found 'serv'"),
+        ("serve,p2,left,0.5,160,90", "line 3: expected a subject of p1, found 'p2'"),
+        ("lob,p1,lift,0.5,160,90", "line 3: expected a camera of left, right, back, found 'lift'"),
+        ("lob,p1,left,12,160,90", "line 3: expected time_s from 0.00 to 2.00 s"),
+        ("lob,p1,left,0.5,160,190", "line 3: expected a pixel of left's pictures of 320 x 180 px"),
+    ],
+)
+def test_a_row_that_names_nobody_is_told(hall, row, said):
+    path = hall.root / "people.csv"
+    hall.content["people"] = str(path)
+    assert hall.said() == ([], [])  # it may not exist yet
+    head = "take,subject,camera,time_s,x_px,y_px\nserve,p1,left,0.5,160,90\n"
+    path.write_text(head, encoding="utf-8")
+    assert hall.said() == ([], [])
+    path.write_text(f"{head}{row}\n", encoding="utf-8")
+    assert hall.fault().startswith(f"{path}: {said}")
 
 
 def test_a_part_in_frames_is_a_remark(hall):

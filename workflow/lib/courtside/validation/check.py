@@ -125,6 +125,7 @@ class _Session:
             for line in (*self._take_faults(name, take), *self._keypoints[name][0]):
                 yield f"{file}: takes.{name}: {line}"
         yield from self._points[0]
+        yield from stated_times.named(self._session, self._takes)
         shared = [*self._shared_files()]
         yield from (f"{file}: {line}" for line in shared or self._board_faults())
         yield from (f"{file}: {line}" for line in self._few_pictures())

@@ -1,8 +1,11 @@
 """Times and pixels that a session states of its videos, against the videos."""
 
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 
+from courtside.records.keypoints import sightings
 from courtside.study.configuration.sessions import Session, Take
+from courtside.study.errors import InputError
 from courtside.video.glance import Glance
 
 Looks = Mapping[str, Glance]  # by camera
@@ -18,6 +21,26 @@ def faults(session: Session, take: Take, looks: Looks) -> Iterator[str]:
             if look and entry.get("take", take.name) == take.name:
                 where = f"subjects.{name}.seen: expected"
                 yield from (f"{where} {line}" for line in _sighting(take, entry, look))
+
+
+def named(session: Session, looks: Mapping[str, Looks]) -> Iterator[str]:
+    """Yield what is wrong with the file in which persons are named; `looks` are by take.
+
+    A row of a take that the session does not have would name nobody.
+    """
+    path = session.people
+    if path is None or not Path(path).is_file():
+        return
+    try:
+        for name, take in session.takes.items():
+            sightings.of_other_takes(path, name, [*session.takes, *session.withheld])
+            for one in sightings.read(path, name, take.subjects, take.cameras):
+                entry = {"camera": one.camera, "time_s": one.time_s, "at_px": one.xy}
+                look = looks[name].get(one.camera)
+                lines = _sighting(take, entry, look) if look else ()
+                yield from (f"{one.where}: expected {line}" for line in lines)
+    except InputError as error:
+        yield from error.lines
 
 
 def remarks(take: Take, looks: Looks) -> Iterator[str]:
