@@ -40,12 +40,12 @@ class Hall:
         self.calibrate(rooms_filmed.SIZE)
 
     def calibrate(self, size, apart=1, **sizes):
-        matrix = np.array([[300.0, 0, 160], [0, 300, 90], [0, 0, 1]])
-        poses = [np.hstack([np.eye(3), [[apart * at], [0], [0]]]) for at in range(len(CAMERAS))]
-        cameras = [
-            Camera(name, sizes.get(name, size), matrix, np.zeros(5), pose)
-            for name, pose in zip(CAMERAS, poses, strict=True)
-        ]
+        cameras = []
+        for at, name in enumerate(CAMERAS):
+            width, height = sizes.get(name, size)
+            matrix = np.array([[300.0, 0, width / 2], [0, 300, height / 2], [0, 0, 1]])
+            pose = np.hstack([np.eye(3), [[apart * at], [0], [0]]])
+            cameras.append(Camera(name, (width, height), matrix, np.zeros(5), pose))
         geometry.write_toml(self.root / "cameras.toml", cameras, source="test")
 
     def around(self):

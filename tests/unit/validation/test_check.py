@@ -376,4 +376,4 @@ def test_what_the_check_accepts_the_import_makes(hall, monkeypatch):
     )
     for camera in geometry.read_toml(out[0]):
         assert camera.size == rooms_filmed.SIZE
-        assert np.allclose(camera.K[[0, 0, 1], [0, 2, 2]], [150, (160 - 20 + 0.5) / 2 - 0.5, 44.75])
+        assert np.allclose(camera.K[[0, 0, 1], [0, 2, 2]], [150, (330 - 20 + 0.5) / 2 - 0.5, 89.75])

@@ -15,6 +15,8 @@ WRONG = {
     "poses from the camera": rotations.invert,
     "rotations from the camera": lambda pose: np.column_stack([pose[:, :3].T, pose[:, 3]]),
     "places C of": lambda pose: np.column_stack([pose[:, :3], -pose[:, :3].T @ pose[:, 3]]),
+    "as in OpenGL": lambda pose: np.diag([1, -1, -1]) @ pose,
+    "as in Blender": lambda pose: rotations.invert(np.diag([1, -1, -1]) @ pose),
 }
 WORLDS = {
     "z up": [0, 0, 0.7],

@@ -31,6 +31,8 @@ class Way:
     right: Callable[[NDArray], NDArray]  # `cam_from_world` (3, 4) of a pose stated in this way
 
 
+# A camera of OpenGL and Blender looks along -z with y up, ours along +z with y down.
+CAM_FROM_CAM = np.diag([1.0, -1.0, -1.0])
 WAYS = (
     Way("poses from the camera to the world", "invert them", rotations.invert),
     Way(
@@ -42,6 +44,16 @@ WAYS = (
         "translations that are the places C of the cameras",
         "write -R C instead",
         lambda pose: np.column_stack([pose[:, :3], -pose[:, :3] @ pose[:, 3]]),
+    ),
+    Way(
+        "cameras with y up that look along -z, as in OpenGL",
+        "change the sign of y and z in the camera's axes",
+        lambda pose: CAM_FROM_CAM @ pose,
+    ),
+    Way(
+        "poses from the camera to the world, with y up and looking along -z, as in Blender",
+        "invert them, and change the sign of y and z in the camera's axes",
+        lambda pose: CAM_FROM_CAM @ rotations.invert(pose),
     ),
 )
 
