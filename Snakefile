@@ -2,6 +2,7 @@
 
 import gc
 
+from snakemake import cli
 from snakemake.utils import min_version
 
 min_version("9.27.1")
@@ -108,3 +109,18 @@ rule report:
     input:
         rules.all.input,
         rules.build_report.output,
+
+
+# Snakemake's own line on a file that no rule makes does not say what was expected. It hands the
+# targets over only once this file is read.
+if workflow.is_main_process and "snakemake" in sys.argv[0]:
+    named = set(cli.get_argument_parser().parse_known_args(sys.argv[1:])[0].targets)
+    made_by = [rule.name for rule in workflow.rules]
+    files_made = [str(file) for rule in workflow.rules for file in rule.products()]
+    unmade = [
+        targets.names.fault(path, list(STUDY.sessions), [*made_by, *files_made, *rules.all.input])
+        for path in sorted(map(os.path.normpath, named - {*made_by}))
+        if not (os.path.exists(path) or any(rule.is_producer(path) for rule in workflow.rules))
+    ]
+    if unmade:
+        sys.exit("\n".join(f"Error: {line}" for line in unmade))

@@ -242,6 +242,23 @@ def test_a_fault_is_told_of_the_configuration_that_was_given(gym):
     assert sum(line.startswith("Error: --config: sessions: ") for line in said) == 1
 
 
+@pytest.mark.parametrize(
+    ("target", "said"),
+    [
+        ("results/plan-tiny/quality.html", "found 'plan-tiny'; did you mean 'plain-tiny'?"),
+        ("results/players-tiny/takes/shott/quality.csv", "expected a take of"),
+        ("./results/report.htm", "found neither; did you mean 'results/report.html'?"),
+    ],
+)
+def test_a_target_that_nothing_makes_is_told_in_one_line(gym, target, said):
+    done = snakemake("-n", "--configfile", str(TINY), "--", target, root=gym)
+    assert done.returncode != 0
+    told = [line for line in (done.stdout + done.stderr).splitlines() if said in line]
+    assert len(told) == 1
+    assert "KeyError" not in done.stdout + done.stderr
+    assert "MissingRuleException" not in done.stdout + done.stderr
+
+
 def test_sessions_and_takes_of_similar_names_are_simulated_side_by_side(gym):
     sessions = gym / "config" / "sessions"
     hall = yaml.safe_load((sessions / "plain-tiny.yaml").read_text())

@@ -64,6 +64,16 @@ def test_a_take_of_somebody_who_withdrew_is_refused(job, study):
         assert one.take
 
 
+def test_names_that_a_session_does_not_have_are_told_with_the_nearest_one(job):
+    where = "walk-4cams-tiny.yaml: expected"
+    with pytest.raises(InputError, match=rf"{where} a take of balancing, .*mean 'balancing'\?"):
+        assert job(**REAL | {"take": "balance"}).take
+    with pytest.raises(InputError, match=rf"{where} a camera of cam01, .* found 'cam1'; did you m"):
+        assert job(**REAL, camera="cam1").camera
+    with pytest.raises(InputError, match=rf"{where} a device of none, found 'suit'; ask for files"):
+        assert job(**REAL, device="suit").device
+
+
 def test_files_need_the_consent_of_the_persons_in_them(job, study):
     job(**REAL).demand("export")
     refused = agreeing(study, "analysis")

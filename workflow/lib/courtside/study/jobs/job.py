@@ -4,12 +4,14 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from courtside.study import paths
 from courtside.study.configuration import consent
 from courtside.study.configuration.sessions import Device, FixedCamera, Model, Session, Study, Take
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, nearest
+
+Named = TypeVar("Named")
 
 
 @dataclass(frozen=True)
@@ -37,17 +39,27 @@ class Job:
                 f"{session.file}: expected analysis in the consent of {who}, "
                 f"found none: nothing is made of take {name}; ask for files of other takes"
             )
-        return session.takes[name]
+        return self._known(session.takes, "take")
 
     @property
     def camera(self) -> FixedCamera:
         """Its fixed camera."""
-        return self.session.cameras[self["camera"]]
+        return self._known(self.session.cameras, "camera")
 
     @property
     def device(self) -> Device:
         """Its device."""
-        return self.take.devices[self["device"]]
+        return self._known(self.take.devices, "device")
+
+    def _known(self, known: Mapping[str, Named], what: str) -> Named:
+        """Return the record of a wildcard; an error where a file of another one is asked for."""
+        if self[what] not in known:
+            there = ", ".join(known) or "none"
+            advice = nearest(self[what], list(known), "ask for files of one that is there")
+            raise InputError(
+                f"{self.session.file}: expected a {what} of {there}, found {self[what]!r}; {advice}"
+            )
+        return known[self[what]]
 
     @property
     def virtual(self) -> dict[str, Any]:

@@ -6,9 +6,19 @@ devices: figures and errors of takes with devices of their own
 together: figures and tables of several takes
 pages: viewers, clicking pages, videos with skeletons, plans
 remains: results of takes that are no more, or that persons no longer agree to
+names: `fault`: of a file that is asked for and that no rule makes
 numbers: tables that the numbers of the documents come from
 """
 
-from courtside.study.targets import calibration, devices, numbers, pages, remains, takes, together
+from courtside.study.targets import (
+    calibration,
+    devices,
+    names,
+    numbers,
+    pages,
+    remains,
+    takes,
+    together,
+)
 
-__all__ = ["calibration", "devices", "numbers", "pages", "remains", "takes", "together"]
+__all__ = ["calibration", "devices", "names", "numbers", "pages", "remains", "takes", "together"]
