@@ -227,6 +227,17 @@ def test_a_sample_shows_points_of_the_named_skeleton(tmp_path):
         openpose.sample(tmp_path / "k", skeleton.read(SKELETONS / "body25b.yaml"))
 
 
+@pytest.mark.parametrize(("size", "least"), [((640, 480), "0.1"), ((320, 240), "-0.7")])
+def test_points_as_shares_of_the_picture_are_refused(tmp_path, size, least):
+    """OpenPose writes them from 0 to 1 and from -1 to 1 with `keypoint_scale` 3 and 4."""
+    shares = np.array(keypoints()).reshape(-1, 3) / [*size, 1] - [*([size == (320, 240)] * 2), 0]
+    for at in range(4):
+        write(tmp_path / "j", f"{at}.json", shares.ravel().tolist())
+    for look in (read, openpose.sample):
+        with pytest.raises(InputError, match=rf"/j: expected points in px, found all from {least}"):
+            look(tmp_path / "j", COCO)
+
+
 def test_points_of_no_skeleton_are_named(tmp_path):
     write(tmp_path / "j", "0.json", [1.0] * 21)
     with pytest.raises(InputError, match="expected people with 17, 25, 26, 133 points, found 7;"):

@@ -63,6 +63,7 @@ def read(
     for number, path in files.items():
         if number - first < len(people):  # the last one may be one too many
             people[number - first] = _people(path, len(skeleton.joints), skeleton.name)
+    _check_px(folder, np.concatenate(people))
     _check_order(folder, skeleton.name, people)
     _check_size(folder, np.concatenate(people), size, video)
     tracks = link([people[at] for at in kept])
@@ -75,6 +76,16 @@ WITHIN = 0.8
 
 def _n_needed(times: NDArray, trim_s: tuple[float, float] | None) -> int:
     return int(np.count_nonzero(times < trim_s[1])) if trim_s else len(times)
+
+
+def _check_px(folder: StrPath, people: NDArray) -> None:
+    """Raise `InputError` if all points (K, J, 3) lie within one pixel: they are shares."""
+    xy = people[np.isfinite(people[..., 0])][:, :2]
+    if len(xy) and np.abs(xy).max() <= 1:
+        raise InputError(
+            f"{folder}: expected points in px, found all from {xy.min():.2g} to {xy.max():.2g}, as "
+            "shares of the picture; export them again in px (OpenPose: --keypoint_scale 0)"
+        )
 
 
 def _check_size(
@@ -122,10 +133,12 @@ def skeletons(folder: StrPath) -> tuple[int, tuple[str, ...]]:
 def sample(folder: StrPath, skeleton: Skeleton) -> NDArray:
     """Return the persons (K, J, 3) in some files of a folder, NaN where a point is unseen.
 
-    An `InputError` if their points are not those of the `skeleton`, or a file is damaged.
+    An `InputError` if their points are not those of the `skeleton`, or not in px, or a file is
+    damaged.
     """
     n_joints = len(skeleton.joints)
     people = [_people(path, n_joints, skeleton.name) for path in _looked_at(folder)]
+    _check_px(folder, np.concatenate(people))
     _check_order(folder, skeleton.name, people)
     return np.concatenate(people)
 
