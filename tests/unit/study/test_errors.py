@@ -81,6 +81,9 @@ def test_what_is_no_damage_passes():
 def test_an_error_without_words_is_named():
     assert errors.message(MemoryError()) == "MemoryError"
     assert errors.message(ValueError("two\n lines")) == "two lines"
+    assert errors.message(KeyError("timestamp")) == "no 'timestamp'"
+    assert errors.message(KeyError("['a'] not in index")).endswith('not in index"')
+    assert errors.message(IndexError("list index out of range")) == "fewer entries"
     assert len(errors.message(ValueError("x" * 9999))) == errors.SHORT
 
 

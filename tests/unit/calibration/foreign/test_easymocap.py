@@ -80,3 +80,12 @@ def test_half_a_calibration_is_refused(tmp_path):
     (tmp_path / "intri.yml").write_text("%YAML:1.0\n---\nnames: 3\n")
     with pytest.raises(InputError, match=r"intri\.yml: expected names of cameras"):
         file_formats.read(tmp_path)
+
+
+@pytest.mark.parametrize("text", ["<!DOCTYPE html>\n", ""])
+def test_a_file_that_opencv_does_not_read_is_shown(tmp_path, text):
+    theirs.easymocap(tmp_path)
+    (tmp_path / "extri.yml").write_text(text)
+    said = rf"extri\.yml: .* found: a text that begins with '{text.strip()}'; check it"
+    with pytest.raises(InputError, match=said):
+        file_formats.read(tmp_path)

@@ -151,6 +151,8 @@ def test_a_wand_has_two_or_three_markers():
         (DLTDV8, {}, "expected the columns camera"),
         (OURS, {"program": "argus"}, "expected columns such as pt1_cam1_X or Track_1_cam_1_x"),
         (DLTDV8.replace("pt2_cam2_Y", "pt2_cam2_X"), {"program": "dltdv8"}, "each once"),
+        (DLTDV8.replace(",", ";"), {"program": "dltdv8"}, "with commas between the cells"),
+        (DLTDV8.replace(",", "\t"), {"program": "dltdv8"}, "with commas between the cells"),
         (DLTDV8.replace("cam2", "cam3"), {"program": "dltdv8"}, "expected columns of 2 cameras"),
         (DLTDV8 + "1,2\n", {"program": "dltdv8"}, "line 4: expected 8 cells, found 2"),
         (f"{HEADER}\n\n1,1,1,1,1,1,1,1\n\n1,2\n", {"program": "dltdv8"}, "line 5: expected 8"),

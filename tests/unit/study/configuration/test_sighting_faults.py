@@ -39,7 +39,7 @@ def test_good_sightings_have_no_fault(seen, takes):
     [
         (SEEN | {"camera": "c"}, ONE, "seen.camera: expected one of ['a', 'b'], found 'c'"),
         (SEEN, TWO, "seen: expected `take`, one of ['walk', 'run'], found none"),
-        (SEEN, {}, "seen: expected `take`, one of [], found none"),
+        (SEEN, {}, "seen: expected a filmed take of p1, found none; remove it"),
         (SEEN | {"take": "jump"}, ONE, "seen.take: expected one of ['walk'], found 'jump'"),
         (
             SEEN | {"take": "run"},

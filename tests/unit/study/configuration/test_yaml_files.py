@@ -30,7 +30,7 @@ def test_a_mapping_is_read_with_anchors(tmp_path):
         ("a: Hall: player\n", "and put a text that holds a colon in quotes"),
         ("p: {height_m: 1,74}\n", "expected a name, found 74; put it in quotes, or, if it is the"),
         ("- 1\n", "expected keys and values, found list"),
-        ("", "expected keys and values, found NoneType"),
+        ("", "expected keys and values, found nothing; write them"),
         ("a: !!python/object/apply:os.system [ls]\n", "could not determine a constructor"),
     ],
 )

@@ -93,7 +93,8 @@ def numbered(folder: StrPath) -> dict[int, Path]:
         if number in files:
             raise InputError(
                 f"{path}: expected one file for frame {number}, found {files[number].name} as "
-                "well; keep the files of one camera in one folder"
+                "well; the last number in a name is the frame's: rename them, or keep the files of "
+                "one camera in one folder"
             )
         files[number] = path
     if not files:

@@ -73,6 +73,10 @@ def nearest(name: str, known: Sequence[str], otherwise: str) -> str:
 
 def message(error: BaseException) -> str:
     """Return the message of a library's error, or else the error's name, as one short line."""
+    if isinstance(error, KeyError) and error.args and " " not in str(error.args[0]):
+        return f"no {error}"[:SHORT]  # the key alone, in quotes
+    if isinstance(error, IndexError):
+        return "fewer entries"
     try:
         text = " ".join(str(getattr(error, "strerror", None) or error).split())
     except ValueError:  # of a number too long to be written

@@ -41,10 +41,13 @@ def opened(path: Path, text: str) -> tuple[cv2.FileStorage, cv2.FileNode]:
 
     Raises `InputError` if it is damaged.
     """
-    with reading(
-        path, "a file of OpenCV's FileStorage", "check it", kinds=(cv2.error, SystemError)
-    ):
-        storage = cv2.FileStorage(text, cv2.FILE_STORAGE_READ | cv2.FILE_STORAGE_MEMORY)
+    what = "a file of OpenCV's FileStorage, YAML or XML"
+    with reading(path, what, "check it", kinds=(cv2.error, ValueError)):
+        try:
+            storage = cv2.FileStorage(text, cv2.FILE_STORAGE_READ | cv2.FILE_STORAGE_MEMORY)
+        except SystemError:  # OpenCV does not say why
+            start = camera_fields.short(text.strip()[:40])
+            raise ValueError(f"a text that begins with {start!r}") from None
         return storage, storage.root()
 
 

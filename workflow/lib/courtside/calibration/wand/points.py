@@ -19,7 +19,7 @@ from courtside.study.errors import InputError, StrPath
 OURS = ("camera", "marker", "x_px", "y_px")
 TIMES = ("frame", "time_s")  # one of them
 # Columns of DLTdv and of Argus: point, camera, axis.
-THEIRS = re.compile(r"(?P<point>.+)_cam_?(?P<camera>[0-9]+)_(?P<axis>[xXyY])")
+THEIRS = re.compile(r"(?P<point>[^;\t]+)_cam_?(?P<camera>[0-9]+)_(?P<axis>[xXyY])")
 # Coordinates of the first pixel's centre; y is None where it runs up: y of the lowest row is then 1
 # in DLTdv, and an error of half a pixel does not matter.
 PROGRAMS = {"dltdv8": (1.0, 1.0), "dltdv": (1.0, None), "argus": (0.0, None)}
@@ -229,7 +229,8 @@ def _named(path: StrPath, header: Sequence[str]) -> list[tuple[str, int, str]]:
     if not columns or len(columns) < len(header) or len(set(columns)) < len(columns):
         raise InputError(
             f"{path}: expected columns such as pt1_cam1_X or Track_1_cam_1_x, each once, found "
-            f"{','.join(header)[:80] or 'an empty file'}; give the xypts.csv of DLTdv or Argus"
+            f"{','.join(header)[:80] or 'an empty file'}; give the xypts.csv of DLTdv or Argus, "
+            "with commas between the cells"
         )
     return columns
 

@@ -18,6 +18,9 @@ def find(file: Path, content: Content) -> Iterator[str]:
         there = [name for name, take in filmed.items() if take and _holds(content, name, subject)]
         for entry in sightings(stated):
             where = f"{file}: subjects.{subject}.seen"
+            if not there:
+                yield f"{where}: expected a filmed take of {subject}, found none; remove it"
+                continue
             if "take" not in entry and len(there) != 1:
                 yield (
                     f"{where}: expected `take`, one of {there}, found none; say which take the "

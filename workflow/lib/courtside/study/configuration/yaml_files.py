@@ -58,7 +58,11 @@ def read(path: StrPath) -> Content:
         except RecursionError:
             raise InputError(f"{path}: expected YAML, found too deep nesting") from None
     if not isinstance(content, dict):
-        raise InputError(f"{path}: expected keys and values, found {type(content).__name__}")
+        found = "nothing" if content is None else type(content).__name__
+        raise InputError(
+            f"{path}: expected keys and values, found {found}; write them as `key: value`, or give "
+            "the right file"
+        )
     _check_extent(path, content)
     return content
 
