@@ -127,6 +127,33 @@ def test_files_that_do_not_fit_are_named(project, tmp_path):
         pose2sim.read_takes(files, walker.SKELETON, model="m")
 
 
+@pytest.mark.parametrize(("unit", "found"), [("mm", "0.00"), ("in", "0.0")])
+def test_a_person_of_no_person_s_size_is_refused(project, tmp_path, unit, found):
+    text = (project[0] / "pose-3d" / "take_p1.trc").read_text()
+    path = tmp_path / "p1.trc"
+    path.write_text(text.replace("\tm\t", f"\t{unit}\t", 1))
+    message = rf"p1.trc: expected joints of a person over 0.1 to 4 m, found them over {found}"
+    with pytest.raises(InputError, match=message):
+        pose2sim.read_takes({"p1": path}, walker.SKELETON, model="m")
+
+
+def test_a_joint_at_zero_is_missing(project, tmp_path):
+    """Programs without blanks write 0 0 0; no joint is there to a micrometre."""
+    lines = (project[0] / "pose-3d" / "take_p1.trc").read_text().splitlines()
+    cells = lines[8].split("\t")
+    cells[5:8] = ["0.000000"] * 3
+    path = tmp_path / "p1.trc"
+    path.write_text("\n".join([*lines[:8], "\t".join(cells), *lines[9:], ""]))
+    given, found = (
+        pose2sim.read_takes({"p1": one}, walker.SKELETON, model="m").xyz
+        for one in (project[0] / "pose-3d" / "take_p1.trc", path)
+    )
+    assert np.isfinite(given[0, 2, 1]).all()
+    assert np.argwhere(np.isnan(found) & ~np.isnan(given)).tolist() == [
+        [0, 2, 1, axis] for axis in range(3)
+    ]
+
+
 @needs_real
 def test_a_file_of_pose2sim_itself_is_read():
     """Its markers are the joints by name; columns as the real data's own table of axes states."""

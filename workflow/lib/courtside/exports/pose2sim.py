@@ -34,6 +34,8 @@ MODELS = {
 }
 OWN = "COURTSIDE"
 SOURCE = "Courtside"
+# ASSUME: diagonal of the box around all joints of a person, median of a take.
+LARGE_M = (0.1, 4.0)
 LEAST_VIEWS = 2  # of a point in a file that does not say: triangulation needs two
 
 
@@ -121,8 +123,8 @@ def read_takes(files: Mapping[str, StrPath], skeleton: Skeleton, *, model: str) 
 
     They stay in the file's frame with z up, without views or known covariances, and get the name
     `model`. The skeleton's joints are looked for among the markers, under Pose2Sim's names or their
-    own. Raises `InputError` if a file is no TRC file, has none of the joints, or other times than
-    the first one.
+    own. Raises `InputError` if a file is no TRC file, has none of the joints, lengths of no person,
+    or other times than the first one.
     """
     found: list[list[NDArray]] = []
     for path in files.values():
@@ -138,6 +140,7 @@ def read_takes(files: Mapping[str, StrPath], skeleton: Skeleton, *, model: str) 
             times, first = time_s, path
         if len(time_s) != len(times) or not np.allclose(time_s, times, atol=1e-4):
             raise InputError(f"{path}: expected the times of {first}, found others; cut both alike")
+        _check_size(path, xyz[:, [k for k in places if k is not None]])
         found.append([np.full((len(xyz), 3), np.nan) if k is None else xyz[:, k] for k in places])
     xyz = np.array(found).swapaxes(1, 2)
     there = np.isfinite(xyz).all(axis=-1)
@@ -155,3 +158,14 @@ def read_takes(files: Mapping[str, StrPath], skeleton: Skeleton, *, model: str) 
         swapped=np.empty((*there.shape, 0), dtype=bool),
         reason=np.where(there, missing_reason.OK, missing_reason.UNSEEN).astype(np.uint8),
     )
+
+
+def _check_size(path: StrPath, xyz: NDArray) -> None:
+    """Raise `InputError` if joints (T, J, 3) m are too near or too far for those of a person."""
+    extent = np.linalg.norm(np.fmax.reduce(xyz, axis=1) - np.fmin.reduce(xyz, axis=1), axis=1)
+    seen = extent[extent > 0]  # several joints
+    if len(seen) and not LARGE_M[0] <= np.median(seen) <= LARGE_M[1]:
+        raise InputError(
+            f"{path}: expected joints of a person over {LARGE_M[0]:g} to {LARGE_M[1]:g} m, found "
+            f"them over {np.median(seen):.3g} m; correct `Units` in its header, or export it again"
+        )

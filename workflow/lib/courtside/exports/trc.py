@@ -55,7 +55,8 @@ def write(path: StrPath, keypoints: Keypoints3D, person: int) -> None:
 def read(path: StrPath) -> tuple[list[str], float, NDArray, NDArray]:
     """Read joints, rate (Hz), times (T,) s and positions (T, J, 3) of any program's TRC file.
 
-    Positions are metres along world axes, NaN where blank. Raises `InputError` if the file is not a
+    Positions are metres along world axes, NaN where blank, or 0 0 0 as programs write it that have
+    no blanks. Raises `InputError` if the file is not a
     TRC file in m, cm or mm, a line has another number of values, the header counts other markers
     or frames than there are, or times do not follow each other as its rate says.
     """
@@ -82,6 +83,7 @@ def read(path: StrPath) -> tuple[list[str], float, NDArray, NDArray]:
     table = np.array(rows).reshape(len(rows), 2 + 3 * len(joints))
     _check_times(path, table[:, 1], rate_hz)
     xyz = table[:, 2:].reshape(len(rows), len(joints), 3)[..., TRC_AXES] * METRES[unit]
+    xyz[(xyz == 0).all(axis=-1)] = np.nan
     return joints, rate_hz, table[:, 1], xyz
 
 
