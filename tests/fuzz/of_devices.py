@@ -24,8 +24,8 @@ SKELETONS = CONFIG / "skeletons"
 MOCOPI = skeleton.read(SKELETONS / "mocopi27.yaml")
 NUITRACK = skeleton.read(SKELETONS / "nuitrack19.yaml").joints
 COCO = skeleton.read(SKELETONS / "coco17.yaml")
-BODY25 = skeleton.read(SKELETONS / "body25.yaml")
-SIZE = (640, 480)
+BODY25B = skeleton.read(SKELETONS / "body25b.yaml")
+SIZE = (1088, 1920)
 
 
 def three_rows(path):
@@ -86,7 +86,7 @@ def suits(folder):
         lines.append(f"{pad}}}")
 
     write(next(joint for joint in MOCOPI.joints if joint not in parent))
-    row = " ".join(["1 10 2 0 5 -5"] * len(MOCOPI.joints))
+    row = " ".join(["1 10 2 0 15 -5"] * len(MOCOPI.joints))
     lines += ["MOTION", "Frames: 2", "Frame Time: 0.016667", row, row, ""]
     (folder / "made.bvh").write_text("\n".join(lines), encoding="utf-8")
     for path in real("mocopi/*.bvh"):
@@ -161,7 +161,7 @@ def read_nuitrack(path):
 
 def openposes(folder):
     """Write folders of OpenPose's JSON, one person and none, and two."""
-    for name, joints in (("coco", COCO), ("body", BODY25)):
+    for name, joints in (("coco", COCO), ("body", BODY25B)):
         (folder / name).mkdir()
         n = len(joints.joints)
         one = np.column_stack([100 + 10 * np.arange(n), 50 + 20.0 * np.arange(n), np.full(n, 0.8)])
@@ -180,10 +180,9 @@ def openposes(folder):
 
 def read_openpose(path):
     """Read a camera's keypoints."""
-    joints = {"coco": COCO, "body": BODY25}.get(path.name)
-    joints = joints or skeleton.read(SKELETONS / "body25b.yaml")
+    joints = COCO if path.name == "coco" else BODY25B
     found = openpose.read(
-        path, joints, camera="c", model="theirs", size=SIZE, time_s=np.arange(9) / 30
+        path, joints, camera="c", model="theirs", size=SIZE, time_s=np.arange(4) / 30
     )
     require(isinstance(found, Keypoints2D) and not np.isinf(found.xy).any(), "an infinite place")
     return found

@@ -44,7 +44,7 @@ def motion(folder):
 
 def read_layer(path):
     """Read a device's motion as the page of a take does."""
-    return layers.read(path, "suit", walker.SKELETON)
+    return layers.read(path, "suit", walker.SKELETON, person="p1")
 
 
 def persons(folder):

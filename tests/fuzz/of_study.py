@@ -197,7 +197,7 @@ def sidecars(folder):
         "format": 1, "file": "figures/a.png", "sha256": "0" * 64, "command": "snakemake a.png",
         "inputs": {"data/a.mp4": "0" * 64}, "artefacts": {}, "code": {"draw_a.py": "1" * 64},
         "lock_sha256": "2" * 64, "packages": {"numpy": "2.4"}, "python": "3.11",
-        "platform": "Linux",
+        "platform": "Linux", "rule": "draw_a", "settings": {},
     }  # fmt: skip
     (run / "a.png.json").write_text(json.dumps(content), encoding="utf-8")
 
