@@ -119,7 +119,9 @@ if workflow.is_main_process and "snakemake" in sys.argv[0]:
     files_made = [str(file) for rule in workflow.rules for file in rule.products()]
     unmade = [
         targets.names.fault(path, list(STUDY.sessions), [*made_by, *files_made, *rules.all.input])
-        for path in sorted(map(os.path.normpath, named - {*made_by}))
+        for path in sorted(
+            os.path.normpath(name).replace(os.sep, "/") for name in named - {*made_by}
+        )
         if not (os.path.exists(path) or any(rule.is_producer(path) for rule in workflow.rules))
     ]
     if unmade:
