@@ -9,11 +9,14 @@ from courtside.study.targets import remains, takes
 def test_folders_of_takes_that_are_not_measured_are_found(study, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     session = study.sessions["players-tiny"]
+    folder, compared = "results/players-tiny/takes", "results/players-tiny/evaluation/takes"
     for take in (*session.takes, "old", "hers"):
-        (Path("results/players-tiny/takes") / take).mkdir(parents=True)
+        (Path(folder) / take).mkdir(parents=True)
+    for take in (*session.takes, "hers"):
+        (Path(compared) / take).mkdir(parents=True)
     session = replace(session, withheld={"hers": session.takes["shot"]})
-    folder = "results/players-tiny/takes"
-    assert remains.of_takes(session) == {f"{folder}/hers": True, f"{folder}/old": False}
+    expected = {f"{folder}/hers": True, f"{folder}/old": False, f"{compared}/hers": True}
+    assert remains.of_takes(session) == expected
     assert remains.of_takes(study.sessions["plain-tiny"]) == {}
 
 
@@ -62,6 +65,8 @@ def test_records_of_what_nobody_asks_for_are_found_whether_here_or_deleted(study
         f"{take}/videos/{way}.cam01.mp4",
         f"{take}/shake/old.csv",
         f"{take}/pages/people.html",
+        f"{take}/pose2sim/{way}/pose-3d/take.trc",
+        "results/walk-4cams-tiny/evaluation/takes/old/round_trip/file.blazepose-full.csv",
         "results/plain-tiny/pages/quality.html",
         "results/report.html",
     ]
@@ -69,6 +74,7 @@ def test_records_of_what_nobody_asks_for_are_found_whether_here_or_deleted(study
         f"{take}/motion/{way}.angles.csv",
         f"{take}/quality.csv",
         f"{take}/shake/cam01.csv",
+        "results/walk-4cams-tiny/evaluation/takes/balancing/round_trip/file.blazepose-full.csv",
         "results/players-tiny/pages/quality.html",
         "results/another/takes/old/quality.csv",
         "results/figures/study.csv",
@@ -91,6 +97,45 @@ def test_only_files_of_persons_who_refuse_are_found(study, tmp_path, monkeypatch
     of_session = [path for path in made if path.startswith("results/walk-4cams-tiny/")]
     found = remains.without_consent(study)["walk-4cams-tiny"]
     assert found == sorted(path for path in of_session if f".{person}." in path)
+
+
+def test_files_asked_for_by_name_and_of_earlier_studies_are_found(study, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    session = study.sessions["single-view-tiny"]
+    take, way = Path("results/single-view-tiny/takes/claps"), "known/two-dlt/older-network"
+    pictured = [f"figures/badminton_fig09.{way.replace('/', '.')}.png", f"videos/{way}.left.mp4"]
+    exported = [
+        f"pose2sim/{way}/pose-3d/claps.trc",
+        f"pose3d/{way}.p1.csv",
+        f"pose3d_ik/{way}.p1.mot",
+        "devices/mocopi.csv",
+        "devices/d415-depth.older-network.bvh",
+    ]
+    allowed = [
+        f"figures/skeletons.{way.replace('/', '.')}.png",
+        f"pose3d/{way}.p2.csv",
+        f"pose3d/{way}.npz",
+        f"pose2sim/{way}/.snakemake_timestamp",
+        "devices/d415.frames.csv",
+        "devices/mocopi-corrected.blazepose-full.bvh",
+        "videos/readme.txt",
+    ]
+    for path in (take / one for one in (*pictured, *exported, *allowed)):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
+
+    def listed(*consent):
+        subjects = {"p1": replace(session.subjects["p1"], consent=consent)}
+        only = {session.name: replace(session, subjects=subjects)}
+        return remains.without_consent(replace(study, sessions=only)).get(session.name, [])
+
+    def below(*parts):
+        return sorted((take / one).as_posix() for one in parts)
+
+    assert listed("analysis", "export", "pictures") == []
+    assert listed("analysis", "export") == below(*pictured)
+    assert listed("analysis", "pictures") == below(*exported)
+    assert listed("analysis") == below(*pictured, *exported)
 
 
 def test_pages_of_a_session_without_any_take_left_are_found(study, tmp_path, monkeypatch):

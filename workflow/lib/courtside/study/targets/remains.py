@@ -10,7 +10,9 @@ from courtside.study.configuration.sessions import Session, Study, Take
 from courtside.study.targets import devices, pages, takes, together
 
 WORDS = ("export", "pictures")
+PEOPLE_PAGE = paths.PEOPLE_PAGE.removeprefix(f"{paths.TAKE}/")
 OF_A_PERSON = (".trc", ".c3d", ".bvh", ".glb", ".mot", ".osim")  # after the model and the person
+EXPORTED = {f".{suffix}" for suffix in devices.EXPORTED}  # of a device
 OF_A_CAMERA = ("background", "movement", "pose2d", "pose2d_steadied", "shake", "videos")  # folders
 
 
@@ -19,13 +21,20 @@ def of_takes(session: Session) -> dict[str, bool]:
 
     Otherwise the session's file has no such take: it was renamed or removed.
     """
-    folder = Path(paths.SESSION.format(session=session.name)) / "takes"
-    there = sorted(each for each in folder.glob("*") if each.is_dir())
+    there = [
+        each for folder in _parents(session) for each in sorted(folder.glob("*")) if each.is_dir()
+    ]
     return {
         each.as_posix(): each.name in session.withheld
         for each in there
         if each.name not in session.takes
     }
+
+
+def _parents(session: Session) -> list[Path]:
+    """Return the folders in which a session has a folder of each take."""
+    known = {"session": session.name, "take": ""}
+    return [Path(pattern.format(**known)) for pattern in (paths.TAKE, paths.TAKE_EVALUATION)]
 
 
 def of_nobody(session: Session) -> dict[str, list[str]]:
@@ -86,17 +95,14 @@ def of_records(study: Study, names: Iterable[str]) -> list[str]:
 
 
 def _is_left(session: Session, path: Path) -> bool:
-    folder = Path(paths.SESSION.format(session=session.name)) / "takes"
-    if not path.is_relative_to(folder):
+    folder = next((one for one in _parents(session) if path.is_relative_to(one)), None)
+    if folder is None:
         return False
-    name, *inner = path.relative_to(folder).parts
-    take = session.takes.get(name)
-    if take is None:
+    name, *parts = path.relative_to(folder).parts
+    take, inner = session.takes.get(name), Path(*parts)
+    if take is None or _is_refused(session, take, inner):
         return True
-    is_video = inner[0] == "videos" and path.suffix == ".mp4"
-    if is_video and consent.refusing(session, take, "pictures"):
-        return True
-    person, camera = _person(Path(*inner)), _camera(Path(*inner))
+    person, camera = _person(inner), _camera(inner)
     is_of_another = person is not None and person not in take.subjects
     return is_of_another or camera not in (None, *take.cameras, *take.devices)
 
@@ -109,7 +115,7 @@ def without_consent(study: Study) -> dict[str, list[str]]:
     """
     found = {}
     for session in study.sessions.values():
-        there = [*filter(_is_file, _not_agreed(study, session)), *_videos(session)]
+        there = [*filter(_is_file, _not_agreed(study, session)), *_refused_files(session)]
         found[session.name] = sorted(set(there))
     return {name: files for name, files in found.items() if files}
 
@@ -148,12 +154,50 @@ def _made(study: Study) -> Iterator[str]:
     yield from together.every_study_table(study)
 
 
-def _videos(session: Session) -> Iterator[str]:
-    """Yield the videos with skeletons of takes without consent; they are made when asked for."""
+def _refused_files(session: Session) -> Iterator[str]:
+    """Yield what is on the disk of takes, and somebody in them has not agreed to.
+
+    Also what was asked for by name, and what the study made before it was changed.
+    """
     for take in session.takes.values():
-        if consent.refusing(session, take, "pictures"):
-            folder = _folder(session, take.name) / "videos"
-            yield from (path.as_posix() for path in folder.rglob("*.mp4"))
+        folder = _folder(session, take.name)
+        if any(consent.refusing(session, take, word) for word in WORDS):
+            every = (path for path in folder.rglob("[!.]*") if path.is_file())
+            yield from (
+                path.as_posix()
+                for path in every
+                if _is_refused(session, take, path.relative_to(folder))
+            )
+
+
+def _is_refused(session: Session, take: Take, path: Path) -> bool:
+    """Tell whether persons have not agreed to a file, seen from the folder of their take."""
+    if _is_pictured(path) and consent.refusing(session, take, "pictures"):
+        return True
+    return bool(set(_exported(take, path)) & set(consent.refusing(session, take, "export")))
+
+
+def _is_pictured(path: Path) -> bool:
+    folder, kind = path.parts[0], path.name.split(".")[0]
+    return (
+        (folder == "videos" and path.suffix == ".mp4")
+        or (folder == "figures" and kind in takes.PICTURED)
+        or path.as_posix() == PEOPLE_PAGE
+    )
+
+
+def _exported(take: Take, path: Path) -> Iterable[str | None]:
+    """Return whose motion a file has for other programs."""
+    folder, kind = path.parts[0], path.name.split(".")[0]
+    if folder == "pose2sim":
+        return take.subjects
+    if folder == "devices":
+        # A correction is a step of the study, whatever its format.
+        is_own = kind.endswith("-corrected") or path.name.endswith(".frames.csv")
+        return [take.person_of_devices] if path.suffix in EXPORTED and not is_own else []
+    if path.suffix == ".csv" and folder.startswith("pose3d"):
+        return [path.name.split(".")[-2]]
+    return [_person(path)]
 
 
 def _is_file(path: str) -> bool:
