@@ -49,6 +49,7 @@ def test_nothing_is_made_of_somebody_who_withdrew(gym, unasked):
     jobs = planned(root=gym([]))
     assert "import_cameras" in jobs  # those are nobody's
     assert "draw_skeletons" not in jobs
+    assert unasked["extract_static"] - jobs["extract_static"] == 3  # from the videos of this take
     assert jobs["detect_pose"] < unasked["detect_pose"]
 
 

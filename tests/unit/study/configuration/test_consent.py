@@ -147,3 +147,15 @@ def test_recordings_of_somebody_who_withdrew_may_be_deleted(tmp_path):
         " takes.both.videos.a",
         " takes.both.videos.b",
     ]
+
+
+def test_no_static_picture_is_made_of_a_video_of_somebody_who_withdrew():
+    cameras = {"a": {"static": "1.mp4"}, "b": {"static": "empty.mp4"}, "c": {"static": "3.mp4"}}
+
+    def static(p1, p2):
+        return {name: one.static for name, one in session(p1, p2, cameras=cameras).cameras.items()}
+
+    every = {"a": "1.mp4", "b": "empty.mp4", "c": "3.mp4"}
+    assert static({}, agreed("analysis")) == every
+    assert static({}, agreed()) == {**every, "a": None}  # p2 is not in take alone
+    assert static(agreed(), {}) == {**every, "a": None, "c": None}

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from courtside.study.configuration import session_faults, take_faults
+from courtside.study.configuration import session_faults, session_files, take_faults
 
 FILE = "gym.yaml"
 RECORDED = {
@@ -510,6 +510,14 @@ def test_the_take_of_somebody_who_withdrew_tells_no_size_of_pictures(root, key, 
     (line,) = find(root, content | {"subjects": {"p1": {"consent": []}, "p2": {"consent": []}}})
     assert "cameras.b: expected `static` or a video in a take" in line
     assert "found neither in takes of persons who have agreed to analysis; add one" in line
+
+
+def test_bridging_images_are_not_tied_to_the_video_of_somebody_who_withdrew(root):
+    taken = {"takes": {"t": {"videos": {"a": "a.mp4", "b": "late.mp4"}}}}
+    content = RECORDED | taken | {"subjects": {"p1": {"consent": []}}}
+    (line,) = find(root, session_files.filled(content))
+    assert "cameras.a: expected `static`" in line
+    assert "found none (the video of somebody who has withdrawn is none); bridging" in line
 
 
 def test_clicks_of_pictures_whose_size_nothing_tells_are_named_beside_a_file_too(root):

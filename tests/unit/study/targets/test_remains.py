@@ -138,6 +138,26 @@ def test_files_asked_for_by_name_and_of_earlier_studies_are_found(study, tmp_pat
     assert listed("analysis") == below(*pictured, *exported)
 
 
+def test_static_pictures_of_somebody_who_withdrew_are_found(study, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    session, folder = study.sessions["walk-4cams-tiny"], Path("results/walk-4cams-tiny")
+    made = [folder / "static" / f"{camera}.png" for camera in ("cam01", "cam02")]
+    made.append(folder / "pages" / "clicking.html")
+    for path in made:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
+    cam01 = replace(session.cameras["cam01"], static=None)
+
+    def listed(**changes):
+        only = {session.name: replace(session, **changes)}
+        return remains.without_consent(replace(study, sessions=only)).get(session.name, [])
+
+    cameras = {**session.cameras, "cam01": cam01}
+    assert listed(cameras=cameras) == []
+    expected = [f"{folder}/pages/clicking.html", f"{folder}/static/cam01.png"]
+    assert listed(cameras=cameras, takes={}, withheld=session.takes) == expected
+
+
 def test_pages_of_a_session_without_any_take_left_are_found(study, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     session = study.sessions["walk-4cams-tiny"]

@@ -34,6 +34,12 @@ def withdrawn(subjects: Mapping[str, Any], virtual: bool) -> set[str]:
     }
 
 
+def is_withheld(content: Mapping[str, Any], take: Mapping[str, Any]) -> bool:
+    """Tell whether nothing is made of a take of a session's file: somebody in it has withdrawn."""
+    subjects = content.get("subjects", {})
+    return bool(withdrawn(subjects, "virtual" in content) & {*take.get("subjects", subjects)})
+
+
 def refusing(session: "Session", take: "Take", word: str) -> tuple[str, ...]:
     """Return the persons of a take who have not agreed to `word`, in their order."""
     if word not in WORDS:

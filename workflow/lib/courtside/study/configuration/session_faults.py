@@ -59,7 +59,7 @@ def find(
     for name, own in content.get("takes", {}).items():
         take = shared | own
         yield from take_faults.find(f"{file}: takes.{name}", take, cameras, subjects, virtual)
-        if not _refused(content, take):  # else its recordings may be gone
+        if not consent.is_withheld(content, take):  # else its recordings may be gone
             paths |= dict(_take_paths(f"takes.{name}", take))
     yield from take_faults.of_other_programs(folder, file, content)
     for where, path in paths.items():
@@ -139,7 +139,7 @@ def _people_faults(file: Path, content: Content) -> Iterator[str]:
             f"{file}: cameras: expected three or more for the calibration `people`, found "
             f"{len(content['cameras'])}; people do not tell how two stand"
         )
-    measured = [take for take in filmed if not _refused(content, take)]
+    measured = [take for take in filmed if not consent.is_withheld(content, take)]
     known = "known_lengths" in content or any(_has_heights(content, take) for take in measured)
     if measured and not known:
         yield f"{file}: subjects: {UNSCALED}"
@@ -192,13 +192,6 @@ def _take_paths(where: str, take: Content) -> Iterator[tuple[str, str]]:
                 yield f"{where}.{key}.{skeleton}.{at}", path
     for name, device in take.get("devices", {}).items():
         yield f"{where}.devices.{name}.file", device["file"]
-
-
-def _refused(content: Content, take: Content) -> bool:
-    """Tell whether somebody has withdrawn who is in a take: nothing is made of it."""
-    subjects = content.get("subjects", {})
-    gone = consent.withdrawn(subjects, "virtual" in content)
-    return bool(gone & set(take.get("subjects", [*subjects])))
 
 
 def _target_paths(content: Content) -> Iterator[tuple[str, str]]:
@@ -272,11 +265,14 @@ def _recorded_faults(file: Path, content: Content, root: Path) -> Iterator[str]:
             f"{file}: walks.{name}: expected `video` or `images`, found neither; name a file or a "
             "folder"
         )
+    withdrawn = any(consent.is_withheld(content, take) for take in takes)
     for name, camera in cameras.items() if walks else ():
         if "static" not in camera:
             yield (
                 f"{file}: cameras.{name}: expected `static`, a recording or photo of the empty "
-                "court, found none; bridging images are tied to it"
+                "court, found none"
+                + " (the video of somebody who has withdrawn is none)" * withdrawn
+                + "; bridging images are tied to it"
             )
     yield from _point_faults(file, content, root)
 
@@ -387,7 +383,7 @@ def _point_faults(file: Path, content: Content, root: Path) -> Iterator[str]:
 def _unsized(file: Path, content: Content) -> Iterator[str]:
     """Yield the cameras of which nothing tells the size of the picture that points are in."""
     takes = [*content.get("takes", {}).values()]
-    measured = [take for take in takes if not _refused(content, take)]
+    measured = [take for take in takes if not consent.is_withheld(content, take)]
     filmed = {name for take in measured for name in take.get("videos", {})}
     for name, camera in content["cameras"].items():
         if "static" not in camera and name not in filmed:

@@ -64,12 +64,25 @@ def of_configuration(path: str | None, folder: Path) -> str | None:
 
 
 def filled(content: Content) -> Content:
-    """Return what a session's file says, with `{}` for a name of which it says nothing."""
+    """Return what a session's file says, with `{}` for a name of which it says nothing.
+
+    Without the `static` recordings that are videos of takes of which nothing is made: no picture
+    of their persons is, either, and the recordings may be gone.
+    """
     parts = {key: content[key] for key in MAY_BE_EMPTY if key in content}
-    return content | {
+    content = content | {
         key: {name: {} if said is None else said for name, said in part.items()}
         for key, part in parts.items()
     }
+    takes = [
+        take for take in content.get("takes", {}).values() if consent.is_withheld(content, take)
+    ]
+    gone = {path for take in takes for path in take.get("videos", {}).values()}
+    cameras = {
+        name: {key: value for key, value in said.items() if key != "static" or value not in gone}
+        for name, said in content["cameras"].items()
+    }
+    return content | {"cameras": cameras}
 
 
 def session(

@@ -116,6 +116,7 @@ def without_consent(study: Study) -> dict[str, list[str]]:
     found = {}
     for session in study.sessions.values():
         there = [*filter(_is_file, _not_agreed(study, session)), *_refused_files(session)]
+        there += filter(_is_file, _static(session))
         found[session.name] = sorted(set(there))
     return {name: files for name, files in found.items() if files}
 
@@ -168,6 +169,13 @@ def _refused_files(session: Session) -> Iterator[str]:
                 for path in every
                 if _is_refused(session, take, path.relative_to(folder))
             )
+
+
+def _static(session: Session) -> Iterator[str]:
+    """Yield the pictures of cameras whose static recording shows somebody who has withdrawn."""
+    gone = [name for name, one in session.cameras.items() if session.withheld and not one.static]
+    for pattern in (paths.STATIC, paths.STATIC_CHECK, paths.CLICKING_PAGE):
+        yield from paths.each(pattern, session=session.name, camera=gone)
 
 
 def _is_refused(session: Session, take: Take, path: Path) -> bool:
