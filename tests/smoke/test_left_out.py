@@ -3,7 +3,7 @@
 import pytest
 import yaml
 
-from smoke.snakemake_runs import ROOT, copy_repository, planned, run
+from smoke.snakemake_runs import FOLDER, ROOT, copy_repository, planned, run
 
 TAKE = "results/walk-4cams-tiny/takes/balancing"
 METHOD = "file.all-robust.blazepose-full"
@@ -51,6 +51,23 @@ def test_nothing_is_made_of_somebody_who_withdrew(gym, unasked):
     assert "draw_skeletons" not in jobs
     assert unasked["extract_static"] - jobs["extract_static"] == 3  # from the videos of this take
     assert jobs["detect_pose"] < unasked["detect_pose"]
+
+
+def test_what_lacks_consent_is_told_before_a_run_and_where_nothing_is_to_be_done(gym):
+    root = gym(["analysis", "pictures"])
+    drawn = [f"results/figures/court_points.tennis.{suffix}" for suffix in ("pdf", "png", "csv")]
+    for path in (root / FOLDER / name for name in (TRC, *drawn)):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
+    listed = root / FOLDER / "results/run/without_consent/walk-4cams-tiny.txt"
+    for options in (["-n"], []):
+        done = run(*options, "--", drawn[0], root=root)
+        said = done.stdout + done.stderr
+        assert "Nothing to be done" in said
+        assert said.count("in take balancing: p1 has not agreed to export (consent)") == 1
+        assert said.count(TRC) == 1
+        assert listed.exists() == (not options)
+    assert listed.read_text().splitlines() == [TRC]
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,9 @@ Inputs: all jobs that the run asked for. Outputs: results/run/: provenance.json 
 checksums.json of the inputs, provenance/<file>.json beside each figure, table and exported file.
 Steps: record_provenance and end_of_run, called in `onsuccess` and `onerror` of the Snakefile. A run
 in which a take was judged as failed ends with a line on it and exit code 1. `last_words` is called
-when Snakemake ends, also where nothing was to be done: what it cannot see is told, and its jobs are
-written for a program that asks (`courtside.study.provenance.planned`).
+when Snakemake ends, also where nothing was to be done: what it cannot see is told, what lacks
+consent unless a run has told it, and its jobs are written for a program that asks
+(`courtside.study.provenance.planned`).
 """
 
 import atexit
@@ -16,6 +17,7 @@ from courtside.study.provenance import planned, run
 
 STARTED_S = time.monotonic()
 STUDIED_IN = Path.cwd()
+HAS_RUN = []  # jobs of this workflow, so that hooks of the Snakefile tell how they ended
 LOOK_AT = [paths.REPORT, paths.PLAYERS_TABLE, paths.CALIBRATION_TABLE]
 
 
@@ -29,6 +31,7 @@ def record_provenance(call=asked):
 
 def end_of_run(n_failed=0):
     """Return the words at the end of a run; `n_failed` takes were made, but judged as failed."""
+    HAS_RUN.append(True)
     viewers = targets.pages.every_viewer(STUDY)
     seconds = time.monotonic() - STARTED_S
     return run.ending(workflow, REPOSITORY, seconds, LOOK_AT, n_failed, viewers)
@@ -38,8 +41,15 @@ def last_words():
     """Tell the jobs to who asks, and the user of results that Snakemake has no records of."""
     with contextlib.chdir(STUDIED_IN):  # which Snakemake has left
         planned.tell(workflow, STUDY)
-        for line in planned.unseen(workflow, REPOSITORY):
+        for line in [*planned.unseen(workflow, REPOSITORY), *untold()]:
             print(line, file=sys.stderr)
+
+
+def untold():
+    """Return what lacks consent, unless a run has told it or Snakemake was refused."""
+    if HAS_RUN or workflow.scheduler is None:
+        return []
+    return run.announced(STUDY) if workflow.dryrun else run.left_out(STUDY)
 
 
 if workflow.is_main_process:

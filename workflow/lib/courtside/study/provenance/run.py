@@ -212,6 +212,16 @@ def left_out(study: Study) -> list[str]:
     return found
 
 
+def announced(study: Study) -> list[str]:
+    """Return the lines that `left_out` would give now, before a run; nothing is written."""
+    lines = [
+        f"{session.name}: {line}"
+        for session in study.sessions.values()
+        for line in consent.left_out(session)
+    ]
+    return lines + remaining(study)
+
+
 def remaining(study: Study) -> list[str]:
     """Return a line for each thing that is left of what the session files no longer ask for."""
     found = [
