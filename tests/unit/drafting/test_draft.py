@@ -48,6 +48,8 @@ def test_a_whole_session_has_all_its_keys():
     assert "walk.mp4}  # 64x48, 60 Hz, 95.2 s" in text
     assert text.count(session_draft.MARK) >= 6
     assert "click them" in text
+    (described,) = (line for line in text.splitlines() if line.startswith("description:"))
+    assert "no names of persons, the report shows it" in described  # the folder may be called so
 
 
 def test_the_workflow_takes_a_draft(tmp_path):

@@ -40,7 +40,7 @@ def text(guess: Guess, *, title: str, folder: str, court: str = "badminton") -> 
         f"# Drafted from {_quoted(folder)}: check the lines with `{MARK}`; config/README.md lists "
         "all keys.",
         f"description: {_quoted(title)}  {MARK} one line for captions: the gym, the day, the "
-        "layout",
+        "layout; no names of persons, the report shows it",
         f"court: {court if measured else 'none'}  {MARK} none, or a file of config/courts",
     ]
     if guess.takes:
