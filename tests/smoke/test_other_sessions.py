@@ -38,13 +38,13 @@ def gym(tmp_path_factory):
     return root
 
 
-def study(gym, name, session, **settings):
-    """Run a study of one session; return the folder of its results."""
+def study(gym, name, session, asked=(), **settings):
+    """Run a study of one session, or only some files of it; return the folder of its results."""
     (gym / "config" / "sessions" / f"{name}.yaml").write_text(yaml.safe_dump(session))
     mine = {"sessions": [name], "variations": [], "plans": []}
     mine |= {"calibrations": ["sfm-n12", "known8"]} | settings
     (gym / "config" / "mine.yaml").write_text(yaml.safe_dump(mine))
-    done = snakemake("--configfile", "config/mine.yaml", root=gym)
+    done = snakemake("--configfile", "config/mine.yaml", "--", *asked, root=gym)
     assert done.returncode == 0, done.stdout + done.stderr
     return gym / "results" / name
 
@@ -207,6 +207,32 @@ def test_2d_and_3d_of_other_programs_become_skeletons_and_measures(gym):
     beside = keypoints.read_2d(results / "pose2d/body25b/cam01.npz")
     assert np.array_equal(beside.xy, alone.xy, equal_nan=True)
     assert beside.time_s == pytest.approx(alone.time_s)
+
+
+def test_recordings_of_devices_alone_are_synchronised(gym, tiny_study):
+    """The recordings that a simulation wrote, as a lab has them: files in data/, no truth."""
+    made, data = tiny_study / "virtual/single-view-tiny/takes/claps", gym / "data" / "room"
+    data.mkdir(parents=True)
+    files = {"d415": "d415.bag", "mocopi": "mocopi.bvh"}
+    for file in files.values():
+        shutil.copy(made / file, data)
+    devices = {name: {"file": f"data/room/{file}"} for name, file in files.items()}
+    session = {
+        "description": "a depth camera and a suit",
+        "court": "none",
+        "subjects": {"p1": {"height_m": 1.84}},
+        "cameras": {},
+        "takes": {"claps": {"subjects": ["p1"], "devices": devices}},
+    }
+    clocks = "results/room/takes/claps/sync/devices.blazepose-full.json"
+    results = study(gym, "room", session, asked=(clocks,), models=["blazepose-full"])
+    found = json.loads((results / "takes/claps/sync/devices.blazepose-full.json").read_text())
+    suit = found["cameras"]["mocopi"]
+    true_s = yaml.safe_load((gym / "config/sessions/single-view-tiny.yaml").read_text())
+    true_s = true_s["takes"]["claps"]["virtual"]["clocks"]["mocopi"]["offset_s"]
+    assert abs(suit["offset_s"] - true_s) < 3 * suit["uncertainty_s"] < 0.1
+    done = snakemake("-n", "--configfile", "config/mine.yaml", root=gym)
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_an_own_detector_is_checked_and_kept(gym):
