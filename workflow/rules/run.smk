@@ -23,6 +23,7 @@ LOOK_AT = [paths.REPORT, paths.PLAYERS_TABLE, paths.CALIBRATION_TABLE]
 
 def record_provenance(call=asked):
     """Write the sidecars of all files that are newer than theirs; `call` tells what prevents it."""
+    HAS_RUN.append(True)
     read = [CONFIG / paths.SESSION_YAML.format(session=name) for name in config["sessions"]]
     registers = ("external.yaml", "models.yaml", "detectors.yaml")
     read = [*(CONFIG / name for name in registers), *read]
@@ -31,7 +32,6 @@ def record_provenance(call=asked):
 
 def end_of_run(n_failed=0):
     """Return the words at the end of a run; `n_failed` takes were made, but judged as failed."""
-    HAS_RUN.append(True)
     viewers = targets.pages.every_viewer(STUDY)
     seconds = time.monotonic() - STARTED_S
     return run.ending(workflow, REPOSITORY, seconds, LOOK_AT, n_failed, viewers)
@@ -49,7 +49,10 @@ def untold():
     """Return what lacks consent, unless a run has told it or Snakemake was refused."""
     if HAS_RUN or workflow.scheduler is None:
         return []
-    return run.announced(STUDY) if workflow.dryrun else run.left_out(STUDY)
+    try:
+        return run.announced(STUDY) if workflow.dryrun else run.left_out(STUDY)
+    except OSError as error:
+        return [f"Error: {error.filename}: what lacks consent is not listed: {error.strerror}"]
 
 
 if workflow.is_main_process:
