@@ -49,10 +49,7 @@ def untold():
     """Return what lacks consent, unless a run has told it or Snakemake was refused."""
     if HAS_RUN or workflow.scheduler is None:
         return []
-    try:
-        return run.announced(STUDY) if workflow.dryrun else run.left_out(STUDY)
-    except OSError as error:
-        return [f"Error: {error.filename}: what lacks consent is not listed: {error.strerror}"]
+    return run.told_without_jobs(STUDY, workflow.dryrun)
 
 
 if workflow.is_main_process:

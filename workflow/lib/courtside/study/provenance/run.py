@@ -212,8 +212,16 @@ def left_out(study: Study) -> list[str]:
     return found
 
 
-def announced(study: Study) -> list[str]:
-    """Return the lines that `left_out` would give now, before a run; nothing is written."""
+def told_without_jobs(study: Study, is_dry: bool) -> list[str]:
+    """Return what `left_out` says where no job ran, or of a dry run would say."""
+    try:
+        return _announced(study) if is_dry else left_out(study)
+    except OSError as error:
+        return [f"Error: {error.filename}: what lacks consent is not listed: {error.strerror}"]
+
+
+def _announced(study: Study) -> list[str]:
+    """Return the lines that `left_out` would give now; nothing is written."""
     lines = [
         f"{session.name}: {line}"
         for session in study.sessions.values()
