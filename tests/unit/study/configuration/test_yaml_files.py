@@ -111,13 +111,14 @@ def test_the_mark_that_windows_puts_first_is_left_out(tmp_path):
         ("b", "mine.yaml"),
         ("e.0", "config.yaml"),
         ("f", "mine.yaml"),
+        ("b.null", "mine.yaml"),
         ("top level", "mine.yaml"),
     ],
 )
 def test_a_value_stands_in_the_default_file_if_that_has_the_same_one(tmp_path, key, file):
     default = tmp_path / "config.yaml"
     default.write_text("a: 1\nb: {c: 2, d: 3}\ne: [4]\n")
-    merged = {"a": 0, "b": {"c": 2, "d": 5}, "e": [4], "f": 6}
+    merged = {"a": 0, "b": {"c": 2, "d": 5, "null": None}, "e": [4], "f": 6}
     found = yaml_files.file_of(key, merged, "mine.yaml", default)
     assert found == (str(default) if file == "config.yaml" else file)
     assert yaml_files.file_of(key, merged, "mine.yaml", tmp_path / "absent.yaml") == "mine.yaml"

@@ -92,7 +92,9 @@ def same(key: str, one: Any, other: Any) -> bool:
     for part in key.split("."):
         if not (isinstance(one, dict) and part in one):
             break
-        one, other = one[part], other.get(part) if isinstance(other, dict) else None
+        if not (isinstance(other, dict) and part in other):
+            return False  # though the value may be null
+        one, other = one[part], other[part]
     return one == other
 
 
