@@ -49,6 +49,21 @@ def test_a_take_that_its_session_does_not_have_is_told():
     assert line.startswith("season.yaml: draw_thesis_fig3.take: expected one of the takes of")
 
 
+def test_a_recorded_session_that_is_to_be_compared_with_the_truth_is_told():
+    drawn = {"draw_three_cameras": {"takes": ["spring/pre1", "winter/pre1"]}}
+    (line,) = said(study(**drawn))
+    assert line == (
+        "season.yaml: draw_three_cameras.takes: expected names of virtual sessions, whose truth is "
+        "known, found spring/pre1; remove it"
+    )
+    measured = {"evaluate_racket": PARAMETERS["evaluate_racket"] | {"sessions": ["autumn"]}}
+    (line,) = said(study(**measured))
+    assert line.startswith("season.yaml: evaluate_racket.sessions: expected names of virtual")
+    one = study(**drawn, **measured)
+    virtual = {name: replace(each, virtual={"seed": 1}) for name, each in one.sessions.items()}
+    assert said(replace(one, sessions=virtual)) == []
+
+
 def test_a_take_without_consent_and_a_value_of_the_default_file_are_not_told():
     one = study(**overlay("spring/pre2"))
     spring = one.sessions["spring"]

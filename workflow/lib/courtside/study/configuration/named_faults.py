@@ -33,6 +33,13 @@ def find(config_file: str, study: Study) -> Iterator[str]:
                 f"{config_file}: {key}: expected one of the takes of session {session_name}, "
                 f"{_takes(session)}, found {name}; correct the name, or remove it"
             )
+    for key, name in _compared_with_truth(study.parameters):
+        session = study.sessions.get(name.partition("/")[0])
+        if session and not session.virtual and is_own(key):
+            yield (
+                f"{config_file}: {key}: expected names of virtual sessions, whose truth is known, "
+                f"found {name}; remove it"
+            )
     faults = list(_faults_of_comparison(f"{config_file}: compare_sessions", study))
     if faults and is_own("compare_sessions"):
         yield from faults
@@ -45,6 +52,12 @@ def _named(parameters: dict[str, Any]) -> Iterator[tuple[str, str]]:
     yield "draw_thesis_fig3.take", parameters["draw_thesis_fig3"]["take"]
     for layout, place in parameters["draw_badminton_fig05"]["layouts"].items():
         yield f"draw_badminton_fig05.layouts.{layout}.take", place["take"]
+
+
+def _compared_with_truth(parameters: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """Yield the key and the name of each session or take that a step compares with the truth."""
+    yield from (("draw_three_cameras.takes", t) for t in parameters["draw_three_cameras"]["takes"])
+    yield from (("evaluate_racket.sessions", s) for s in parameters["evaluate_racket"]["sessions"])
 
 
 def _takes(session: Session) -> list[str]:
