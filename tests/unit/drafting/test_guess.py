@@ -347,6 +347,12 @@ def test_one_video_beside_files_of_devices_is_a_device_of_their_take():
     }
 
 
+@pytest.mark.parametrize("model", ["d415", "D435i", "l515"])
+def test_the_model_of_a_depth_camera_names_no_take(model):
+    names = {"mocopi": "claps_mocopi.bvh", "realsense": f"claps_{model}.bag"}
+    assert devices(guess(*names.values())) == {"claps": names}
+
+
 def test_videos_that_say_that_they_are_of_a_webcam_are_takes():
     names = [
         f"{take}/{take}_{ending}"

@@ -29,6 +29,8 @@ DEVICES = {"bvh": "mocopi", "bag": "realsense", "depth": "rgbd"}  # by kind
 WEBCAM = "webcam"
 # Words at the end or the start of a name that say what recorded it, not what was recorded.
 RECORDERS = {*DEVICES.values(), WEBCAM, "depth"}
+RECORDERS |= {"d405", "d415", "d435", "d455", "l515"}  # of RealSense
+D435I = ["d435", "i"]  # as words
 CAMERA = re.compile(
     r"(cam|camera|c|gopro|gp|view|kamera|phone|iphone|pixel|dslr|miqus|oqus|arqus)[0-9]+"
     r"|(left|right|centre|center|middle|back|front|side|rear|oblique|mirror|links|rechts|mitte)[0-9]*"
@@ -201,7 +203,7 @@ def _take_of(recording: Recording) -> str:
     own = words_of(recording.parts[-1:] if said is None else (said.before, said.after))
     for words in (own, words_of(recording.parts[-2:-1])):
         left = list(words)
-        while left and left[-1] in RECORDERS:
+        while left and (left[-1] in RECORDERS or left[-2:] == D435I):
             left.pop()
         while left and left[0] in RECORDERS:
             left.pop(0)
