@@ -28,9 +28,9 @@ def write(path: StrPath, posed: PosedHierarchy, *, only_root_moves: bool = False
     stand depth first, each chain to its end. BVH has no start time: the first frame's time is lost.
     A joint at the end of a chain without a tip gets one of length zero, because many readers
     require one. If the middle angle is 90 degrees the other two are not unique; the last is then
-    zero. Raises `InputError` if a value is missing,
-    two joints have one name, a name is blank or has blanks in it, or the frames are not even in
-    time, `ValueError` if there is not one root at the front.
+    zero. Raises `InputError` if a value is missing, two joints have one name, a name is blank or
+    has blanks in it, or the frames are not even in time, `ValueError` if there is not one root at
+    the front.
     """
     shape = posed.hierarchy
     if list(shape.parents).count(NO_PARENT) != 1:

@@ -56,9 +56,9 @@ def read(path: StrPath) -> tuple[list[str], float, NDArray, NDArray]:
     """Read joints, rate (Hz), times (T,) s and positions (T, J, 3) of any program's TRC file.
 
     Positions are metres along world axes, NaN where blank, or 0 0 0 as programs write it that have
-    no blanks. Raises `InputError` if the file is not a
-    TRC file in m, cm or mm, a line has another number of values, the header counts other markers
-    or frames than there are, or times do not follow each other as its rate says.
+    no blanks. Raises `InputError` if the file is not a TRC file in m, cm or mm, a line has another
+    number of values, the header counts other markers or frames than there are, or times do not
+    follow each other as its rate says.
     """
     with reading(path, "a TRC file", "export it again"):
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
