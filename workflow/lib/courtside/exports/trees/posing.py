@@ -8,7 +8,14 @@ from numpy.typing import NDArray
 
 from courtside.geometry import interpolation, rotations
 from courtside.geometry.similarity import kabsch
-from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy, at_rest
+from courtside.records.devices.hierarchy import (
+    NO_PARENT,
+    Hierarchy,
+    PosedHierarchy,
+    at_rest,
+    forward,
+    still,
+)
 from courtside.records.keypoints.skeleton import Skeleton
 
 ROOTS = ("waist", "root", "pelvis", "mid_hip", "left_hip")  # the first that a skeleton has
@@ -45,10 +52,7 @@ def rested(posed: PosedHierarchy, rest: NDArray) -> PosedHierarchy:
     now have the same axes: to the left, backwards and up. Programs that retarget expect a T-pose.
     """
     shape = posed.hierarchy
-    in_body = rest.copy()
-    for joint, parent in enumerate(shape.parents):
-        if parent != NO_PARENT:
-            in_body[joint] = in_body[parent] @ rest[joint]
+    in_body = forward(still(shape, rest))[1][0]
     axes = np.swapaxes(in_body, 1, 2) @ Z_UP_IN_SEGMENT
     root = (shape.parents == NO_PARENT)[:, None, None]
     back = np.swapaxes(np.where(root, np.eye(3), axes[shape.parents]), 1, 2)

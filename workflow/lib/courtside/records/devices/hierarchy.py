@@ -52,15 +52,6 @@ class PosedHierarchy:
             )
 
 
-def at_rest(shape: Hierarchy) -> NDArray:
-    """Return the places (J, 3) of the joints where none is turned, metres."""
-    places = shape.offsets.copy()
-    for joint, parent in enumerate(shape.parents):
-        if parent != NO_PARENT:
-            places[joint] += places[parent]
-    return places
-
-
 def forward(posed: PosedHierarchy) -> tuple[NDArray, NDArray]:
     """Compute every joint's pose in the device's world: forward kinematics.
 
@@ -78,3 +69,13 @@ def forward(posed: PosedHierarchy) -> tuple[NDArray, NDArray]:
         np.matmul(turned[parent], local[joint], out=turned[joint])
         xyz[joint] = xyz[parent] + (turned[parent] @ places[joint][:, :, None])[:, :, 0]
     return np.moveaxis(xyz, 0, 1), np.moveaxis(turned, 0, 1)
+
+
+def still(shape: Hierarchy, turns: NDArray) -> PosedHierarchy:
+    """Return one frame of joints at their offsets, with rotations (J, 3, 3) in their parents."""
+    return PosedHierarchy(shape, np.zeros(1), shape.offsets[None], turns[None])
+
+
+def at_rest(shape: Hierarchy) -> NDArray:
+    """Return the places (J, 3) of the joints where none is turned, metres."""
+    return forward(still(shape, np.tile(np.eye(3), (len(shape.joints), 1, 1))))[0][0]
