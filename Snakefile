@@ -114,15 +114,7 @@ rule report:
 # Snakemake's own line on a file that no rule makes does not say what was expected. It hands the
 # targets over only once this file is read.
 if workflow.is_main_process and "snakemake" in sys.argv[0]:
-    named = set(cli.get_argument_parser().parse_known_args(sys.argv[1:])[0].targets)
-    made_by = [rule.name for rule in workflow.rules]
-    files_made = [str(file) for rule in workflow.rules for file in rule.products()]
-    unmade = [
-        targets.names.fault(path, list(STUDY.sessions), [*made_by, *files_made, *rules.all.input])
-        for path in sorted(
-            os.path.normpath(name).replace(os.sep, "/") for name in named - {*made_by}
-        )
-        if not (os.path.exists(path) or any(rule.is_producer(path) for rule in workflow.rules))
-    ]
+    wanted = cli.get_argument_parser().parse_known_args(sys.argv[1:])[0].targets
+    unmade = targets.names.faults(wanted, workflow.rules, STUDY, rules.all.input)
     if unmade:
         sys.exit("\n".join(f"Error: {line}" for line in unmade))

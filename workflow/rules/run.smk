@@ -17,7 +17,7 @@ from courtside.study.provenance import planned, run
 
 STARTED_S = time.monotonic()
 STUDIED_IN = Path.cwd()
-HAS_RUN = []  # jobs of this workflow, so that hooks of the Snakefile tell how they ended
+HAS_RUN = []  # not empty once jobs have run: hooks of the Snakefile then tell how they ended
 LOOK_AT = [paths.REPORT, paths.PLAYERS_TABLE, paths.CALIBRATION_TABLE]
 
 

@@ -1,5 +1,8 @@
 """A file that no rule makes: the line says what there is, and the nearest name."""
 
+from dataclasses import dataclass
+from types import SimpleNamespace
+
 import pytest
 
 from courtside.study.targets import names
@@ -25,3 +28,28 @@ def test_a_name_that_nothing_makes_is_told_with_the_nearest_one(target, said):
     line = names.fault(target, ["north", "south"], KNOWN)
     assert line.startswith(f"{target}: expected")
     assert said in line
+
+
+@dataclass
+class Rule:
+    """What is asked of a rule of Snakemake."""
+
+    name: str
+    made: str
+
+    def is_producer(self, path):
+        return path == self.made
+
+    def products(self):
+        return [self.made]
+
+
+def test_rules_and_their_files_and_files_on_the_disk_are_no_fault(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.csv").touch()
+    rules = [Rule("all", "none"), Rule("draw", "results/north/a.png")]
+    study = SimpleNamespace(sessions={"north": None})
+    wanted = ["all", "./results/north/a.png", "mine.csv"]
+    assert names.faults(wanted, rules, study, []) == []
+    (line,) = names.faults([*wanted, "results/north/b.png"], rules, study, ["results/north/bb.png"])
+    assert line.startswith("results/north/b.png: ") and "'results/north/bb.png'" in line

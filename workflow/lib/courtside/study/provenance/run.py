@@ -217,7 +217,10 @@ def told_without_jobs(study: Study, is_dry: bool) -> list[str]:
     try:
         return _announced(study) if is_dry else left_out(study)
     except OSError as error:
-        return [f"Error: {error.filename}: what lacks consent is not listed: {error.strerror}"]
+        return [
+            f"Error: {error.filename}: expected a file that can be written, with what persons have "
+            f"not agreed to, found: {error.strerror}; mend this, then run `snakemake` again"
+        ]
 
 
 def _announced(study: Study) -> list[str]:

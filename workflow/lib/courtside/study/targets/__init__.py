@@ -6,7 +6,7 @@ devices: figures and errors of takes with devices of their own
 together: figures and tables of several takes
 pages: viewers, clicking pages, videos with skeletons, plans
 remains: results of takes that are no more, or that persons no longer agree to
-names: `fault`: of a file that is asked for and that no rule makes
+names: `faults`: files that are asked for and that no rule makes
 numbers: tables that the numbers of the documents come from
 """
 

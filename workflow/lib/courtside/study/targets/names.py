@@ -1,14 +1,39 @@
 """Names of files that a user asks for and that no rule makes."""
 
+import os
 import re
 from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
 
 from courtside.study import paths
 from courtside.study.configuration.configuration import RESERVED
+from courtside.study.configuration.sessions import Study
 from courtside.study.errors import nearest
 
 MADE = "see config/README.md, Files that the study makes"
 OF_SESSION = re.compile(r"\{session\b[^{}]*\}")
+
+
+def faults(
+    wanted: Iterable[str], rules: Iterable[Any], study: Study, by_default: Iterable[str]
+) -> list[str]:
+    """Return a line for each target that is no file, and that none of Snakemake's `rules` makes.
+
+    `by_default` are the files of the study that it makes without being asked.
+    """
+    named = {rule.name: rule for rule in rules}
+    asked = {os.path.normpath(name).replace(os.sep, "/") for name in wanted if name not in named}
+    unmade = [
+        path
+        for path in sorted(asked)
+        if not (Path(path).exists() or any(rule.is_producer(path) for rule in named.values()))
+    ]
+    if not unmade:
+        return []
+    made = [str(file) for rule in named.values() for file in rule.products()]
+    known = [*named, *made, *by_default]
+    return [fault(path, list(study.sessions), known) for path in unmade]
 
 
 def fault(target: str, sessions: Sequence[str], known: Iterable[str]) -> str:
