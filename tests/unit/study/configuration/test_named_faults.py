@@ -7,7 +7,7 @@ import pytest
 import yaml
 
 from courtside.study.configuration import named_faults, session_files
-from courtside.study.configuration.sessions import Study
+from courtside.study.configuration.sessions import Device, Study
 
 PARAMETERS = yaml.safe_load(Path("config/config.yaml").read_text(encoding="utf-8"))
 COMPARED = PARAMETERS["compare_sessions"] | {"takes": ["pre", "post"], "measures": None}
@@ -62,6 +62,27 @@ def test_a_recorded_session_that_is_to_be_compared_with_the_truth_is_told():
     one = study(**drawn, **measured)
     virtual = {name: replace(each, virtual={"seed": 1}) for name, each in one.sessions.items()}
     assert said(replace(one, sessions=virtual)) == []
+
+
+def test_a_take_without_the_sources_of_the_thesis_figures_is_told():
+    step = {"take": "spring/pre1", "sources": ["suit", "bag-depth"]}
+    one = study(draw_thesis_fig3=step)
+    (line,) = said(one)
+    assert line == (
+        "season.yaml: draw_thesis_fig3.take: expected a take with devices, found spring/pre1; name "
+        "another, or remove the key"
+    )
+    spring = one.sessions["spring"]
+    devices = {"suit": Device("inertial", "a.bvh", "alma"), "d415": Device("rgbd", "a.bag", "alma")}
+    take = replace(spring.takes["pre1"], devices=devices)
+    one = replace(one, sessions={"spring": replace(spring, takes={"pre1": take})})
+    (line,) = said(one)
+    assert line == (
+        "season.yaml: draw_thesis_fig3.sources: expected sources of spring/pre1, ['suit', "
+        "'suit-corrected', 'd415-depth', 'd415-rgb'], found ['bag-depth']; name two of them"
+    )
+    step["sources"] = ["d415-rgb", "suit-corrected"]
+    assert said(one) == []
 
 
 def test_a_take_without_consent_and_a_value_of_the_default_file_are_not_told():

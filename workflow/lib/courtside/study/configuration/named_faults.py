@@ -33,13 +33,9 @@ def find(config_file: str, study: Study) -> Iterator[str]:
                 f"{config_file}: {key}: expected one of the takes of session {session_name}, "
                 f"{_takes(session)}, found {name}; correct the name, or remove it"
             )
-    for key, name in _compared_with_truth(study.parameters):
-        session = study.sessions.get(name.partition("/")[0])
-        if session and not session.virtual and is_own(key):
-            yield (
-                f"{config_file}: {key}: expected names of virtual sessions, whose truth is known, "
-                f"found {name}; remove it"
-            )
+    for key, told in (*_without_truth(study), *_without_sources(study)):
+        if is_own(key):
+            yield f"{config_file}: {told}"
     faults = list(_faults_of_comparison(f"{config_file}: compare_sessions", study))
     if faults and is_own("compare_sessions"):
         yield from faults
@@ -54,10 +50,43 @@ def _named(parameters: dict[str, Any]) -> Iterator[tuple[str, str]]:
         yield f"draw_badminton_fig05.layouts.{layout}.take", place["take"]
 
 
-def _compared_with_truth(parameters: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    """Yield the key and the name of each session or take that a step compares with the truth."""
-    yield from (("draw_three_cameras.takes", t) for t in parameters["draw_three_cameras"]["takes"])
-    yield from (("evaluate_racket.sessions", s) for s in parameters["evaluate_racket"]["sessions"])
+def _without_truth(study: Study) -> Iterator[tuple[str, str]]:
+    """Yield the key and a fault of each recorded session that is to be compared with the truth."""
+    compared = {
+        "draw_three_cameras.takes": study.parameters["draw_three_cameras"]["takes"],
+        "evaluate_racket.sessions": study.parameters["evaluate_racket"]["sessions"],
+    }
+    for key, names in compared.items():
+        for name in names:
+            session = study.sessions.get(name.partition("/")[0])
+            if session and not session.virtual:
+                yield (
+                    key,
+                    f"{key}: expected names of virtual sessions, whose truth is known, found "
+                    f"{name}; remove it",
+                )
+
+
+def _without_sources(study: Study) -> Iterator[tuple[str, str]]:
+    """Yield the key and a fault if the take of figures 3.1 and 3.2 lacks their sources."""
+    step, key = study.parameters["draw_thesis_fig3"], "draw_thesis_fig3.take"
+    for session, take in study.named_takes([step["take"]]):
+        there = ["cameras"] * session.measures(take)
+        for name, device in take.devices.items():
+            there += [*device.sources(name, metric_body=True)]
+            there += [f"{name}-corrected"] * device.is_suit
+        if not take.devices:
+            yield (
+                key,
+                f"{key}: expected a take with devices, found {step['take']}; name another, or "
+                "remove the key",
+            )
+        elif unknown := [name for name in step["sources"] if name not in there]:
+            yield (
+                key,
+                f"draw_thesis_fig3.sources: expected sources of {step['take']}, {there}, found "
+                f"{unknown}; name two of them",
+            )
 
 
 def _takes(session: Session) -> list[str]:
