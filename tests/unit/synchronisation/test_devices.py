@@ -80,6 +80,23 @@ def test_a_short_take_of_noisy_devices_is_covered():
     assert np.median(stated) < 0.01
 
 
+@pytest.mark.parametrize("from_1970", [(True, False), (False, True)])
+def test_a_clock_that_counts_from_1970_is_found_as_well(from_1970):
+    take = device_takes.truth(0)
+    rng = np.random.default_rng(0)
+    reference = device_takes.device(rng, take, **CAMERAS)
+    mocopi = device_takes.mocopi(rng, take, clock=Clock(0.4, 55.0))
+    near = solve(reference, mocopi)["mocopi"].clock
+    shifts = np.array(from_1970) * 1_715_151_474.879921
+    moved = [
+        replace(motion, time_s=motion.time_s + shift)
+        for motion, shift in zip((reference, mocopi), shifts, strict=True)
+    ]
+    clock = solve(*moved)["mocopi"].clock
+    own_s = near.from_reference(reference.time_s)
+    assert clock.from_reference(moved[0].time_s) - shifts[1] == pytest.approx(own_s, abs=1e-5)
+
+
 def test_a_stated_latency_is_reported_and_not_taken_off():
     take = device_takes.truth(0)
     rng = np.random.default_rng(0)

@@ -175,15 +175,16 @@ def _joined(pairs, moved, reference, where) -> Found:
     apart_s = np.array([second.time_s - first.time_s for first, second in pairs])
     sigma_s = np.array([np.hypot(*(clap.uncertainty_s for clap in pair)) for pair in pairs])
     centre_s = moved.centre_s if moved else float(at_s.mean())
+    near_s = float(apart_s[0])  # clocks may count from 1970: sums of squares are of small numbers
     rows = np.column_stack([np.ones(len(pairs)), np.zeros(len(pairs)), at_s - centre_s])
     information = np.diag([0.0, MOTION_BIAS_S**-2, PRIOR_DRIFT**-2])
     information += (rows / sigma_s[:, None] ** 2).T @ rows
-    moments = rows.T @ (apart_s / sigma_s**2)
+    moments = rows.T @ ((apart_s - near_s) / sigma_s**2)
     if moved:
         rows = np.array([[1.0, 1, 0], [0, 0, 1]])
         inverse = np.linalg.inv(moved.covariance[2:, 2:])
         information += rows.T @ inverse @ rows
-        moments += rows.T @ inverse @ [moved.offset_s[1], moved.drift[1]]
+        moments += rows.T @ inverse @ [moved.offset_s[1] - near_s, moved.drift[1]]
     covariance = np.linalg.inv(information)
     state = covariance @ moments
     ends = reference.time_s[[0, -1]] - centre_s
@@ -198,7 +199,7 @@ def _joined(pairs, moved, reference, where) -> Found:
             "its offset_s under clocks of the take"
         )
     clock = Clock(
-        offset_s=float(state[0] - state[2] * centre_s),
+        offset_s=float(near_s + state[0] - state[2] * centre_s),
         drift_ppm=float(1e6 * state[2]),
         uncertainty_s=spread_s,
         drift_uncertainty_ppm=float(1e6 * np.sqrt(covariance[2, 2])),
