@@ -32,7 +32,7 @@ rule correct_inertial:
 
 rule align_bodies:
     input:
-        device_npz=of_job(lambda job: devices.sources(job)[job["source"]].file),
+        device_npz=of_job(lambda job: devices.source(job).file),
         sync_json=paths.DEVICE_CLOCKS,
         events_json=of_job(devices.event_files),
         derived_yaml=CONFIG / paths.DERIVED_JOINTS_YAML,

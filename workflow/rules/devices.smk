@@ -133,7 +133,7 @@ rule select_person:
 
 rule fit_source:
     input:
-        device_npz=of_job(lambda job: devices.sources(job)[job["source"]].file),
+        device_npz=of_job(lambda job: devices.source(job).file),
         skeleton_yaml=of_job(devices.source_skeleton),
     output:
         joints_npz=paths.FITTED_SOURCE,

@@ -64,6 +64,20 @@ def test_a_suit_is_exported_only_where_its_person_agreed(job, study):
         devices.exported_source(job(silent, **source))
 
 
+@pytest.mark.parametrize(
+    ("function", "asked", "told"),
+    [
+        (devices.exported, {"device": "d415"}, "a device of mocopi, found 'd415'"),
+        (devices.exported_source, {"source": "d415"}, "a source of d415-depth, d415-rgb, mocopi,"),
+        (devices.source_skeleton, {"source": "d415"}, "a source of d415-depth, d415-rgb, mocopi,"),
+        (devices.source, {"source": "d415"}, "a source of d415-depth, d415-rgb, mocopi,"),
+    ],
+)
+def test_a_file_of_no_suit_or_source_is_told(job, function, asked, told):
+    with pytest.raises(InputError, match=f"single-view-tiny.yaml: expected {told}"):
+        function(job(**CLAPS, **asked))
+
+
 def test_fixed_cameras_are_the_first_source(job, study):
     session = study.sessions["players-tiny"]
     suit = {"suit": Device("inertial", "m.bvh", "p1")}

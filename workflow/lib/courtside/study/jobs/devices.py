@@ -46,6 +46,11 @@ def sources(job: Job, corrected: bool = True) -> dict[str, Source]:
     return found
 
 
+def source(job: Job, corrected: bool = True) -> Source:
+    """Return the source that a file is of; an error where its take has none of that name."""
+    return job.named(sources(job, corrected), "source")
+
+
 def source_files(job: Job, corrected: bool = True) -> list[str]:
     """Return the files of all sources of a take."""
     return [source.file for source in sources(job, corrected).values()]
@@ -68,6 +73,7 @@ def skeleton_file(job: Job) -> Path:
 
 def exported(job: Job) -> str:
     """Return the motion of a device that a file for other programs is made from, where agreed."""
+    job.named({name: one for name, one in job.take.devices.items() if one.is_suit}, "device")
     _demand_export(job)
     return job.fill(paths.DEVICE)
 
@@ -75,7 +81,7 @@ def exported(job: Job) -> str:
 def exported_source(job: Job) -> str:
     """Return the joints of a source for export; raise an error without the person's consent."""
     _demand_export(job)
-    return sources(job, corrected=False)[job["source"]].file
+    return source(job, corrected=False).file
 
 
 def _demand_export(job: Job) -> None:
@@ -84,7 +90,7 @@ def _demand_export(job: Job) -> None:
 
 def source_skeleton(job: Job) -> Path:
     """Return the skeleton of a source."""
-    name = sources(job)[job["source"]].skeleton
+    name = source(job).skeleton
     return job.study.skeleton_yaml(name)
 
 
@@ -113,7 +119,7 @@ def event_files(job: Job) -> list[str]:
 
 def alignment(job: Job) -> dict[str, Any]:
     """Return the skeleton of a source, the devices of all, and those whose clock is stated."""
-    skeleton = sources(job)[job["source"]].skeleton
+    skeleton = source(job).skeleton
     return {"skeleton": skeleton, "devices": clocks(job), "stated": list(job.take.clocks)}
 
 

@@ -39,19 +39,19 @@ class Job:
                 f"{session.file}: expected analysis in the consent of {who}, "
                 f"found none: nothing is made of take {name}; ask for files of other takes"
             )
-        return self._known(session.takes, "take")
+        return self.named(session.takes, "take")
 
     @property
     def camera(self) -> FixedCamera:
         """Its fixed camera."""
-        return self._known(self.session.cameras, "camera")
+        return self.named(self.session.cameras, "camera")
 
     @property
     def device(self) -> Device:
         """Its device."""
-        return self._known(self.take.devices, "device")
+        return self.named(self.take.devices, "device")
 
-    def _known(self, known: Mapping[str, Named], what: str) -> Named:
+    def named(self, known: Mapping[str, Named], what: str) -> Named:
         """Return the record of a wildcard; an error where a file of another one is asked for."""
         if self[what] not in known:
             there = ", ".join(known) or "none"
