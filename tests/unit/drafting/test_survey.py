@@ -70,6 +70,21 @@ def test_every_kind_is_found(gym):
     assert found["data/My Gym/cut right.mp4"].note.startswith("expected a video")
 
 
+@pytest.mark.parametrize(
+    ("columns", "key"),
+    [
+        ("take,subject,camera,time_s,x_px,y_px", "people"),
+        ("camera,x_px,y_px,x_m,y_m,z_m", "court_points"),
+        ("picture,camera,corner,x_px,y_px", "board: corners"),
+        ("camera,frame,marker,x_px,y_px", "wand: points"),
+    ],
+)
+def test_a_table_of_another_key_is_told_with_the_key(tmp_path, columns, key):
+    (tmp_path / "table.csv").write_text(f"{columns}\n")
+    (found,) = survey.survey(tmp_path, root=tmp_path)
+    assert (found.kind, found.note) == ("unusable", f"by its columns `{key}`; name it there")
+
+
 def test_folders_of_keypoints_are_found(tmp_path):
     for name, count in (("cam1_json", 26), ("odd_json", 7), ("nobody_json", 0)):
         (tmp_path / "pose" / name).mkdir(parents=True)

@@ -23,6 +23,12 @@ BAGS = {".bag", ".db3"}
 # A YAML file in a folder of recordings may be anything.
 CALIBRATIONS = {".toml", ".txt", ".xml", ".xcp", ".mcal"}
 CLICKED = {"camera", "x_px", "y_px"}
+OTHER_TABLES = {  # by the key of a session that names them: columns beside those
+    "people": {"take", "subject", "time_s"},
+    "court_points": {"x_m", "y_m", "z_m"},
+    "board: corners": {"picture", "corner"},
+    "wand: points": {"marker"},
+}
 RACKET = {"take", "camera", "frame_idx", "end"}
 EMPTY = "an empty folder; copy its recordings into it, or delete it"
 
@@ -144,6 +150,9 @@ def _table(path: Path) -> dict[str, Any] | None:
         return {"kind": "court_points"}
     if header >= RACKET:
         return {"kind": "racket"}
+    for key, columns in OTHER_TABLES.items():
+        if header >= CLICKED | columns:
+            return {"kind": "unusable", "note": f"by its columns `{key}`; name it there"}
     if header >= CLICKED:
         expected = ",".join(clicks.COLUMNS)
         note = f"clicked points? expected the columns {expected}, found {','.join(sorted(header))}"
