@@ -75,6 +75,16 @@ def test_a_device_among_others_must_clap():
     assert (len(found["mocopi"].claps), found["d415-depth"].claps) == (2, [])
 
 
+def test_the_reference_need_not_clap_where_all_other_clocks_are_stated():
+    _, rgb, mocopi, depth = take()
+    found = shown([depth, mocopi], DEVICES, stated=["mocopi"])
+    assert (found["d415-depth"].claps, len(found["mocopi"].claps)) == ([], 2)
+    owners = {"d415-depth": "d415", "mocopi": "mocopi", "webcam-rgb": "webcam"}
+    webcam = replace(rgb, source="webcam-rgb")
+    with pytest.raises(InputError, match="d415-depth: expected a T-pose"):
+        shown([depth, mocopi, webcam], owners, stated=["mocopi"])
+
+
 def test_a_device_that_is_alone_need_not():
     *_, depth = take()
     found = shown([depth], {"d415-depth": "d415"})["d415-depth"]

@@ -44,15 +44,18 @@ def of_devices(
     """Give the sources of a take the claps that their devices show; `devices` by source.
 
     One source of each device must show a clap, because they share a clock. A source with T-poses
-    but without a clap gets the claps of its device's first source with claps. A device that is
-    alone, or whose clock is `stated`, needs no clap. An `InputError` if a device among others shows
-    no T-pose and clap in any of its sources; it has a line for each source of all such devices.
+    but without a clap gets the claps of its device's first source with claps. A device whose
+    clock is `stated` needs no clap; nor does the first, the reference, where all others' are, or
+    where it is alone. An `InputError` if a device that needs them shows no T-pose and clap in any
+    of its sources; it has a line for each source of all such devices.
     """
     clapped = {devices[source] for source, each in found.items() if each.claps} | set(stated)
+    reference = devices[next(iter(found))]
+    sought = {*devices.values()} - {reference, *stated}
     faults = [
         each.fault
         for source, each in found.items()
-        if each.fault and devices[source] not in clapped and len(set(devices.values())) > 1
+        if each.fault and devices[source] not in clapped and sought
     ]
     if faults:
         raise InputError(*faults)
