@@ -1,6 +1,7 @@
 """A file that no rule makes: the line says what there is, and the nearest name."""
 
 from dataclasses import dataclass
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -43,13 +44,20 @@ class Rule:
     def products(self):
         return [self.made]
 
+    def get_wildcards(self, path):
+        return {"session": path.split("/")[1], "take": Path(path).stem}
+
 
 def test_rules_and_their_files_and_files_on_the_disk_are_no_fault(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine.csv").touch()
     rules = [Rule("all", "none"), Rule("draw", "results/north/a.png")]
-    study = SimpleNamespace(sessions={"north": None})
+    north = SimpleNamespace(file="north.yaml", takes={"a": None, "b": None}, withheld={})
+    study = SimpleNamespace(sessions={"north": north})
     wanted = ["all", "./results/north/a.png", "mine.csv"]
     assert names.faults(wanted, rules, study, []) == []
     (line,) = names.faults([*wanted, "results/north/b.png"], rules, study, ["results/north/bb.png"])
     assert line.startswith("results/north/b.png: ") and "'results/north/bb.png'" in line
+    rules.append(Rule("other", "results/north/ab.png"))
+    (line,) = names.faults(["results/north/ab.png"], rules, study, [])
+    assert line.startswith("north.yaml: expected a take of a, b, found 'ab'; did you mean")

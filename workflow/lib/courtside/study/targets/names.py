@@ -2,14 +2,15 @@
 
 import os
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from courtside.study import paths
 from courtside.study.configuration.configuration import RESERVED
 from courtside.study.configuration.sessions import Study
-from courtside.study.errors import nearest
+from courtside.study.errors import InputError, nearest
+from courtside.study.jobs.job import Job
 
 MADE = "see config/README.md, Files that the study makes"
 OF_SESSION = re.compile(r"\{session\b[^{}]*\}")
@@ -20,20 +21,35 @@ def faults(
 ) -> list[str]:
     """Return a line for each target that is no file, and that none of Snakemake's `rules` makes.
 
+    Nor does a rule make files of takes, cameras and devices that the session does not have.
     `by_default` are the files of the study that it makes without being asked.
     """
     named = {rule.name: rule for rule in rules}
     asked = {os.path.normpath(name).replace(os.sep, "/") for name in wanted if name not in named}
-    unmade = [
-        path
-        for path in sorted(asked)
-        if not (Path(path).exists() or any(rule.is_producer(path) for rule in named.values()))
-    ]
-    if not unmade:
+    made, lines = None, []
+    for path in sorted(name for name in asked if not Path(name).exists()):
+        makers = [rule for rule in named.values() if rule.is_producer(path)]
+        misnamed = [_misnamed(study, rule.get_wildcards(path)) for rule in makers]
+        if not makers:
+            made = made or [str(file) for rule in named.values() for file in rule.products()]
+            lines.append(fault(path, list(study.sessions), [*named, *made, *by_default]))
+        elif all(misnamed):
+            lines += misnamed[0]
+    return lines
+
+
+def _misnamed(study: Study, wildcards: Mapping[str, str]) -> list[str]:
+    """Return what is wrong with the take, the camera or the device of a file; [] of a right one."""
+    job = Job(study, wildcards)
+    if wildcards.get("session") not in study.sessions:
         return []
-    made = [str(file) for rule in named.values() for file in rule.products()]
-    known = [*named, *made, *by_default]
-    return [fault(path, list(study.sessions), known) for path in unmade]
+    try:
+        for what in ("take", "device", "camera"):
+            if what in wildcards:
+                getattr(job, what)
+    except InputError as error:
+        return error.lines
+    return []
 
 
 def fault(target: str, sessions: Sequence[str], known: Iterable[str]) -> str:
