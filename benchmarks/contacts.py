@@ -19,12 +19,12 @@ import stated
 from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
-from courtside.calibration.point_covariance import WITHIN_90
 from courtside.evaluation.movement import contacts
 from courtside.footwork import feet
 from courtside.kinematics import cutoffs
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.records.truth import take_truth
+from courtside.statistics.normal_errors import WITHIN_90
 
 TAKES = {
     "`players-b`, drill to six corners, 24 s": ("players-b/footwork",),

@@ -19,10 +19,10 @@ from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
-from courtside.calibration.point_covariance import ellipsoid, mahalanobis
 from courtside.evaluation import joints
 from courtside.geometry.similarity import Sim3, kabsch
 from courtside.statistics import moving_blocks
+from courtside.statistics.normal_errors import ellipsoid, mahalanobis
 from courtside.study.errors import InputError
 
 # Compared, with the names that marker systems give them. A marker system's `Hand` is its wrist.

@@ -40,6 +40,7 @@ from courtside.geometry.triangulation import triangulate_all
 from courtside.reconstruction import self_calibration
 from courtside.records.keypoints import keypoints
 from courtside.records.truth import session_truth, take_truth
+from courtside.statistics import normal_errors
 from courtside.study.configuration import yaml_files
 from courtside.synchronisation import cameras as camera_sync
 
@@ -88,7 +89,7 @@ def errors(found, real, xyz):
     off = rigid.points(placed) - xyz
     spread = point_covariance.point_covariance(selection.of_cameras(cameras), covariance, placed)
     spread = best.rotation @ spread @ best.rotation.T
-    inside = point_covariance.mahalanobis(off, spread) <= point_covariance.ellipsoid(0.9)
+    inside = normal_errors.mahalanobis(off, spread) <= normal_errors.ellipsoid(0.9)
     shape = np.linalg.norm(best.points(placed) - xyz, axis=1)
     return (
         1000 * np.median(np.linalg.norm(off, axis=1)),

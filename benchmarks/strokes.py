@@ -23,13 +23,13 @@ from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration.court import court
-from courtside.calibration.point_covariance import WITHIN_90
 from courtside.evaluation.movement import contacts, strokes
 from courtside.evaluation.numbers.players import NETWORK
 from courtside.footwork import feet
 from courtside.kinematics import cutoffs
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.records.truth import take_truth
+from courtside.statistics.normal_errors import WITHIN_90
 from courtside.strokes import detect, reaction
 from courtside.strokes.signals import HANDS
 from virtualgym.body.skinned_body import JOINTS

@@ -42,6 +42,7 @@ from courtside.geometry import camera as camera_models
 from courtside.geometry import rotations, similarity
 from courtside.geometry.similarity import Sim3
 from courtside.geometry.triangulation import triangulate_all
+from courtside.statistics import normal_errors
 from courtside.study.configuration import yaml_files
 from virtualgym import presets
 from virtualgym.devices import wand as simulated
@@ -93,7 +94,7 @@ def errors(found, real, markers):
     network = selection.of_cameras(found.cameras)
     spread = point_covariance.point_covariance(network, found.covariance, xyz)
     off, spread = rigid.points(xyz) - grid, rigid.rotation @ spread @ rigid.rotation.T
-    held = point_covariance.mahalanobis(off, spread) <= point_covariance.ellipsoid(0.9)
+    held = normal_errors.mahalanobis(off, spread) <= normal_errors.ellipsoid(0.9)
     shape = similarity.umeyama(xyz, grid).points(xyz) - grid
     turns = [
         rotations.angles(rigid.camera(one).cam_from_world[:, :3] @ true.cam_from_world[:, :3].T)

@@ -15,19 +15,19 @@ from matplotlib.patches import Ellipse
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
-from courtside.calibration import point_covariance
 from courtside.calibration.court import court as court_files
 from courtside.evaluation import joints as pose_errors
 from courtside.figures.style import oblique_view, picture_crops, stick_figure, style
 from courtside.records.cameras import footage
 from courtside.records.keypoints import derived_joints, keypoints, skeleton
 from courtside.records.truth import take_truth
+from courtside.statistics import normal_errors
 from courtside.video import reader
 
 SESSION, TAKE, TIME_S = "players-b", "shot", 2.37
 CALIBRATION, FUSION, NETWORK = "sfm-n40-lines", "all-robust", "blazepose-heavy-flip"
 LARGE, CLOSE = "front", ("oblique", "back", "mirror")
-RADIUS = np.sqrt(point_covariance.ellipsoid(0.9))  # standard deviations
+RADIUS = np.sqrt(normal_errors.ellipsoid(0.9))  # standard deviations
 SIGHT = oblique_view.Sight(azimuth_deg=-60.0, elevation_deg=10.0)
 TRUE = "#222222"
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pandas as pd
 
-from courtside.calibration import point_covariance
 from courtside.records import tables
 from courtside.records.devices import clocks as sync
 from courtside.records.truth import take_truth
+from courtside.statistics import normal_errors
 from courtside.study.execution.script import run
 
 
@@ -31,7 +31,7 @@ def main(sync_json, truth_npz, errors_csv, *, labels):
                 "worst_error_ms": 1000 * worst_s,
                 "sigma_ms": 1000 * clock.uncertainty_s,
                 "within_90_percent": bool(
-                    abs(worst_s) <= point_covariance.WITHIN_90 * clock.uncertainty_s
+                    abs(worst_s) <= normal_errors.WITHIN_90 * clock.uncertainty_s
                 ),
                 "drift_error_ppm": clock.drift_ppm - truth.drift_ppm[camera],
             }

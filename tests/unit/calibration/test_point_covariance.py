@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-import pytest
 from scipy import optimize
 
 from courtside.calibration import point_covariance
@@ -146,12 +145,6 @@ def test_covariance_of_columns_is_the_inverse_of_the_information():
     scale = np.outer(*[np.sqrt(np.diag(part))] * 2)  # the numbers' units differ by many orders
     product = (normal.information * scale) @ (part / scale)
     np.testing.assert_allclose(product, np.eye(len(part)), atol=1e-6)
-
-
-def test_mahalanobis_counts_sigmas():
-    covariance = np.stack([np.diag([1.0, 4, 9]), np.array([[2.0, 1, 0], [1, 2, 0], [0, 0, 1]])])
-    found = point_covariance.mahalanobis(np.array([[1.0, 2, 3], [1, 1, 0]]), covariance)
-    assert found == pytest.approx([3.0, 2 / 3])
 
 
 def free_network(noise_px=0.0):

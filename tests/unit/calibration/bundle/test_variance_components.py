@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy import integrate
 
-from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection, variance_components
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court import joint_adjustment, line_edges, sfm_alignment
+from courtside.statistics import normal_errors
 from fixtures.cameras import networks_made
 from fixtures.cameras.scene import opencv_projection
 
@@ -87,7 +87,7 @@ def test_few_residuals_widen_the_ellipsoid_as_the_scatter_drawn_from_them_asks(r
     # Of scale 1: the variance that is true, given what prior and residuals showed.
     variance = freedom / rng.chisquare(freedom, 20_000)
     error = rng.normal(size=(20_000, 3)) * np.sqrt(variance)[:, None]
-    limit = point_covariance.ellipsoid(0.9) * factors.widening
+    limit = normal_errors.ellipsoid(0.9) * factors.widening
     assert np.mean(np.sum(error**2, axis=1) <= limit) == pytest.approx(0.9, abs=0.006)
 
 
@@ -104,8 +104,8 @@ def test_three_clicks_hold_nine_in_ten_of_the_errors_of_scattered_clicks():
         true = networks_made.fixed_cameras(truth)
         seen = {camera.name: opencv_projection(camera, COURT.xyz) for camera in true}
         error = sfm_alignment.reconstruct(found.cameras, seen) - COURT.xyz
-        distance = point_covariance.mahalanobis(error, found.point_covariance(COURT.xyz))
-        inside.append(np.mean(distance <= point_covariance.ellipsoid(0.9)))
+        distance = normal_errors.mahalanobis(error, found.point_covariance(COURT.xyz))
+        inside.append(np.mean(distance <= normal_errors.ellipsoid(0.9)))
     assert 0.8 < np.mean(inside) < 0.97, np.mean(inside)
 
 

@@ -9,9 +9,9 @@ from courtside.calibration.bundle import selection, solver
 from courtside.calibration.court import joint_adjustment, line_edges
 from courtside.calibration.court.joint_adjustment import Ties
 from courtside.calibration.court_lines import edges, walk_and_lines
-from courtside.calibration.point_covariance import mahalanobis
 from courtside.geometry import camera as cameras
 from courtside.geometry.triangulation import triangulate_all
+from courtside.statistics.normal_errors import mahalanobis
 from fixtures.cameras import court_pictures
 
 TRUE = court_pictures.pair()

@@ -14,6 +14,7 @@ from courtside.calibration.wand.calibration import Floor
 from courtside.geometry import camera as cameras
 from courtside.geometry import similarity
 from courtside.geometry.triangulation import triangulate_all
+from courtside.statistics import normal_errors
 from courtside.study.errors import InputError
 from fixtures import remembered_calls
 from fixtures.cameras.wands_made import (
@@ -88,7 +89,7 @@ def test_errors_are_as_large_as_stated():
         found = calibrate(seen(xyz, seed=seed, hidden=0.15, misread=0.03), lenses=LENSES)
         assert found.adjusted.sigma_px == pytest.approx(0.5, rel=0.08)
         off, spread = errors(found, xyz.reshape(-1, 3))
-        squares.append(point_covariance.mahalanobis(off, spread))
+        squares.append(normal_errors.mahalanobis(off, spread))
         most.append(np.linalg.norm(off, axis=1).max())
     assert max(most) < 4e-3
     assert 1.0 < np.mean(squares) < 6.0  # 3 over many draws: places here err together
@@ -152,8 +153,8 @@ def test_clicked_points_give_the_world():
     assert np.linalg.norm(placed - PLACES, axis=1).max() < 0.01
     network = selection.of_cameras(found.cameras)
     spread = point_covariance.point_covariance(network, found.covariance, placed)
-    square = point_covariance.mahalanobis(placed - PLACES, spread)
-    assert np.mean(square < point_covariance.ellipsoid(0.9)) > 0.7
+    square = normal_errors.mahalanobis(placed - PLACES, spread)
+    assert np.mean(square < normal_errors.ellipsoid(0.9)) > 0.7
 
 
 def test_clicks_have_the_variances_of_the_cameras_where_they_stand():

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from courtside.calibration.bundle import problem
@@ -11,10 +10,7 @@ from courtside.calibration.bundle.problem import Network
 from courtside.calibration.bundle.solver import Normal
 from courtside.geometry.camera import Camera
 
-WITHIN_90 = 1.645  # standard deviations to either side hold 90 % of normal errors
 PLACES = 4096  # at once, for the memory that their derivatives need
-MEDIAN_TO_SIGMA = 1.4826  # of the absolute values of normal errors
-MEDIAN_2D = 1.177  # median length of a normal vector in two dimensions, sigma 1 per axis
 
 
 def sensitivity(network: Network, xyz: ArrayLike, seen: NDArray | None = None) -> NDArray:
@@ -105,16 +101,6 @@ def pseudo_inverse(information: NDArray, n_free: int = 7) -> NDArray:
     known = extent.argsort()[::-1][: max(n_known, 0)]
     root = scale[:, None] * axes[:, known] / np.sqrt(np.maximum(extent[known], 1e-300))
     return root @ root.T
-
-
-def mahalanobis(error: NDArray, covariance: NDArray) -> NDArray:
-    """Return error.T @ inverse(covariance) @ error, (N,), of errors (N, 3) and covariances."""
-    return np.einsum("ni,ni->n", error, np.linalg.solve(covariance, error[..., None])[..., 0])
-
-
-def ellipsoid(share: float) -> float:
-    """Return what `mahalanobis` stays within for a share, 0..1, of normal errors."""
-    return 2 * scipy.special.gammaincinv(3 / 2, share)
 
 
 def centre_sigma(camera: Camera, covariance: NDArray) -> float:

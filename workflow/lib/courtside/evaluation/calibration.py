@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 from courtside.calibration.court import joint_adjustment, known_points, quality, sfm_alignment
 from courtside.calibration.court.court import Court
 from courtside.calibration.court.resection import Fitted, Linear
-from courtside.calibration.point_covariance import ellipsoid, mahalanobis
 from courtside.calibration.records.tie_points import Record
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera, project
 from courtside.geometry.triangulation import triangulate
+from courtside.statistics.normal_errors import ellipsoid, mahalanobis
 from courtside.study.errors import InputError
 
 FIRST = ("method", "n_clicks", "in_sample", "outcome")

@@ -10,7 +10,6 @@ import pandas as pd
 import scipy
 from numpy.typing import NDArray
 
-from courtside.calibration.point_covariance import ellipsoid, mahalanobis
 from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
 from courtside.reconstruction import resampling
@@ -19,6 +18,7 @@ from courtside.records.keypoints import derived_joints
 from courtside.records.keypoints import skeleton as limbs
 from courtside.records.keypoints.derived_joints import DerivedJoints
 from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D
+from courtside.statistics.normal_errors import ellipsoid, mahalanobis
 from courtside.study.errors import InputError
 
 LEVELS = (0.5, 0.9, 0.95)  # of the ellipsoids whose coverage is counted

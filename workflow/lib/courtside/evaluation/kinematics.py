@@ -8,7 +8,6 @@ import pandas as pd
 import scipy
 from numpy.typing import NDArray
 
-from courtside.calibration import point_covariance
 from courtside.evaluation import joints
 from courtside.evaluation.joints import Truth
 from courtside.kinematics import joint_angles, measures, shared_errors
@@ -17,6 +16,7 @@ from courtside.records.keypoints import derived_joints
 from courtside.records.keypoints import skeleton as limbs
 from courtside.records.keypoints.derived_joints import DerivedJoints
 from courtside.records.keypoints.keypoints import Keypoints3D
+from courtside.statistics import normal_errors
 
 FINE = 10  # ASSUME: true points per frame, for the length of the true path; chords err little
 CLOSE_S = 1e-4  # times in tables are rounded to half of this or less
@@ -146,7 +146,7 @@ def _errors(part: pd.DataFrame, point: str, path: "scipy.interpolate.CubicSpline
 def _within_90_percent(error: NDArray, sigma: NDArray) -> float:
     """Return how many errors (N,) of a stated sigma lie in their 90 % interval, percent."""
     stated = np.isfinite(error) & np.isfinite(sigma)
-    inside = np.abs(error[stated]) <= point_covariance.WITHIN_90 * sigma[stated]
+    inside = np.abs(error[stated]) <= normal_errors.WITHIN_90 * sigma[stated]
     return 100 * inside.mean() if stated.any() else np.nan
 
 

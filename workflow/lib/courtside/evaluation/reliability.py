@@ -7,10 +7,10 @@ import pandas as pd
 import scipy
 from numpy.typing import NDArray
 
-from courtside.calibration.point_covariance import ellipsoid, mahalanobis
 from courtside.evaluation import joints
 from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
+from courtside.statistics.normal_errors import ellipsoid, mahalanobis
 
 LEVELS = (10, 20, 30, 40, 50, 60, 70, 80, 90, 95, 99)  # percent: nominal shares
 HELD = [f"held_{level}" for level in LEVELS]

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from courtside.quality import seen as views
 from courtside.quality.seen import Seen
 from courtside.records.keypoints import skeleton as limbs
-
-ROBUST = 1.4826  # a median absolute deviation times this is the standard deviation of normal errors
+from courtside.statistics.normal_errors import MEDIAN_TO_SIGMA
 
 
 def of_camera(seen: Seen, camera: int) -> dict[str, float]:
@@ -67,7 +66,9 @@ def limb_variation(xyz: NDArray, joints: list[str]) -> float:
             ends = [joints.index(side + name) for name in (start, stop) if side + name in joints]
             if len(ends) == 2:
                 length = np.linalg.norm(xyz[:, ends[0]] - xyz[:, ends[1]], axis=-1)
-                found.append(ROBUST * _median(np.abs(length - _median(length))) / _median(length))
+                found.append(
+                    MEDIAN_TO_SIGMA * _median(np.abs(length - _median(length))) / _median(length)
+                )
     return _median(np.array(found))
 
 

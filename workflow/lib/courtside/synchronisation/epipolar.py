@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from courtside.geometry import epipolar
 from courtside.geometry.camera import Camera
+from courtside.statistics.normal_errors import MEDIAN_TO_SIGMA
 from courtside.synchronisation import smooth_tracks
 
 # ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
@@ -22,7 +23,6 @@ FADE = 4.0  # standard deviations at which an error has a quarter of its weight
 SMALLEST_PX = 0.3  # no network is more precise
 WINDOW_S = 3.0  # slower errors are the network's, not the clock's
 
-NOISE_OF_MAD = 1.4826  # standard deviation over median absolute deviation, normal distribution
 PROBE_S = 2e-3  # step of numerical derivatives: small against a frame
 
 # Value, velocity and acceleration of a track, (T, J, 2) each.
@@ -132,7 +132,7 @@ class Epipolar:
         weight = known.astype(float)
         for _ in range(3):
             left = miss - _slow(miss, weight, window)
-            sigma_px = NOISE_OF_MAD * np.median(np.abs(left[known])) if known.any() else 1.0
+            sigma_px = MEDIAN_TO_SIGMA * np.median(np.abs(left[known])) if known.any() else 1.0
             sigma_px = max(sigma_px, SMALLEST_PX)
             share = (left / (FADE * sigma_px)) ** 2
             weight = known / (1 + share) ** 2

@@ -19,11 +19,11 @@ from courtside.calibration.boards.corners import Corners
 from courtside.calibration.bundle import problem, selection
 from courtside.calibration.bundle.problem import IMAGE, POSE, Network
 from courtside.calibration.people import world_frame
-from courtside.calibration.point_covariance import MEDIAN_TO_SIGMA
 from courtside.geometry import camera as cameras
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
 from courtside.geometry.similarity import Sim3
+from courtside.statistics.normal_errors import MEDIAN_TO_SIGMA
 from courtside.study.errors import InputError
 
 # ASSUME: what lenses and sensors usually are, standard deviations: nearly square pixels, a

@@ -8,9 +8,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from courtside.calibration.bundle import problem, solver
 from courtside.calibration.bundle.problem import Network
-from courtside.calibration.point_covariance import MEDIAN_TO_SIGMA
 from courtside.geometry.camera import Camera
 from courtside.geometry.similarity import Sim3
+from courtside.statistics.normal_errors import MEDIAN_TO_SIGMA
 
 LEAST_PX = 0.05  # ASSUME: no feature is located better
 

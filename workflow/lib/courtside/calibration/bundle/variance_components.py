@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import problem, solver
 from courtside.calibration.bundle.problem import IMAGE, POSE, Network
+from courtside.statistics import normal_errors
 
 # Redundant observations that the priors count for. The first was chosen on small halls
 # (docs/measured.md); ASSUME: the two others, which were not varied.
@@ -65,7 +66,7 @@ class Factors:
         """
         freedom = CLICKS_PRIOR + float(self.clicks_redundancy.sum())
         student = AXES * scipy.special.fdtri(AXES, freedom, LEVEL)
-        return float(student / point_covariance.ellipsoid(LEVEL))
+        return float(student / normal_errors.ellipsoid(LEVEL))
 
 
 def none(n_images: int) -> Factors:

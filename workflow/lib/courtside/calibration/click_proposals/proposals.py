@@ -12,8 +12,8 @@ from courtside.calibration.click_proposals.view import NO_PLACE, Ray, View
 from courtside.calibration.court import line_edges
 from courtside.calibration.court.court import Court
 from courtside.calibration.court.line_edges import Edge
-from courtside.calibration.point_covariance import MEDIAN_TO_SIGMA
 from courtside.geometry.camera import Camera, project
+from courtside.statistics.normal_errors import MEDIAN_TO_SIGMA
 
 # ASSUME: all of these are tuned by hand on the virtual sessions.
 STRETCH_M = 1.6  # of line that is measured at once

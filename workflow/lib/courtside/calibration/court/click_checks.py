@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from courtside.calibration.bundle import solver
 from courtside.calibration.court import joint_adjustment, line_edges, sfm_alignment
 from courtside.calibration.court.court import ClickedPoints, Court, is_raised, to_line_centres
-from courtside.calibration.point_covariance import MEDIAN_2D, mahalanobis
 from courtside.geometry.camera import Camera, project
+from courtside.statistics.normal_errors import MEDIAN_2D, mahalanobis
 
 WRONG = 6.0  # ASSUME: a click this many sigmas off is wrong
 # Of a normal vector in two dimensions, sigma 1 per axis: length that half and 80 % stay within. The

@@ -8,9 +8,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from courtside.calibration.bundle.problem import POSE
 from courtside.calibration.court import line_edges, one_camera
-from courtside.calibration.point_covariance import MEDIAN_2D
 from courtside.geometry import similarity
 from courtside.geometry.camera import Camera, project
+from courtside.statistics.normal_errors import MEDIAN_2D
 from courtside.study.errors import InputError
 
 LENS = ("f_px", "k1")

@@ -18,8 +18,8 @@ from courtside.calibration.court import joint_adjustment, line_edges
 from courtside.calibration.court.court import ClickedPoints, Court
 from courtside.calibration.people import prior
 from courtside.calibration.people.views import Limits, Seen, placed
-from courtside.calibration.point_covariance import MEDIAN_TO_SIGMA
 from courtside.geometry.camera import Camera, distort, undistort
+from courtside.statistics.normal_errors import MEDIAN_TO_SIGMA
 
 # Limits in units of the last: cameras that are a little wrong must not lose the views that say so.
 WIDENED = (4.0, 2.0, 1.0, 1.0)

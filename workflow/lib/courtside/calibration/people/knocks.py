@@ -19,13 +19,13 @@ from courtside.calibration.file_check import residuals
 from courtside.calibration.people import adjustment, held_out, prior
 from courtside.calibration.people.adjustment import LOSS
 from courtside.calibration.people.views import Limits, Seen, check, joined
-from courtside.calibration.point_covariance import MEDIAN_TO_SIGMA
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance
 from courtside.geometry import camera as camera_models
 from courtside.geometry import epipolar, rotations
 from courtside.geometry.camera import Camera, project
 from courtside.records.devices.clocks import Clock
+from courtside.statistics.normal_errors import MEDIAN_TO_SIGMA
 from courtside.study.errors import InputError
 
 # ASSUME: limits that tell knocks of 0.4 degrees from none on development takes.

@@ -16,6 +16,7 @@ from courtside.calibration import point_covariance
 from courtside.calibration.bundle import problem
 from courtside.calibration.bundle.problem import IMAGE, Network
 from courtside.geometry import rotations
+from courtside.statistics import normal_errors
 
 BODY = 5  # unknowns: position of its origin (3), rotation of its direction (2)
 WIDENED = (8.0, 4.0, 2.0, 1.0)  # factors of the Cauchy scale: initial cameras are rough
@@ -125,7 +126,7 @@ def _sigma(state: State, of_wand: NDArray, redundancy: float) -> float:
     """
     off = problem.residuals(state.network)[of_wand]
     length = np.linalg.norm(off, axis=1)
-    typical = float(np.nanmedian(length)) / point_covariance.MEDIAN_2D / np.sqrt(redundancy)
+    typical = float(np.nanmedian(length)) / normal_errors.MEDIAN_2D / np.sqrt(redundancy)
     inside = length < WRONG_SIGMAS * max(LEAST_SIGMA_PX, typical)
     found = float(np.sqrt(np.mean(off[inside] ** 2) / redundancy)) if inside.any() else typical
     return max(LEAST_SIGMA_PX, found)

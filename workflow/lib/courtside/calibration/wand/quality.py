@@ -9,12 +9,12 @@ from courtside.calibration import point_covariance
 from courtside.calibration.bundle.problem import IMAGE, LENS, POSE
 from courtside.calibration.court import place_checks
 from courtside.calibration.people import world_frame
-from courtside.calibration.point_covariance import MEDIAN_TO_SIGMA
 from courtside.calibration.wand import timing, world
 from courtside.calibration.wand.adjustment import WRONG_SIGMAS
 from courtside.calibration.wand.calibration import Found
 from courtside.calibration.wand.points import Seen, Wand
 from courtside.geometry import camera_fields
+from courtside.statistics.normal_errors import MEDIAN_TO_SIGMA
 
 # ASSUME: limits of the warnings.
 MOST_FACTOR = 2.0  # scatter of blocks of time, relative to single frames

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration.point_covariance import MEDIAN_TO_SIGMA
 from courtside.calibration.wand.points import Seen
 from courtside.geometry.camera import Camera, project
+from courtside.statistics.normal_errors import MEDIAN_TO_SIGMA
 
 FAST = 0.5  # share of the markers that is used, the fastest
 FEWEST = 20  # markers with a speed

@@ -12,11 +12,11 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from courtside.calibration.point_covariance import WITHIN_90
 from courtside.records.footwork import Contacts
 from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.truth.take_truth import TakeTruth
+from courtside.statistics.normal_errors import WITHIN_90
 
 TOUCHES_M = 0.001
 NEAR_S = 0.15  # ASSUME: a true and a found onset further apart are not of one step

@@ -6,9 +6,9 @@ from itertools import count
 import numpy as np
 import pandas as pd
 
-from courtside.calibration.point_covariance import WITHIN_90
 from courtside.evaluation.movement import strokes
 from courtside.records.truth.take_truth import TakeTruth
+from courtside.statistics.normal_errors import WITHIN_90
 
 SAME_S = 0.15  # ASSUME: a landing this near to a true one is that split step's
 CUT_S = strokes.CUT_S

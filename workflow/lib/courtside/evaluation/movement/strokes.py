@@ -2,9 +2,9 @@
 
 import pandas as pd
 
-from courtside.calibration.point_covariance import WITHIN_90
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.truth.take_truth import TakeTruth
+from courtside.statistics.normal_errors import WITHIN_90
 from courtside.strokes import cues, signals
 
 SAME_S = 0.25  # a stroke this near to a hit is that hit

@@ -10,10 +10,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from courtside.calibration import point_covariance
 from courtside.events.claps import HELD_S
 from courtside.figures.style import bars, source_styles, style
 from courtside.records import tables
+from courtside.statistics import normal_errors
 from courtside.study.errors import StrPath
 
 ROW_MM, TICKS_MM, ZOOM_MM, LINE_MM = 19, 4, 48, 3.4
@@ -193,7 +193,7 @@ def _draw_close(axis: Axes, own, centre_s, look) -> None:
 def _draw_contact(axis: Axes, row, centre_s, colour: str) -> None:
     at = MS * (row.time_s - centre_s)
     if row.event == "clap":
-        reach = MS * point_covariance.WITHIN_90 * row.uncertainty_s
+        reach = MS * normal_errors.WITHIN_90 * row.uncertainty_s
         axis.axvspan(at - reach, at + reach, color=colour, alpha=0.15, linewidth=0, zorder=0)
         axis.axvline(at, color=colour, linewidth=0.9)
         held = at + MS * np.array(HELD_S)

@@ -5,9 +5,9 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from courtside.calibration import point_covariance
 from courtside.figures.style import bars, style
 from courtside.records.devices.clocks import WRIST_M_S
+from courtside.statistics import normal_errors
 
 LIMIT_MS = 8.0  # a quarter of a frame at 30 frames per second: 10 cm at such a wrist
 FURTHEST_MS = 40.0  # larger errors are marked at the edge, with their number
@@ -26,7 +26,7 @@ def table(rows: pd.DataFrame) -> pd.DataFrame:
     Rows are ordered by label; `holds` is unused for a clock whose status is not `found`.
     """
     rows = rows.sort_values(LABELS, kind="stable").reset_index(drop=True)
-    reach = point_covariance.WITHIN_90 * rows["sigma_ms"]
+    reach = normal_errors.WITHIN_90 * rows["sigma_ms"]
     inside = np.where(rows["worst_error_ms"].abs() <= reach, "yes", "no")
     return rows.assign(
         lower_ms=rows["worst_error_ms"] - reach,

@@ -4,10 +4,10 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from courtside.calibration import point_covariance
 from courtside.calibration.court.court import Court
 from courtside.figures.style import court_plan, style
 from courtside.records.footwork import FEET, Contacts
+from courtside.statistics import normal_errors
 
 ROW_MM = 105
 BELOW_MM = 10.5  # from the court to the legend, for the numbers and the label of the axis
@@ -71,7 +71,7 @@ def _draw_stances(axis: Axes, own: pd.DataFrame, events: pd.DataFrame) -> None:
         axis.barh(row, stop - start, left=start, height=0.6, color=COLOURS[foot], alpha=0.7)
         for what, above in (("onset", -0.1), ("end", 0.1)):
             at = mine[f"{what}_s"]
-            reach = point_covariance.WITHIN_90 * mine[f"{what}_sigma_s"]
+            reach = normal_errors.WITHIN_90 * mine[f"{what}_sigma_s"]
             axis.hlines(row + above + 0 * at, at - reach, at + reach, "black", linewidth=0.8)
     shown = events[events.event != "step"]
     look: dict = {"fontsize": 6, "rotation": 90, "ha": "center", "va": "bottom"}

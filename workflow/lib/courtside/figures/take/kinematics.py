@@ -5,9 +5,9 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from courtside.calibration import point_covariance
 from courtside.calibration.court.court import Court
 from courtside.figures.style import court_plan, style
+from courtside.statistics import normal_errors
 
 ROW_MM = 105
 ROOM_M = 0.5  # around the path, where it leaves the court
@@ -61,7 +61,7 @@ def _draw_path(
         axis.plot(x[at], y[at], mark, color=SPEEDS["neck"], markersize=4, zorder=4, label=word)
     found = measured.loc["neck_ground_distance"]
     cameras = 0.0 if np.isnan(found.sigma_camera) else found.sigma_camera
-    reach = point_covariance.WITHIN_90 * np.hypot(found.sigma, cameras)
+    reach = normal_errors.WITHIN_90 * np.hypot(found.sigma, cameras)
     length = f"{found.value:.2f} ± {reach:.2f} m on the ground (90 %)"
     if np.isnan(found.value):
         length = "distance unknown: gaps too long, or errors not known"
@@ -81,7 +81,7 @@ def _band(
     axis: Axes, own: pd.DataFrame, name: str, ends: tuple[str, str], colour: str, label: str
 ) -> None:
     value, sigma = (own[f"{name}_{end}"].to_numpy() for end in ends)
-    reach = point_covariance.WITHIN_90 * sigma
+    reach = normal_errors.WITHIN_90 * sigma
     band = own.time_s, value - reach, value + reach
     axis.fill_between(*band, color=colour, alpha=0.2, linewidth=0)
     axis.plot(own.time_s, value, color=colour, linewidth=0.9, label=label)

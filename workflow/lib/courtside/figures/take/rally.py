@@ -5,9 +5,9 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from courtside.calibration.point_covariance import WITHIN_90
 from courtside.figures.style import bars, style
 from courtside.records.keypoints.keypoints import Keypoints3D
+from courtside.statistics.normal_errors import WITHIN_90
 from courtside.strokes import signals
 
 HEAD_MM, ROW_MM = 22, 45

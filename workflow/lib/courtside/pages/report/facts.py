@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from courtside.calibration.point_covariance import WITHIN_90
 from courtside.kinematics import cutoffs
 from courtside.records import tables
 from courtside.records.devices import clocks
 from courtside.records.keypoints import keypoints, missing_reason, skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
+from courtside.statistics.normal_errors import WITHIN_90
 from courtside.study.errors import StrPath
 from courtside.study.execution import verdicts
 from courtside.study.execution.files import read_json

@@ -5,8 +5,8 @@ import statistics
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from courtside.calibration.point_covariance import WITHIN_90
 from courtside.records.devices.clocks import WRIST_M_S, Clock
+from courtside.statistics.normal_errors import WITHIN_90
 from courtside.study.execution import verdicts
 from courtside.study.methods import Calibration
 

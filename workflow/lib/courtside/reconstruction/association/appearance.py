@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.reconstruction.association.candidates import Candidates
+from courtside.statistics.normal_errors import MEDIAN_TO_SIGMA
 
 # ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
 FEWEST = 20  # sure places, from which colours can be learned
@@ -103,7 +104,9 @@ def learn(clothing: Sequence[NDArray], instants: NDArray, sure: Candidates) -> L
         away = _median(whole - middle[:, None], axis=0)
         offset = np.nan_to_num(away - np.nanmean(away, axis=0))
     left = np.abs(whole - offset - middle[:, None])
-    sigma = np.maximum(1.4826 * _median(left.reshape(-1, left.shape[2]), axis=0), LEAST_SIGMA)
+    sigma = np.maximum(
+        MEDIAN_TO_SIGMA * _median(left.reshape(-1, left.shape[2]), axis=0), LEAST_SIGMA
+    )
     n_views = np.isfinite(whole).all(axis=2).sum(axis=1).mean()
     scatter = MEDIAN_VARIANCE * sigma**2 / n_views  # of a median of views: it is no spread
     return Looks(

@@ -1,0 +1,28 @@
+"""Normal errors: ellipsoids and factors against draws from the normal distribution."""
+
+import numpy as np
+import pytest
+
+from courtside.statistics import normal_errors
+
+DRAWS = np.random.default_rng(3).normal(size=(200_000, 3))
+
+
+def test_mahalanobis_counts_sigmas():
+    covariance = np.stack([np.diag([1.0, 4, 9]), np.array([[2.0, 1, 0], [1, 2, 0], [0, 0, 1]])])
+    found = normal_errors.mahalanobis(np.array([[1.0, 2, 3], [1, 1, 0]]), covariance)
+    assert found == pytest.approx([3.0, 2 / 3])
+
+
+@pytest.mark.parametrize("share", [0.5, 0.9, 0.99])
+def test_an_ellipsoid_holds_its_share_of_normal_errors(share):
+    squares = normal_errors.mahalanobis(DRAWS, np.tile(np.eye(3), (len(DRAWS), 1, 1)))
+    assert np.mean(squares <= normal_errors.ellipsoid(share)) == pytest.approx(share, abs=0.003)
+
+
+def test_factors_of_a_standard_deviation_are_those_of_normal_errors():
+    sizes = np.abs(DRAWS[:, 0])
+    assert np.mean(sizes <= normal_errors.WITHIN_90) == pytest.approx(0.9, abs=0.003)
+    assert np.median(sizes) * normal_errors.MEDIAN_TO_SIGMA == pytest.approx(1, abs=0.01)
+    lengths = np.linalg.norm(DRAWS[:, :2], axis=1)
+    assert np.median(lengths) == pytest.approx(normal_errors.MEDIAN_2D, abs=0.01)
