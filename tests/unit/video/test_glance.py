@@ -42,6 +42,12 @@ def test_irregular_frames_are_seen(tmp_path):
     assert not quick.glance(path).even
 
 
+def test_frames_that_a_phone_has_trimmed_away_do_not_count(tmp_path):
+    whole = video_files.write(tmp_path / "whole.mp4", n=60, rate=30)
+    found = quick.glance(video_files.trimmed(whole, tmp_path / "a.mp4", 7, 53))
+    assert (found.n_frames, found.rate_hz) == (53, pytest.approx(30))
+
+
 def test_a_photo_has_a_size_only(tmp_path):
     path = tmp_path / "empty.png"
     cv2.imwrite(str(path), rooms_filmed.background(1))

@@ -12,7 +12,15 @@ from av.stream import Disposition
 from courtside.study.errors import InputError
 from courtside.video import reader
 from courtside.video.packets import list_packets
-from fixtures.recordings.video_files import draw, good_frames, number_in, numbers, packets, write
+from fixtures.recordings.video_files import (
+    draw,
+    good_frames,
+    number_in,
+    numbers,
+    packets,
+    trimmed,
+    write,
+)
 
 FAST = {"movflags": "faststart"}
 FRAGMENTED = {"movflags": "frag_keyframe+empty_moov"}
@@ -82,15 +90,7 @@ def test_opencv_finds_the_same_times(files):
 
 
 def test_an_edit_list_trims_without_being_taken_for_a_loss(files, tmp_path):
-    # As phones trim: the samples stay in the file, the list says to show 1 s from frame 20 on.
-    data = bytearray(files["plain.mp4"].read_bytes())
-    at = data.index(b"elst") + 12
-    (media_time,) = struct.unpack_from(">i", data, at + 4)
-    timescale = struct.unpack_from(">I", data, data.index(b"mdhd") + 16)[0]
-    movie_timescale = struct.unpack_from(">I", data, data.index(b"mvhd") + 16)[0]
-    struct.pack_into(">Ii", data, at, movie_timescale, media_time + 20 * timescale // 30)
-    path = tmp_path / "trimmed.mp4"
-    path.write_bytes(data)
+    path = trimmed(files["plain.mp4"], tmp_path / "trimmed.mp4", 20, 30)
     np.testing.assert_allclose(reader.frame_times(path), np.arange(30) / 30)
     assert numbers(reader.frames(path)) == list(range(20, 50))
     assert numbers(reader.frames(path, start_s=0.5)) == list(range(35, 50))

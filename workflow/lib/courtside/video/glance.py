@@ -75,13 +75,14 @@ def _indexed(container, stream, n_bytes: int) -> NDArray | None:
     """Return the times (T,) s of frames by an MP4's index; None where it is not whole."""
     if "mov" not in container.format.name:
         return None
-    ticks, ends = [], []
-    for entry in stream.index_entries:
-        ticks.append(entry.timestamp)
-        ends.append(entry.pos + entry.size)
+    entries = list(stream.index_entries)
+    ends = [entry.pos + entry.size for entry in entries]
     if not ends or len(ends) != stream.frames or max(ends) > n_bytes:
         return None
-    return np.sort(ticks) * float(stream.time_base)
+    ticks = np.sort([entry.timestamp for entry in entries])
+    # An edit list hides frames that a phone's trimming has left at the start of the file.
+    n_hidden = sum(entry.is_discard for entry in entries)
+    return ticks[n_hidden:] * float(stream.time_base)
 
 
 def _read(path: Path, stop_s: float | None) -> NDArray | None:
