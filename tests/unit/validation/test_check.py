@@ -2,6 +2,7 @@
 
 import re
 import shutil
+from fractions import Fraction
 from importlib import import_module
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from courtside.geometry import camera as geometry
 from courtside.records.cameras import clicks
 from courtside.study.configuration import schemas, session_faults
 from courtside.study.configuration.sessions import Study
-from fixtures.recordings import rooms_filmed
+from fixtures.recordings import rooms_filmed, video_files
 from fixtures.recordings.real_data import REAL, needs_real
 
 ROOT = Path(__file__).parents[3]
@@ -35,6 +36,24 @@ def test_a_truncated_video_is_told(hall):
     with path.open("r+b") as stream:
         stream.truncate(path.stat().st_size // 2)
     assert f"{path}: expected a video, found a file without a readable header" in hall.fault()
+
+
+def test_slow_motion_of_a_phone_is_told(hall):
+    pictures = list(rooms_filmed.frames(1))
+    tags = {"container": {"movflags": "use_metadata_tags"}}
+    said = {"com.android.capture.fps": "240.0"}
+    path = hall.video("left")
+    video_files.write(path, images=pictures, size=rooms_filmed.SIZE, rate=10, said=said, **tags)
+    assert "takes.serve: camera left: expected frames at 240 Hz" in hall.fault()
+
+
+def test_pixels_that_are_not_square_need_a_calibration_file(hall):
+    pictures = list(rooms_filmed.frames(1))
+    path = hall.video("left")
+    video_files.write(path, images=pictures, size=rooms_filmed.SIZE, rate=10, pixel=Fraction(4, 3))
+    assert hall.said() == ([], [])
+    hall.content.pop("calibration")
+    assert "takes.serve: camera left: expected square pixels where no file" in hall.fault()
 
 
 def test_a_folder_in_place_of_a_video_is_told(hall):

@@ -65,3 +65,38 @@ def test_videos_too_short_to_find_their_clocks_by_are_named():
     assert "expected 30 frames or more" in fault and "found 24 (back)" in fault
     assert not list(lengths.too_few({"left": looks["left"]}))
     assert not list(lengths.too_few({"back": looks["back"]}))  # one camera has no other clock
+
+
+def looked_at(**more):
+    return {"left": Glance((64, 48), SMALL, 300, 30.0, **more)}
+
+
+@pytest.mark.parametrize(("filmed_hz", "scale"), [(240.0, "0.125"), (2.0, "15")])
+def test_a_phone_that_wrote_another_rate_than_it_filmed_is_a_fault(filmed_hz, scale):
+    (fault,) = lengths.faults(looked_at(filmed_hz=filmed_hz), synchronised=False)
+    assert f"camera left: expected frames at {filmed_hz:g} Hz" in fault
+    assert "found 30 Hz in the file" in fault and f"-itsscale {scale} " in fault
+
+
+@pytest.mark.parametrize("filmed_hz", [30.0, 60.0, None])
+def test_a_phone_in_the_dark_films_at_half_the_rate_it_states(filmed_hz):
+    assert not list(lengths.faults(looked_at(filmed_hz=filmed_hz), synchronised=False))
+
+
+def test_pixels_that_are_not_square_are_told():
+    (fault,) = lengths.oblong(looked_at(pixel=4 / 3))
+    assert "camera left: expected square pixels" in fault and "found pixels 1.333 times" in fault
+    assert not list(lengths.oblong(looked_at(pixel=1.001)))
+
+
+@pytest.mark.parametrize(
+    ("more", "what"),
+    [
+        ({"interlaced": True}, "the video is interlaced"),
+        ({"even": False, "late_s": 2.0}, "2.0 s of 10.0 s are gaps between frames"),
+    ],
+)
+def test_what_costs_moments_is_remarked(more, what):
+    (remark,) = lengths.remarks(looked_at(**more), synchronised=False)
+    assert remark.startswith("camera left: ") and what in remark
+    assert not list(lengths.remarks(looked_at(even=False, late_s=0.05), synchronised=False))

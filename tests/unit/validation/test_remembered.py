@@ -1,6 +1,7 @@
 """Looks are remembered while a file is unchanged; a damaged memory costs time only."""
 
 import json
+from dataclasses import asdict
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ def test_an_unchanged_file_is_looked_at_once(tmp_path, monkeypatch):
     assert seen == []
     assert (again.size, again.n_frames, again.rate_hz) == (found.size, 5, found.rate_hz)
     assert np.array_equal(again.small, found.small)
+    assert {**asdict(again), "small": 0} == {**asdict(found), "small": 0}
     film.touch()
     Remembered(kept).look(film)
     assert seen == [film]

@@ -1,6 +1,7 @@
 """A quick look tells what a whole reading tells, and finds what is cut short."""
 
 import shutil
+from fractions import Fraction
 
 import cv2
 import numpy as np
@@ -46,6 +47,36 @@ def test_frames_that_a_phone_has_trimmed_away_do_not_count(tmp_path):
     whole = video_files.write(tmp_path / "whole.mp4", n=60, rate=30)
     found = quick.glance(video_files.trimmed(whole, tmp_path / "a.mp4", 7, 53))
     assert (found.n_frames, found.rate_hz) == (53, pytest.approx(30))
+
+
+def test_a_phone_says_at_what_rate_it_filmed(tmp_path):
+    said = {"com.android.capture.fps": "240.000000"}
+    tags = {"movflags": "use_metadata_tags"}
+    path = video_files.write(tmp_path / "a.mp4", n=24, rate=30, said=said, container=tags)
+    found = quick.glance(path)
+    assert (found.filmed_hz, found.rate_hz) == (240, pytest.approx(30))
+    assert quick.glance(video_files.write(tmp_path / "b.mp4", n=3)).filmed_hz is None
+
+
+def test_pixels_that_are_not_square_are_seen(tmp_path):
+    path = video_files.write(tmp_path / "a.mp4", n=3, pixel=Fraction(4, 3))
+    assert quick.glance(path).pixel == pytest.approx(4 / 3)
+    assert quick.glance(video_files.write(tmp_path / "b.mp4", n=3)).pixel == 1
+
+
+def test_an_interlaced_video_is_seen(tmp_path):
+    fields = {"x264opts": "tff=1", "flags": "+ildct+ilme", "threads": "1"}
+    path = video_files.write(tmp_path / "a.ts", n=6, rate=25, options=fields, size=(160, 128))
+    assert quick.glance(path).interlaced
+    assert not quick.glance(video_files.write(tmp_path / "b.ts", n=6, rate=25)).interlaced
+
+
+def test_a_stretch_of_half_the_rate_is_measured(tmp_path):
+    """As a phone that exposes longer in the dark: 10 steps of 66 ms among 30 of 33 ms."""
+    steps = [33] * 15 + [66] * 10 + [33] * 15
+    ticks = np.cumsum([0, *steps]).tolist()
+    found = quick.glance(video_files.write(tmp_path / "a.mp4", n=len(ticks), ticks=ticks))
+    assert (found.even, found.late_s) == (False, pytest.approx(0.66))
 
 
 def test_a_photo_has_a_size_only(tmp_path):

@@ -145,6 +145,8 @@ class _Session:
     def _take_faults(self, name: str, take: Take) -> Iterator[str]:
         looks = self._takes[name]
         yield from lengths.faults(looks, synchronised=take.synchronised)
+        if self._session.calibration_file is None:
+            yield from lengths.oblong(looks)
         has_clocks = take.synchronised or are_stated(list(take.videos), take.clocks)
         if self._session.take_calibrations() and not has_clocks:
             yield from lengths.too_few(looks)

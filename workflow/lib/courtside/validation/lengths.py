@@ -1,4 +1,4 @@
-"""Numbers of frames and rates of the cameras of a take, against each other."""
+"""Frames, rates and pixels of the cameras of a take, by themselves and against each other."""
 
 from collections.abc import Iterator, Mapping
 
@@ -7,6 +7,11 @@ from courtside.video.glance import Glance
 
 # Started and stopped together, cameras differ by one frame; half a frame more for rounding.
 SPARE_FRAMES = 1.5
+# ASSUME: filmed so many times faster or slower than written, a video is slow motion or a time
+# lapse. In the dark, phones film at half the rate that they state.
+SLOWED = 3.0
+LATE_SHARE = 0.01  # ASSUME: of a video behind gaps between its frames: more is worth a remark
+OBLONG = 0.01  # ASSUME: pixels are square up to this: files round the shape
 
 
 class _Videos:
@@ -30,6 +35,7 @@ def faults(looks: Mapping[str, Glance], *, synchronised: bool) -> Iterator[str]:
     Frames of cameras that share a clock are paired by their times: as many frames in another time
     mean that a file states a wrong rate.
     """
+    yield from _slowed(looks)
     videos = _Videos(looks)
     if not (synchronised and videos.several and videos.as_many_frames):
         return
@@ -39,6 +45,31 @@ def faults(looks: Mapping[str, Glance], *, synchronised: bool) -> Iterator[str]:
             f"{_listed(videos.rates, '{:.4g} Hz')}; export the videos again with their true rate, "
             "or say `synchronised: false`"
         )
+
+
+def _slowed(looks: Mapping[str, Glance]) -> Iterator[str]:
+    for name, look in looks.items():
+        if not look.filmed_hz or not look.rate_hz:
+            continue
+        slower = look.filmed_hz / look.rate_hz
+        if max(slower, 1 / slower) >= SLOWED:
+            yield (
+                f"camera {name}: expected frames at {look.filmed_hz:.4g} Hz, as the phone states "
+                f"that it filmed, found {look.rate_hz:.4g} Hz in the file (slow motion or a time "
+                f"lapse); write it with its true times by `ffmpeg -itsscale {1 / slower:.6g} -i IN "
+                "-map 0:v:0 -c copy OUT`"
+            )
+
+
+def oblong(looks: Mapping[str, Glance]) -> Iterator[str]:
+    """Yield whether pixels are not square, as all calibrations but files take them to be."""
+    for name, look in looks.items():
+        if abs(look.pixel - 1) > OBLONG:
+            yield (
+                f"camera {name}: expected square pixels where no file calibrates the cameras, "
+                f"found pixels {look.pixel:.4g} times as wide as high; write every recording of it "
+                "again by `ffmpeg -i IN -vf scale=iw*sar:ih,setsar=1 -crf 16 OUT`"
+            )
 
 
 def too_few(looks: Mapping[str, Glance]) -> Iterator[str]:
@@ -55,6 +86,8 @@ def too_few(looks: Mapping[str, Glance]) -> Iterator[str]:
 
 def remarks(looks: Mapping[str, Glance], *, synchronised: bool) -> Iterator[str]:
     """Yield what may be right, but is worth a look, in a take, without its name."""
+    for name, look in looks.items():
+        yield from (f"camera {name}: {line}" for line in _odd(look))
     videos = _Videos(looks)
     if not videos.several:
         return
@@ -69,6 +102,20 @@ def remarks(looks: Mapping[str, Glance], *, synchronised: bool) -> Iterator[str]
         yield (
             f"the videos have as many frames, but {_listed(videos.rates, '{:.4g} Hz')}: does a "
             "file state a wrong rate (slow motion)?"
+        )
+
+
+def _odd(look: Glance) -> Iterator[str]:
+    if look.interlaced:
+        yield (
+            "the video is interlaced: a frame mixes two moments, if it was not filmed "
+            "progressively; write it again at twice the rate by `ffmpeg -i IN -vf "
+            "yadif=mode=send_field -crf 16 OUT`"
+        )
+    if look.duration_s and look.late_s > LATE_SHARE * look.duration_s:
+        yield (
+            f"{look.late_s:.1f} s of {look.duration_s:.1f} s are gaps between frames, 1.5 usual "
+            "intervals or longer, in which joints are missing: fix rate and exposure, in more light"
         )
 
 

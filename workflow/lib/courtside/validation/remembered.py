@@ -14,7 +14,7 @@ from courtside.study.errors import DAMAGED, InputError, StrPath
 from courtside.study.execution import files
 from courtside.video.glance import SMALL_PX, Glance, glance
 
-FORMAT = 2  # of the file: another one is not used
+FORMAT = 3  # of the file: another one is not used
 
 
 class Remembered:
@@ -83,13 +83,17 @@ def _restored(entry: dict[str, Any]) -> Glance | None:
     try:
         small = np.frombuffer(base64.b64decode(entry["small"]), np.uint8)
         width, height = map(int, entry["size"])
-        n_frames, rate_hz = entry["n_frames"], entry["rate_hz"]
+        n_frames, rate_hz, filmed_hz = (entry[key] for key in ("n_frames", "rate_hz", "filmed_hz"))
         return Glance(
             (width, height),
             small.reshape(SMALL_PX[::-1]),
             None if n_frames is None else int(n_frames),
             None if rate_hz is None else float(rate_hz),
             bool(entry["even"]),
+            float(entry["late_s"]),
+            None if filmed_hz is None else float(filmed_hz),
+            bool(entry["interlaced"]),
+            float(entry["pixel"]),
         )
     except DAMAGED:
         return None

@@ -7,7 +7,9 @@ picture is decoded. Whoever decodes the whole file later checks every frame (`de
 import time
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
+import av
 import cv2
 import numpy as np
 from av.error import FFmpegError
@@ -20,6 +22,7 @@ from courtside.video.decoder import display_matrix, upright
 from courtside.video.packets import MEND, list_packets, opened
 
 SMALL_PX = (96, 54)  # width and height of the small picture, whatever the shape of the large
+LATE = 1.5  # usual steps: as `reconstruction.resampling.LONGEST_STEP`, which bridges no longer one
 LONGEST_S = 3.0  # ASSUME: of reading packets: with opening and one picture below 5 s
 
 
@@ -33,6 +36,10 @@ class Glance:
     n_frames: int | None = None
     rate_hz: float | None = None
     even: bool = True  # whether frames come at regular times, as far as known
+    late_s: float = 0.0  # how long frames lasted that came after a gap, of 1.5 usual steps or more
+    filmed_hz: float | None = None  # frames per second while filming, where an Android phone says
+    interlaced: bool = False
+    pixel: float = 1.0  # width over height of a pixel as the file states it
 
     @property
     def duration_s(self) -> float | None:
@@ -52,14 +59,28 @@ def glance(path: StrPath, *, stop_s: float | None = None) -> Glance:
         return Glance((picture.shape[1], picture.shape[0]), _small(picture))
     with opened(path) as (container, stream):
         times = _indexed(container, stream, path.stat().st_size)
-        matrix, picture = _first_picture(path, container, stream)
+        frame = _first_frame(path, container, stream)
+        matrix, picture = display_matrix(path, frame), frame.to_ndarray(format="gray")
+        said: dict[str, Any] = {"interlaced": bool(frame.interlaced_frame)}
+        said |= {
+            "filmed_hz": _filmed_hz(container),
+            "pixel": float(stream.sample_aspect_ratio or 1),
+        }
     if times is None:
         times = _read(path, stop_s)
     picture = upright(picture, matrix)
-    return Glance((picture.shape[1], picture.shape[0]), _small(picture), *_rate(times))
+    return Glance((picture.shape[1], picture.shape[0]), _small(picture), *_rate(times), **said)
 
 
-def _first_picture(path: Path, container, stream) -> tuple[NDArray, NDArray]:
+def _filmed_hz(container) -> float | None:
+    """Return the rate that Android's camera states, whatever rate it has written the frames at."""
+    try:
+        return float(container.metadata["com.android.capture.fps"])
+    except (KeyError, ValueError):
+        return None
+
+
+def _first_frame(path: Path, container, stream) -> av.VideoFrame:
     try:
         frame = next(container.decode(stream), None)
     except FFmpegError as error:
@@ -68,7 +89,7 @@ def _first_picture(path: Path, container, stream) -> tuple[NDArray, NDArray]:
         ) from error
     if frame is None:
         raise InputError(f"{path}: expected a picture that decodes, found none: {MEND}")
-    return display_matrix(path, frame), frame.to_ndarray(format="gray")
+    return frame
 
 
 def _indexed(container, stream, n_bytes: int) -> NDArray | None:
@@ -99,16 +120,18 @@ def _read(path: Path, stop_s: float | None) -> NDArray | None:
     return list_packets(path, stop_s=stop_s).times_s
 
 
-def _rate(times_s: NDArray | None) -> tuple[int | None, float | None, bool]:
+def _rate(times_s: NDArray | None) -> tuple[int | None, float | None, bool, float]:
+    """Return the number of frames, their rate, whether it is even, and how long it is not."""
     if times_s is None:
-        return None, None, True
+        return None, None, True, 0.0
     steps_s = np.diff(times_s)
     if not len(steps_s) or steps_s.mean() <= 0:
-        return len(times_s), None, True
+        return len(times_s), None, True, 0.0
     mean_s = float(steps_s.mean())
     # As of `reader.probe`; a millisecond is the coarsest clock that containers have.
     even = bool(np.abs(steps_s - mean_s).max() <= 0.01 * mean_s + 1.01e-3)
-    return len(times_s), 1 / mean_s, even
+    late = steps_s > LATE * np.median(steps_s)
+    return len(times_s), 1 / mean_s, even, 0.0 if even else float(steps_s[late].sum())
 
 
 def _small(picture: NDArray) -> NDArray:
