@@ -10,6 +10,7 @@ import pytest
 
 from courtside.study.errors import InputError
 from courtside.video import decoder, reader
+from courtside.video.glance import glance
 from courtside.video.packets import list_packets
 from fixtures.recordings.video_files import (
     H264,
@@ -204,6 +205,20 @@ def test_damaged_frames_shown_before_the_key_frame_do_not_matter(files, tmp_path
     part = list(reader.frames(path, start_s=start_s))
     assert [t for t, _ in part] == [t for t, _ in whole]
     np.testing.assert_array_equal([i for _, i in part], [i for _, i in whole])
+
+
+def test_a_piece_that_begins_between_key_frames_begins_with_the_first_that_decodes(files, tmp_path):
+    """As later files of a camcorder; the key frames are every twelve, groups are open."""
+    source = files["open_gop.ts"]
+    for k in (3, 14, 30):
+        path = tmp_path / f"piece{k}.ts"
+        _, at, _ = packets(source)[k]
+        path.write_bytes(source.read_bytes()[at:])
+        read = list(reader.frames(path))
+        first = -(-k // 12) * 12
+        assert numbers(read) == list(range(first, 60))
+        np.testing.assert_allclose([t for t, _ in read], np.arange(60 - first) / 30, atol=1e-4)
+        assert glance(path).n_frames == 60 - first
 
 
 def test_a_packet_missing_from_the_middle_is_found(tmp_path):

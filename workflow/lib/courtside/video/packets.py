@@ -91,7 +91,7 @@ def raise_logged(n_before: int) -> None:
 def _read_listing(path: Path) -> Listing:
     """Read all packets and judge them."""
     with opened(path) as (container, stream):
-        packets, n_read, problem = _whole_packets(container, stream)
+        packets, n_read, problem, start = _whole_packets(container, stream)
         stamped = [(p, d, n, key) for p, d, n, key in packets if p is not None]
         if len(stamped) < len(packets):
             raise InputError(
@@ -101,6 +101,9 @@ def _read_listing(path: Path) -> Listing:
             )
         if not packets:
             raise InputError(f"{path}: expected frames, found {problem or 'none'}: {MEND}")
+        # A piece of a recording that was cut up anywhere begins with frames that no decoder can
+        # show: they depend on frames before the file.
+        stamped = [packet for packet in stamped if start is None or packet[0] >= start]
         stored = np.array([packet[0] for packet in stamped])
         order = np.argsort(stored, kind="stable")
         pts = stored[order]
@@ -127,9 +130,12 @@ def _read_listing(path: Path) -> Listing:
     return listing
 
 
-def _whole_packets(container, stream) -> tuple[list[Packet], int, str]:
-    """Return the whole packets, how many were read, and what was lost."""
-    packets, n_read, corrupt = [], 0, False
+def _whole_packets(container, stream) -> tuple[list[Packet], int, str, int | None]:
+    """Return the whole packets, how many were read, what was lost, and when the first key frame is.
+
+    That may be one which an edit list hides.
+    """
+    packets, n_read, corrupt, start = [], 0, False, None
     n_logged = av.logging.get_last_error()[0]
     try:
         for packet in container.demux(stream):
@@ -138,14 +144,16 @@ def _whole_packets(container, stream) -> tuple[list[Packet], int, str]:
                 break  # the demuxer's end marker
             n_read += 1
             corrupt = packet.is_corrupt
+            if start is None and packet.is_keyframe:
+                start = packet.pts
             if packet.size and not packet.is_discard:
                 packets.append((packet.pts, packet.dts, packet.duration, packet.is_keyframe))
     except FFmpegError as error:
-        return packets, n_read, f"the file breaks off ({error.strerror})"
+        return packets, n_read, f"the file breaks off ({error.strerror})", start
     # The decoder judges damaged packets, but a damaged last one shows where the file was cut.
     if corrupt:
-        return packets[:-1], n_read, f"packet {n_read - 1} is cut off and ends the file"
-    return packets, n_read, ""
+        return packets[:-1], n_read, f"packet {n_read - 1} is cut off and ends the file", start
+    return packets, n_read, "", start
 
 
 def _shortfall(container, stream, n_read, pts, end) -> str:
