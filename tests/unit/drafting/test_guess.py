@@ -232,7 +232,9 @@ def test_gopro_counts_for_itself_and_cuts_up_recordings():
     told = {r.path: why for r, why in found.unused}
     assert sorted(told) == ["gym/left/GP010001.MP4", "gym/left/GX020034.MP4"]
     assert all(
-        why.startswith("chapter 2 of a recording") and "join" in why for why in told.values()
+        why.startswith("chapter 2 of a recording")
+        and "join the chapters without their sound" in why
+        for why in told.values()
     )
 
 
