@@ -49,6 +49,7 @@ rule import_pose2d:
         model=models_of(imported=True),
     params:
         code=code("import_pose2d.py"),
+        pin=of_job(recordings.keypoint_listing),
         trim_s=lambda w: take_of(w).trim_s,
         folders=lambda w: take_of(w).pose2d[w.model],
         rate_hz=lambda w: take_of(w).rate_hz,

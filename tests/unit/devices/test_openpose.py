@@ -375,8 +375,24 @@ def test_a_gap_is_bridged_but_not_for_ever():
     assert len(tracks) == 1
     assert np.isnan(tracks[0, 5:9]).all()
     assert np.isfinite(tracks[0, 9:, 0, 0]).all()
-    people[5:18] = [stack()] * 13
-    assert len(openpose.link(people)) == 2
+    people[9:] = [stack(person(900.0))] * 11
+    assert len(openpose.link(people)) == 2  # somebody else, for the row is not yet free
+    people[5:16] = [stack()] * 11
+    track = openpose.link(people)[0]  # whoever comes after a long gap begins a tracklet in a row
+    assert track[16:, 0, 0].tolist() == [900.0] * 4
+
+
+def test_rows_are_as_many_as_people_at_once_however_long_the_take():
+    """A row for each tracklet: an hour with 150 of them would need 40 GB."""
+    people = []
+    for visit in range(40):  # one stays; another one comes and goes, to a place of its own
+        both = [person(100.0), person(500.0 + 100 * (visit % 3))]
+        people += [stack(*both)] * 30 + [stack(both[0])] * (openpose.LONGEST_GAP + 1)
+    rows = openpose.link(people)
+    assert len(rows) == 2
+    assert np.isfinite(rows[:, :, 0, 0]).sum(axis=1).tolist() == [len(people), 40 * 30]
+    seen = rows[1, ::41, 0, 0]
+    assert seen.tolist() == [500.0 + 100 * (visit % 3) for visit in range(40)]
 
 
 def test_persons_of_very_few_frames_are_left_out_of_a_long_take(caplog):

@@ -1,5 +1,6 @@
 """Recordings of jobs: written out for the tiny study."""
 
+import os
 from dataclasses import replace
 
 import pytest
@@ -21,24 +22,68 @@ def test_files_of_a_folder_are_inputs_but_hidden_ones(tmp_path):
     assert recordings.inside(str(tmp_path / "1.png")) == []
 
 
-def test_keypoints_without_videos_wait_for_all_cameras(job, study, tmp_path):
+@pytest.fixture
+def folders(tmp_path):
+    """Return the folders of keypoints of two cameras, with two files each."""
+    found = {name: tmp_path / name for name in ("cam01", "cam02")}
+    for folder in found.values():
+        folder.mkdir()
+        for number in range(2):
+            file = folder / f"{number}.json"
+            file.write_text("{}")
+            os.utime(file, (1e9 - number, 1e9 - number))
+    return found
+
+
+@pytest.fixture
+def imported(job, study, folders):
+    """Return the job that imports the keypoints of `cam01`, by keys of its take."""
     session = study.sessions["walk-4cams-tiny"]
-    files = [tmp_path / name / "0.json" for name in ("cam01", "cam02")]
-    for file in files:
-        file.parent.mkdir()
-        file.touch()
-    pose2d = {"body25b": {file.parent.name: str(file.parent) for file in files}}
+    pose2d = {"body25b": {name: str(folder) for name, folder in folders.items()}}
     wildcards = {**REAL, "camera": "cam01", "model": "body25b"}
 
-    def given(**keys):
+    def made(**keys):
         take = replace(session.takes["balancing"], pose2d=pose2d, **keys)
         sessions = {session.name: replace(session, takes={"balancing": take})}
-        one = job(replace(study, sessions=sessions), **wildcards)
-        return recordings.keypoint_files(one), recordings.cameras_for_size(one)
+        return job(replace(study, sessions=sessions), **wildcards)
 
-    assert given() == ([str(files[0])], [])
+    return made
+
+
+def test_keypoints_without_videos_wait_for_all_cameras(imported, folders):
+    newest = [str(folder / "0.json") for folder in folders.values()]
+    beside, alone = imported(), imported(videos={}, rate_hz=60.0)
+    assert recordings.keypoint_files(beside) == newest[:1]
+    assert recordings.cameras_for_size(beside) == []
     cameras = "results/walk-4cams-tiny/calibration/file/cameras.toml"
-    assert given(videos={}, rate_hz=60.0) == (list(map(str, files)), cameras)
+    assert recordings.keypoint_files(alone) == newest
+    assert recordings.cameras_for_size(alone) == cameras
+
+
+def test_every_change_of_a_folder_of_keypoints_shows_in_its_newest_file_or_its_listing(
+    imported, folders
+):
+    one = imported()
+
+    def shown():
+        return recordings.keypoint_files(one), recordings.keypoint_listing(one)
+
+    folder, before = folders["cam01"], shown()
+    (folder / ".hidden.json").touch()
+    (folders["cam02"] / "2.json").touch()
+    assert shown() == before
+    (folder / "1.json").write_text("[]")  # as long, but younger than all others
+    assert shown() == ([str(folder / "1.json")], before[1])
+    seen = {before[1]}
+    os.utime(folder / "1.json", (1e9 - 1, 1e9 - 1))
+    for change in (
+        lambda: (folder / "1.json").rename(folder / "2.json"),
+        lambda: (folder / "2.json").write_text("{ }"),
+        lambda: (folder / "2.json").unlink(),
+    ):
+        change()
+        seen.add(recordings.keypoint_listing(one))
+    assert len(seen) == 4
 
 
 def test_fixed_cameras_and_devices_have_videos(job):

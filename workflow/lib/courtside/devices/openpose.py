@@ -244,7 +244,7 @@ LONGEST_GAP = 10  # frames. ASSUME: a person unseen for longer may be another on
 # ASSUME: smaller visible parts of a person say little of how far they may move.
 LEAST_SIZE_PX = 30.0
 # ASSUME: who is seen in fewer frames of a long take (and in less than this share of a short one) is
-# a false detection. Each track fills an array over the whole take.
+# a false detection.
 FEWEST_FRAMES, FEWEST_SHARE = 5, 0.01
 
 
@@ -252,7 +252,9 @@ def link(people: Sequence[NDArray]) -> NDArray:
     """Follow persons through the frames of one camera.
 
     `people` holds for each frame its persons (K, J, 3): x, y in px, NaN where unseen, and score.
-    The tracks (P, T, J, 3) are in the order in which they appear, NaN where a person is not there.
+    The rows (P, T, J, 3) are in the order in which they begin, NaN where a person is not there. A
+    row holds persons one after another, more than `LONGEST_GAP` frames apart: P grows with those
+    seen at once, not with the length of the take.
 
     Each frame's persons are assigned to the tracks so that the sum of median distances between
     common keypoints is least (Kuhn 1955); a person too far from all tracks begins a new one.
@@ -260,8 +262,9 @@ def link(people: Sequence[NDArray]) -> NDArray:
     """
     tracks: list[dict[int, NDArray]] = []
     last_seen: list[int] = []
+    open_tracks: list[int] = []
     for at, found in enumerate(people):
-        open_tracks = [k for k, seen in enumerate(last_seen) if at - seen <= LONGEST_GAP]
+        open_tracks = [k for k in open_tracks if at - last_seen[k] <= LONGEST_GAP]
         costs = np.full((len(found), len(open_tracks)), np.inf)
         for row, person in enumerate(found):
             for column, k in enumerate(open_tracks):
@@ -274,6 +277,7 @@ def link(people: Sequence[NDArray]) -> NDArray:
                 k = len(tracks)
                 tracks.append({})
                 last_seen.append(at)
+                open_tracks.append(k)
             tracks[k][at], last_seen[k] = person, at
     fewest = min(FEWEST_FRAMES, FEWEST_SHARE * len(people))
     kept = [track for track in tracks if len(track) >= fewest]
@@ -305,8 +309,22 @@ def _assign(costs: NDArray) -> dict[int, int]:
 
 def _stacked(tracks: Sequence[Mapping[int, NDArray]], people: Sequence[NDArray]) -> NDArray:
     n_joints = people[0].shape[1] if people else 0
-    whole = np.full((max(len(tracks), 1), len(people), n_joints, 3), np.nan)
-    for k, track in enumerate(tracks):
+    rows = _shared_rows(tracks)
+    whole = np.full((max(rows, default=0) + 1, len(people), n_joints, 3), np.nan)
+    for row, track in zip(rows, tracks, strict=True):
         for at, person in track.items():
-            whole[k, at] = person
+            whole[row, at] = person
     return whole
+
+
+def _shared_rows(tracks: Sequence[Mapping[int, NDArray]]) -> list[int]:
+    """Return the row of each track: the first one that has long been empty when it begins."""
+    ends: list[int] = []
+    rows = []
+    for track in tracks:
+        first, last = min(track), max(track)
+        free = (row for row, end in enumerate(ends) if first - end > LONGEST_GAP)
+        row = next(free, len(ends))
+        ends[row : row + 1] = [last]
+        rows.append(row)
+    return rows

@@ -19,6 +19,7 @@ SCALE_OF_PERSON = 0.2  # an error of this share of the joints' spread has half t
 CLIP = 3.0  # errors are cut off at this many such shares before their slow part is removed
 FINER = 0.5  # scale of the remaining errors, relative to the first scale
 LARGEST_MATCH = 0.55  # mean loss up to which two tracklets may show one person
+BLOCK_S = 20.0  # tracklets are matched anew in each: a row of a long take shows one after another
 FADE = 4.0  # standard deviations at which an error has a quarter of its weight
 SMALLEST_PX = 0.3  # no network is more precise
 WINDOW_S = 3.0  # slower errors are the network's, not the clock's
@@ -44,7 +45,8 @@ class Epipolar:
             for a, b in permutations(range(len(cameras)), 2)
         }
         self.scale_px = [SCALE_OF_PERSON * _spread_px(track.values) for track in tracks]
-        self.matches: dict[tuple[int, int], list[tuple[int, int]]] = {}
+        # Of pairs of cameras: pairs of rows that show one person in a block of times.
+        self.matches: dict[tuple[int, int], list[tuple[int, int, slice]]] = {}
 
     def scan(self, a: int, b: int, lags_s: NDArray) -> NDArray:
         """Return the loss (N, L) of camera b against a, at N times of one, by the offset of b."""
@@ -84,22 +86,23 @@ class Epipolar:
         return (_mean_loss(distance, scale_px) + _mean_loss(left, FINER * scale_px)) / 2
 
     def match(self, own: NDArray, used: Collection[int]) -> list[tuple[int, int]]:
-        """Match the tracklets of pairs of cameras that show one person.
+        """Match the tracklets of pairs of cameras that show one person, block by block.
 
         `own` (C, T) is what each clock shows, to the step of the scan; `used` are the cameras to
         compare. Return the pairs of cameras that share at least one person.
         """
         self.matches = {}
         sampled = self._sample(own)
-        for a, b in combinations(sorted(used), 2):
-            loss = np.array(
-                [[self._between(a, b, x[0], y[0]) for y in sampled[b]] for x in sampled[a]]
-            )
-            loss = np.where(np.isfinite(loss), loss, 1.0)
-            best = (loss == loss.min(axis=0)) | (loss == loss.min(axis=1, keepdims=True))
-            found = [(p, q) for p, q in np.argwhere(best & (loss <= LARGEST_MATCH)).tolist()]
-            if found:
-                self.matches[a, b] = found
+        for block in _blocks(own[0]):
+            for a, b in combinations(sorted(used), 2):
+                loss = np.array(
+                    [[self._between(a, b, x[0][block], y[0][block]) for y in sampled[b]]
+                     for x in sampled[a]]
+                )  # fmt: skip
+                loss = np.where(np.isfinite(loss), loss, 1.0)
+                best = (loss == loss.min(axis=0)) | (loss == loss.min(axis=1, keepdims=True))
+                for p, q in np.argwhere(best & (loss <= LARGEST_MATCH)).tolist():
+                    self.matches.setdefault((a, b), []).append((p, q, block))
         return list(self.matches)
 
     def _between(self, a: int, b: int, xy_a: NDArray, xy_b: NDArray) -> float:
@@ -111,11 +114,15 @@ class Epipolar:
     def terms(self, own: NDArray) -> dict[tuple[int, int], tuple[NDArray, ...]]:
         """Return the terms of each pair for `clock_adjustment.adjust`."""
         sampled = self._sample(own)
-        result: dict[tuple[int, int], list[NDArray]] = {}
+        result = {pair: np.zeros((3, own.shape[1])) for pair in self.matches}
         for pair, matches in self.matches.items():
-            for p, q in matches:
-                result.setdefault(pair, []).append(self._of(pair, sampled, p, q, own))
-        return {pair: tuple(np.sum(parts, axis=0)) for pair, parts in result.items()}
+            for *rows, block in matches:
+                first, second = (
+                    tuple(part[block] for part in sampled[camera][row])
+                    for camera, row in zip(pair, rows, strict=True)
+                )
+                result[pair][:, block] += self._of(pair, first, second, own[:, block])
+        return {pair: tuple(found) for pair, found in result.items()}
 
     def _sample(self, own: NDArray) -> list[list[Sample]]:
         """Return per camera the tracklets as (value, velocity, acceleration), (T, J, 2) each."""
@@ -124,8 +131,8 @@ class Epipolar:
             for track, time_s in zip(self.tracks, own, strict=True)
         ]
 
-    def _of(self, pair, sampled, p, q, own) -> NDArray:
-        miss, slope, bend = self._derivatives(pair, sampled[pair[0]][p], sampled[pair[1]][q])
+    def _of(self, pair, first, second, own) -> NDArray:
+        miss, slope, bend = self._derivatives(pair, first, second)
         known = np.isfinite(miss) & np.isfinite(slope) & np.isfinite(bend)
         miss, slope, bend = (np.where(known, part, 0.0) for part in (miss, slope, bend))
         window = max(3, round(WINDOW_S / (own[0, 1] - own[0, 0])))
@@ -153,6 +160,13 @@ class Epipolar:
             misses.append(epipolar.distance_px(self.matrix[pair], xy_a, xy_b))
         before, here, after = misses
         return here, (after - before) / (2 * PROBE_S), (after - 2 * here + before) / PROBE_S**2
+
+
+def _blocks(time_s: NDArray) -> list[slice]:
+    """Return slices of uniform times (T,), of about `BLOCK_S` each."""
+    count = max(1, round((time_s[-1] - time_s[0]) / BLOCK_S))
+    ends = np.linspace(0, len(time_s), count + 1).astype(int).tolist()
+    return list(map(slice, ends[:-1], ends[1:]))
 
 
 def _spread_px(values: NDArray) -> float:

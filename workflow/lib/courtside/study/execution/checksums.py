@@ -2,6 +2,7 @@
 
 import hashlib
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 from courtside.study.errors import DAMAGED, StrPath
@@ -15,11 +16,13 @@ SETTLED_NS = 2_000_000_000
 def of_path(path: StrPath) -> str:
     """Return the SHA-256 of a file, or of a folder: of names and checksums of all its files."""
     path = Path(path)
-    if not path.is_dir():
-        return files.sha256(path)
+    return _of_folder(path, files.sha256) if path.is_dir() else files.sha256(path)
+
+
+def _of_folder(folder: Path, of_file: Callable[[Path], str | None]) -> str:
     digest = hashlib.sha256()
-    for file in members(path):
-        digest.update(f"{file.relative_to(path).as_posix()}\0{files.sha256(file)}\n".encode())
+    for file in members(folder):
+        digest.update(f"{file.relative_to(folder).as_posix()}\0{of_file(file)}\n".encode())
     return digest.hexdigest()
 
 
@@ -32,12 +35,14 @@ def members(folder: StrPath) -> list[Path]:
 class Checksums:
     """The checksums of a study's inputs, kept in one JSON file between runs.
 
-    A file that cannot be read as such is taken for an empty one.
+    A file that cannot be read as such is taken for an empty one. A folder is looked at once: many
+    results rest on the same recordings.
     """
 
     def __init__(self, path: StrPath) -> None:
         self.path = Path(path)
         self.known = self._read()
+        self.folders: dict[Path, str] = {}
         self.changed = False
 
     def _read(self) -> dict[str, list]:
@@ -56,7 +61,9 @@ class Checksums:
         """Return the SHA-256 of a file or folder; None if there is none."""
         path = Path(path)
         if path.is_dir():
-            return of_path(path)
+            if path not in self.folders:
+                self.folders[path] = _of_folder(path, self.of)
+            return self.folders[path]
         try:
             state = path.stat()
         except FileNotFoundError:

@@ -1,5 +1,7 @@
 """Recordings of jobs: videos, folders of pictures, pinned networks and virtual bodies."""
 
+import hashlib
+import os
 from pathlib import Path
 from typing import Any
 
@@ -18,10 +20,38 @@ def inside(path: str) -> list[str]:
 
 
 def keypoint_files(job: Job) -> list[str]:
-    """Return the keypoint files of a camera; without videos of all, whose numbers count frames."""
+    """Return the newest keypoint file of each folder that a camera's keypoints rest on.
+
+    An hour has hundreds of thousands: Snakemake would look for minutes at the date of each. What it
+    cannot see in the newest one, `keypoint_listing` tells.
+    """
+    newest = [max(_json_files(one), default=None) for one in _keypoint_folders(job)]
+    return [found[-1] for found in newest if found]
+
+
+def keypoint_listing(job: Job) -> str:
+    """Return a digest of names and sizes of all files in these folders, in place of the files."""
+    digest = hashlib.sha256()
+    for folder in _keypoint_folders(job):
+        for name, size in sorted((name, size) for _, size, name in _json_files(folder)):
+            digest.update(f"{name}\0{size}\n".encode())
+    return digest.hexdigest()
+
+
+def _keypoint_folders(job: Job) -> list[str]:
+    """Return the folder of a camera; without videos those of all, whose numbers count frames."""
     folders = job.take.pose2d[job["model"]]
-    wanted = [folders[job["camera"]]] if job.take.videos else folders.values()
-    return [file for folder in wanted for file in inside(folder)]
+    return [folders[job["camera"]]] if job.take.videos else list(folders.values())
+
+
+def _json_files(folder: str) -> list[tuple[int, int, str]]:
+    """Return date, ns, size and path of each JSON file in a folder; nothing without it."""
+    if not Path(folder).is_dir():
+        return []
+    with os.scandir(folder) as every:
+        found = [one for one in every if one.name.endswith(".json") and one.name[0] != "."]
+    states = [(one.stat(), one.path) for one in found if one.is_file()]
+    return [(state.st_mtime_ns, state.st_size, path) for state, path in states]
 
 
 def cameras_for_size(job: Job) -> str | list:
