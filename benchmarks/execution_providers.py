@@ -22,7 +22,7 @@ from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
-from courtside.pose import decoders, tracking
+from courtside.pose import open_network, tracking
 from courtside.pose.networks import session
 from courtside.records.keypoints import skeleton
 from courtside.video import reader
@@ -36,10 +36,10 @@ def opened(results, name, provider):
     declared = yaml.safe_load((ROOT / "config" / "models.yaml").read_text())[name]
     folder, how = results / "networks" / name, {"decoder": "blazepose", "providers": [provider]}
     joints = skeleton.read(ROOT / "config" / "skeletons" / "blazepose33.yaml").joints
-    landmarks = decoders.landmark_network(
+    landmarks = open_network.landmark_network(
         folder / "landmarks.onnx", joints, flip_test=declared.get("flip_test", False), **how
     )
-    return decoders.person_detector(folder / "detector.onnx", **how), landmarks
+    return open_network.person_detector(folder / "detector.onnx", **how), landmarks
 
 
 def follow(frames, detector, landmarks):

@@ -29,7 +29,7 @@ from repository import ROOT
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
 from courtside.geometry import camera as camera_models
-from courtside.pose import decoders, tiles
+from courtside.pose import open_network, tiles
 from courtside.pose.detector import SIDE_OF_BOX, Region
 from courtside.records.truth import session_truth, take_truth
 
@@ -54,10 +54,10 @@ def detectors(results, folder, min_score):
     """Return the detectors by name; `min_score` is that of the user's own."""
     found = {}
     for path in sorted((results / "networks").glob("*/detector.onnx"))[:1]:
-        found["blazepose-detector"] = decoders.person_detector(path, decoder="blazepose")
+        found["blazepose-detector"] = open_network.person_detector(path, decoder="blazepose")
     for name, how in OWN.items():
         if (path := folder / f"{name}.onnx").is_file():
-            found[name] = decoders.person_detector(path, min_score=min_score, **how)
+            found[name] = open_network.person_detector(path, min_score=min_score, **how)
     return found
 
 

@@ -37,7 +37,7 @@ sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
 from courtside.evaluation.numbers import networks as numbers
 from courtside.evaluation.numbers import register
-from courtside.pose import decoders
+from courtside.pose import open_network
 from courtside.records.keypoints import skeleton
 from courtside.study import paths
 from courtside.study.configuration import sessions, yaml_files
@@ -123,8 +123,10 @@ def times(results, networks):
         one = sessions.model(name, models[name], detectors)
         joints = skeleton.read(ROOT / "config" / "skeletons" / f"{one.skeleton}.yaml").joints
         file = {part: results / "networks" / name / f"{part}.onnx" for part in paths_of(one)}
-        found[name] = decoders.landmark_network(file["landmarks"], joints, **one.decoder_options())
-        detector = detector or decoders.person_detector(
+        found[name] = open_network.landmark_network(
+            file["landmarks"], joints, **one.decoder_options()
+        )
+        detector = detector or open_network.person_detector(
             file["detector"], **one.detector.decoder_options()
         )
     capture, seconds = cv2.VideoCapture(str(results / VIDEO)), {name: [] for name in networks}

@@ -31,7 +31,7 @@ sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
 from courtside.calibration.court import joint_adjustment
-from courtside.calibration.people import unit, world_frame
+from courtside.calibration.people import metric_scale, world_frame
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.evaluation.numbers.players import NETWORK as MODEL
 from courtside.geometry import camera as camera_models
@@ -112,7 +112,7 @@ def clicked(real, places, seed):
     stated_ends = [
         {"points": names[2 * k : 2 * k + 2], "length_m": length_m} for k in range(len(places))
     ]
-    return unit.of_clicks(stated_ends, names, xy, **CLICK)
+    return metric_scale.of_clicks(stated_ends, names, xy, **CLICK)
 
 
 def rescaled(found, scale):
@@ -137,11 +137,11 @@ def with_lengths(found, known, heights):
     """
     columns = found.covariance.of_columns()
     shape = world_frame.of_shape(found.cameras, columns, found.places, 0.0)
-    each, covariance = unit.by_lengths(found.cameras, known, shape)
+    each, covariance = metric_scale.by_lengths(found.cameras, known, shape)
     if heights:
-        each.append(unit.Unit(1.0, found.scale.sigma, unit.HEIGHTS))
+        each.append(metric_scale.Scale(1.0, found.scale.sigma, metric_scale.HEIGHTS))
         covariance = scipy.linalg.block_diag(covariance, found.scale.sigma**2)
-    return rescaled(found, unit.combined(each, covariance))
+    return rescaled(found, metric_scale.combined(each, covariance))
 
 
 def rows(results, name, takes, names):

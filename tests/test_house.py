@@ -157,7 +157,7 @@ def test_the_library_is_mirrored_by_tests():
         )
         mirror = folder / TESTED_THROUGH.get(name.as_posix(), f"test_{path.stem}.py")
         if path.stem not in UNTESTED and not mirror.is_file():
-            missing.append(name.as_posix())
+            missing.append(f"{name.as_posix()}: write {mirror.relative_to(ROOT)}")
     assert missing == []
 
 

@@ -198,8 +198,14 @@ def faults_of_list(package: Path) -> list[str]:
     parts -= {"__init__"}
     source = "\n".join(p.read_text() for p in package.rglob("*.py") if p.name != "__init__.py")
     listed = {name.split(".")[-1] for name in re.findall(r"`([\w.]+)`", text)} - parts
-    return [f"{part} is not listed" for part in parts if not re.search(rf"\b{part}\b", text)] + [
-        f"{name} is not there" for name in listed if not re.search(rf"\b{name}\b", source)
+    return [
+        f"{part} is not listed in __init__.py"
+        for part in parts
+        if not re.search(rf"\b{part}\b", text)
+    ] + [
+        f"{name} is listed in __init__.py and not there"
+        for name in listed
+        if not re.search(rf"\b{name}\b", source)
     ]
 
 
@@ -214,7 +220,10 @@ def test_a_list_of_modules_that_is_not_true_is_found(tmp_path):
     (tmp_path / "__init__.py").write_text('"""Room.\n\nnear: `gone`, `there`\n"""\n')
     (tmp_path / "near.py").write_text("def there(): ...\n")
     (tmp_path / "far.py").write_text("")
-    assert faults_of_list(tmp_path) == ["far is not listed", "gone is not there"]
+    assert faults_of_list(tmp_path) == [
+        "far is not listed in __init__.py",
+        "gone is listed in __init__.py and not there",
+    ]
 
 
 TRUE_MODULES = ("virtualgym", "courtside.records.truth")

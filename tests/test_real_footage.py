@@ -22,7 +22,7 @@ from courtside.calibration import file_formats
 from courtside.exports import trc
 from courtside.geometry import camera as cameras
 from courtside.geometry import triangulation
-from courtside.pose import decoders, foreground, tracklets
+from courtside.pose import foreground, open_network, tracklets
 from courtside.pose.blazepose import BlazePoseDetector
 from courtside.reconstruction import fusion
 from courtside.records.keypoints import keypoints, skeleton
@@ -97,7 +97,7 @@ def detected(study, run_folder):
     joints = skeleton.read(ROOT / "config" / "skeletons" / "blazepose33.yaml").joints
     find = BlazePoseDetector(networks.detector_onnx(run_folder))
     network = networks.landmarks_onnx(run_folder)
-    place = decoders.landmark_network(network, joints, decoder="blazepose")
+    place = open_network.landmark_network(network, joints, decoder="blazepose")
     cv2.setNumThreads(1)
     return [detect(name, joints, find, place, study) for name in NAMES]
 

@@ -11,7 +11,7 @@ from courtside.drafting import draft as session_advice
 from courtside.drafting import guess as session_guess
 from courtside.drafting import survey
 from courtside.pages.clicking import page
-from courtside.pose import decoders
+from courtside.pose import open_network
 from courtside.pose.conversion import tflite_onnx
 from courtside.pose.networks import session as onnx_session
 from courtside.sfm import database, model
@@ -200,8 +200,8 @@ def run_network(path):
     """Check an ONNX file and run it, as if its checksum were right."""
     onnx_session.check_file(path, files.sha256(path))
     decoder = "simcc" if path.stem.endswith("simcc") else "heatmaps"
-    network = decoders.landmark_network(path, JOINTS, decoder=decoder, input=GIVEN)
-    decoders.try_out(network)
+    network = open_network.landmark_network(path, JOINTS, decoder=decoder, input=GIVEN)
+    open_network.try_out(network)
     return network
 
 

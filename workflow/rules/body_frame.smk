@@ -10,7 +10,7 @@ measure_arcs.
 rule correct_inertial:
     input:
         device_npz=paths.DEVICE,
-        skeleton_yaml=CONFIG / paths.SKELETON_YAML.format(skeleton="mocopi27"),
+        skeleton_yaml=of_job(devices.skeleton_file),
         vision_npz=of_job(devices.vision_file),
         sync_json=paths.DEVICE_CLOCKS,
     output:

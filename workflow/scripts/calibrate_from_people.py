@@ -1,7 +1,7 @@
 """Calibrate fixed cameras from people alone: keypoints, heights or known lengths -> cameras."""
 
 from courtside.calibration import file_formats
-from courtside.calibration.people import from_nothing, unit
+from courtside.calibration.people import from_nothing, metric_scale
 from courtside.calibration.people.views import Limits
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.geometry import camera as camera_models
@@ -23,7 +23,7 @@ def main(
     if known_lengths:
         weights = {key: steps["clicks"][key] for key in ("click_sigma_px", "click_bias_px")}
         points, xy = clicks.read_static(paths.static, names)
-        known = unit.of_clicks(known_lengths, points, xy, **weights)
+        known = metric_scale.of_clicks(known_lengths, points, xy, **weights)
 
     def timed(cameras):
         """Return the name, keypoints and clocks of each take; clocks by cameras if known."""

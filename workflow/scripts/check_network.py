@@ -2,7 +2,7 @@
 
 import shutil
 
-from courtside.pose import decoders
+from courtside.pose import open_network
 from courtside.pose.networks import session
 from courtside.records.keypoints import skeleton as skeletons
 from courtside.study.execution import files
@@ -12,11 +12,11 @@ from courtside.study.execution.script import run
 def main(network_file, skeleton, onnx_path, *, part, sha256, decoder):
     session.check_file(network_file, sha256)
     if part == "detector":
-        network = decoders.person_detector(network_file, **decoder)
+        network = open_network.person_detector(network_file, **decoder)
     else:
         joints = skeletons.read(skeleton).joints
-        network = decoders.landmark_network(network_file, joints, **decoder)
-    decoders.try_out(network)
+        network = open_network.landmark_network(network_file, joints, **decoder)
+    open_network.try_out(network)
     with files.atomic(onnx_path) as copy:
         shutil.copyfile(network_file, copy)
 

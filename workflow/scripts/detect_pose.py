@@ -5,7 +5,7 @@ import itertools
 import cv2
 import numpy as np
 
-from courtside.pose import decoders, foreground, tracking, tracklets
+from courtside.pose import foreground, open_network, tracking, tracklets
 from courtside.pose.clothing import Clothing
 from courtside.pose.search import Search, middle
 from courtside.records.keypoints import keypoints, skeleton
@@ -24,10 +24,14 @@ def main(
     info = reader.probe(paths.video, stop_s=stop_s)
     frames = reader.frames(paths.video, start_s=start_s, stop_s=stop_s)
     frames = log.progress(frames, info.n_frames if not trim_s else None, f"{camera}: frames")
-    landmarks = decoders.landmark_network(paths.landmarks, joints, providers=providers, **decoder)
+    landmarks = open_network.landmark_network(
+        paths.landmarks, joints, providers=providers, **decoder
+    )
     detector = landmarks  # of one stage
     if person_detector:
-        detector = decoders.person_detector(paths.detector, providers=providers, **person_detector)
+        detector = open_network.person_detector(
+            paths.detector, providers=providers, **person_detector
+        )
     options["clothing"] = Clothing(joints)
     track, shown = follow(frames, (detector, landmarks), paths.background, **options)
     if shown:

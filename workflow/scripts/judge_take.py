@@ -3,7 +3,7 @@
 Reads them for each way in which the take was measured; writes one table.
 """
 
-from courtside.quality import doubts, seen, verdict
+from courtside.quality import calibration_doubts, seen, verdict
 from courtside.records import tables
 from courtside.records.cameras import footage
 from courtside.records.keypoints import keypoints, skeleton
@@ -21,7 +21,7 @@ def judge(way):
     names = points.cameras.tolist()
     cameras = footage.read(way["cameras"], way["pose2d"], way["people"], way["sync"], wanted=names)
     gathered = seen.gather(cameras, points, skeleton.read(way["skeleton"]))
-    said = doubts.read(way["quality"], way["check"], way["court_check"])
+    said = calibration_doubts.read(way["quality"], way["check"], way["court_check"])
     rows = verdict.judge(gathered, said)
     for row in rows[rows["measure"] == verdict.WHOLE].itertuples():
         log.logger.info("%s: %s", row.verdict, row.sentence)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from courtside.quality import causes, verdict
-from courtside.quality.doubts import Doubts
+from courtside.quality.calibration_doubts import Doubts
 from courtside.study.execution.verdicts import ALL, COLUMNS, DOUBTFUL, FAILED, GOOD, WHOLE
 from fixtures.people import judged
 

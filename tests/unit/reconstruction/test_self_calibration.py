@@ -11,7 +11,7 @@ sys.path.append(str(Path(__file__).parents[3] / "benchmarks"))  # last: both hav
 import people_alone
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
-from courtside.calibration.people import unit
+from courtside.calibration.people import metric_scale
 from courtside.calibration.people.from_nothing import Guess
 from courtside.calibration.people.views import Limits
 from courtside.geometry import camera as camera_models
@@ -119,7 +119,7 @@ def calibrated():
 def test_a_known_length_stands_for_heights(calibrated):
     ends = np.array([[-1.0, 1.0, 0.0], [1.0, 1.0, 0.0]])
     xy = np.stack([camera_models.project(camera, ends) for camera in CAMERAS])
-    known = unit.KnownLength("line", 2.0, xy, click_sigma_px=1.0, on_floor=True)
+    known = metric_scale.KnownLength("line", 2.0, xy, click_sigma_px=1.0, on_floor=True)
     found = calibrated(*[Clock()] * 3, heights_m=(None, None), known=[known])
     placed = triangulation.triangulate_all(found.cameras, xy)
     assert np.linalg.norm(placed[1] - placed[0]) == pytest.approx(2.0, rel=1e-3)
@@ -131,10 +131,10 @@ def test_another_unit_is_that_of_a_calibration_with_this_length(calibrated):
     """It gives the cameras, and the errors of points, of the calibration by the length."""
     ends = np.array([[-1.0, 1.0, 0.0], [1.0, 1.0, 0.0]])
     xy = np.stack([camera_models.project(camera, ends) for camera in CAMERAS])
-    known = unit.KnownLength("line", 2.0, xy, click_sigma_px=1.0)
+    known = metric_scale.KnownLength("line", 2.0, xy, click_sigma_px=1.0)
     wanted = calibrated(*[Clock()] * 3, heights_m=(None, None), known=[known])
     tall = calibrated(*[Clock()] * 3, heights_m=(1.76, 1.98))
-    (own,), _ = unit.by_lengths(tall.cameras, [known])
+    (own,), _ = metric_scale.by_lengths(tall.cameras, [known])
     assert abs(own.metres - 1) > 0.05
     found = people_alone.rescaled(tall, replace(wanted.scale, metres=own.metres))
     for one, other in zip(found.cameras, wanted.cameras, strict=True):

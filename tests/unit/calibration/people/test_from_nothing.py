@@ -7,7 +7,7 @@ import pytest
 
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
-from courtside.calibration.people import from_nothing, unit
+from courtside.calibration.people import from_nothing, metric_scale
 from courtside.calibration.people.held_out import Score
 from courtside.calibration.people.views import Limits, Seen
 from courtside.geometry import camera as cameras
@@ -22,7 +22,11 @@ NAMES, SIZES = [one.name for one in TRUE], {one.name: one.size for one in TRUE}
 LIMITS = Limits(score=0.05, limit=0.05, fade=0.067)
 WALK = tracks_made.persons(40)
 LENSES = {camera.name: camera for camera in TRUE}
-HEIGHTS = {"walk": {f"p{at}": unit.length(xyz) / unit.OF_HEIGHT for at, xyz in enumerate(WALK)}}
+HEIGHTS = {
+    "walk": {
+        f"p{at}": metric_scale.length(xyz) / metric_scale.OF_HEIGHT for at, xyz in enumerate(WALK)
+    }
+}
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -66,10 +70,13 @@ def test_cameras_with_unknown_lenses_are_found_from_two_persons_and_their_height
     summary = from_nothing.summary(found, ["walk"])
     assert min(summary["accepted_percent"].values()) > 95
     assert summary["line"].startswith("people alone: views of held-out joints disagree by ")
-    scale = replace(found.scale, remarks=(unit.ONE_HEIGHT,))
+    scale = replace(found.scale, remarks=(metric_scale.ONE_HEIGHT,))
     told = replace(found, scale=scale, warnings=["floor: it differs"])
     summary = from_nothing.summary(told, ["walk"])
-    assert (summary["remarks"], summary["warnings"]) == ([unit.ONE_HEIGHT], ["floor: it differs"])
+    assert (summary["remarks"], summary["warnings"]) == (
+        [metric_scale.ONE_HEIGHT],
+        ["floor: it differs"],
+    )
 
 
 def test_a_lens_of_a_board_is_not_guessed():

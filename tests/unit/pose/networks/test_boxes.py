@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from courtside.pose import decoders, tiles
+from courtside.pose import open_network, tiles
 from courtside.pose.networks import boxes
 from courtside.study.errors import InputError
 from fixtures.recordings import onnx_files
@@ -22,13 +22,13 @@ PERSON = (40, 20, 80, 100)  # first and last white pixel of a picture twice as l
 def yolox(tmp_path, **options):
     path = onnx_files.yolox(tmp_path / "y.onnx", SIZE)
     how = {"decoder": "yolox", "input": BGR, "person_class": 1} | options
-    return decoders.person_detector(path, **how)
+    return open_network.person_detector(path, **how)
 
 
 def end_to_end(tmp_path, person=0, **options):
     path = onnx_files.end_to_end(tmp_path / "r.onnx", SIZE, person=person, least=1.5)
     how = {"decoder": "end-to-end", "input": BGR | MEAN} | options
-    return decoders.person_detector(path, **how)
+    return open_network.person_detector(path, **how)
 
 
 @pytest.mark.parametrize("make", [yolox, end_to_end])
@@ -98,7 +98,7 @@ def test_a_tile_is_shrunk_to_the_detectors_own_input(tmp_path):
 def test_another_detector_than_declared_is_one_line(tmp_path, made, decoder, part):
     path = getattr(onnx_files, made)(tmp_path / "n.onnx", SIZE)
     with pytest.raises(InputError, match=part) as caught:
-        decoders.try_out(decoders.person_detector(path, decoder=decoder, input=BGR))
+        open_network.try_out(open_network.person_detector(path, decoder=decoder, input=BGR))
     assert len(caught.value.lines) == 1
 
 
@@ -115,7 +115,7 @@ REAL_ONES = {
 @pytest.mark.parametrize("name", REAL_ONES)
 @pytest.mark.parametrize("camera", [1, 3])
 def test_a_real_detector_finds_a_real_person(name, camera):
-    finder = decoders.person_detector(REAL / "models" / f"{name}.onnx", **REAL_ONES[name])
+    finder = open_network.person_detector(REAL / "models" / f"{name}.onnx", **REAL_ONES[name])
     stream = cv2.VideoCapture(str(REAL / f"walk-4cams/videos/cam{camera:02d}.mp4"))
     found, image = stream.read()
     assert found
@@ -138,7 +138,7 @@ def test_a_real_detector_finds_a_real_person(name, camera):
 @pytest.mark.parametrize("name", REAL_ONES)
 @pytest.mark.parametrize("camera", ["cam02", "cam08"])
 def test_a_real_detector_finds_a_player_in_a_hall_of_4k(name, camera):
-    finder = decoders.person_detector(REAL / "models" / f"{name}.onnx", **REAL_ONES[name])
+    finder = open_network.person_detector(REAL / "models" / f"{name}.onnx", **REAL_ONES[name])
     found, image = cv2.VideoCapture(str(REAL / "hall-markers" / f"{camera}.mp4")).read()
     assert found
     table = pd.read_csv(REAL / "hall-markers" / "annotations.csv")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from courtside.pose import decoders, detector
+from courtside.pose import detector, open_network
 from courtside.pose.detector import Region
 from courtside.study.errors import InputError
 from fixtures.recordings import onnx_files
@@ -22,7 +22,9 @@ GIVEN = {
 def network(tmp_path, decoder, joints=JOINTS, **options):
     make = {"rtmo": onnx_files.rtmo, "yolo-pose": onnx_files.yolo_pose}[decoder]
     path = make(tmp_path / "n.onnx", SIZE)
-    return decoders.landmark_network(path, joints, decoder=decoder, input=GIVEN[decoder], **options)
+    return open_network.landmark_network(
+        path, joints, decoder=decoder, input=GIVEN[decoder], **options
+    )
 
 
 @pytest.mark.parametrize("decoder", GIVEN)
@@ -72,11 +74,11 @@ def test_a_person_at_the_rim_is_somebody_else(tmp_path, decoder):
 @pytest.mark.parametrize("decoder", GIVEN)
 def test_another_skeleton_is_one_line(tmp_path, decoder):
     with pytest.raises(InputError, match="as its skeleton has") as caught:
-        decoders.try_out(network(tmp_path, decoder, joints=("nose", "left_hip")))
+        open_network.try_out(network(tmp_path, decoder, joints=("nose", "left_hip")))
     assert len(caught.value.lines) == 1
     other = {"rtmo": "yolo-pose", "yolo-pose": "rtmo"}[decoder]
-    wrong = decoders.landmark_network(
+    wrong = open_network.landmark_network(
         tmp_path / "n.onnx", JOINTS, decoder=other, input=GIVEN[decoder]
     )
     with pytest.raises(InputError, match=r"n\.onnx: expected"):
-        decoders.try_out(wrong)
+        open_network.try_out(wrong)

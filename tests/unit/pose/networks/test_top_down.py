@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from courtside.pose import decoders, detector
+from courtside.pose import detector, open_network
 from courtside.pose.conversion import tflite_onnx
 from courtside.pose.detector import Region
 from courtside.pose.networks import top_down
@@ -30,7 +30,7 @@ def image(points=POINTS, sigma=9.0):
 
 def simcc(tmp_path, shift=0, joints=JOINTS, **options):
     path = onnx_files.simcc(tmp_path / "n.onnx", (96, 128), shift=shift)
-    return decoders.landmark_network(path, joints, decoder="simcc", input=SIMCC, **options)
+    return open_network.landmark_network(path, joints, decoder="simcc", input=SIMCC, **options)
 
 
 def maps(tmp_path, cells, joints=JOINTS, layout="nchw", refine="dark", flip=False, **made):
@@ -39,7 +39,7 @@ def maps(tmp_path, cells, joints=JOINTS, layout="nchw", refine="dark", flip=Fals
     path = tmp_path / "n.onnx"
     onnx_files.heat_maps(path, given["size"], 4, layout=layout, first=first, **made)
     how = {"cells": cells, "refine": refine, "flip_test": flip}
-    return decoders.landmark_network(path, joints, decoder="heatmaps", input=given, **how)
+    return open_network.landmark_network(path, joints, decoder="heatmaps", input=given, **how)
 
 
 def test_simcc_places_points(tmp_path):
@@ -140,7 +140,7 @@ def test_another_network_than_declared_is_one_line(tmp_path, change, part):
     path = onnx_files.simcc(tmp_path / "n.onnx", (96, 128))
     how = {"joints": JOINTS, "decoder": "simcc", "input": SIMCC} | change
     with pytest.raises(InputError, match=part) as caught:
-        decoders.try_out(decoders.landmark_network(path, **how))
+        open_network.try_out(open_network.landmark_network(path, **how))
     assert len(caught.value.lines) == 1
     assert str(path) in str(caught.value)
 
@@ -150,9 +150,9 @@ def test_maps_without_cells_are_one_line(tmp_path):
     none = graph.add("Slice", "image", graph.ints(0), graph.ints(0), graph.ints(2))
     graph.output(none, "maps")
     path = graph.write(tmp_path / "n.onnx")
-    network = decoders.landmark_network(path, JOINTS, decoder="heatmaps", input=MAPS)
+    network = open_network.landmark_network(path, JOINTS, decoder="heatmaps", input=MAPS)
     with pytest.raises(InputError, match=r"heat maps of one picture.*\(1, 3, 0, 96\)"):
-        decoders.try_out(network)
+        open_network.try_out(network)
 
 
 @needs_real
@@ -161,7 +161,7 @@ def test_cpm_places_the_joints_of_a_photo(tmp_path):
     folder = __import__("pathlib").Path(__file__).parents[4] / "config" / "skeletons"
     joints = skeleton.read(folder / "cpm14.yaml").joints
     how = {"size": [192, 192], "layout": "nhwc", "channels": "bgr"}
-    network = decoders.landmark_network(
+    network = open_network.landmark_network(
         tmp_path / "cpm.onnx", joints, decoder="heatmaps", input=how, cells="centre"
     )
     image = cv2.imread(str(REAL / "people" / "000000000785.jpg"))

@@ -1,6 +1,6 @@
 """2D pose networks in onnxruntime: detection, tracking, decoding, privacy.
 
-decoders: `landmark_network`, `person_detector`: a network by the name of its decoder.
+open_network: `landmark_network`, `person_detector`: a network file, by the name of its decoder.
 detector: `Region`, `Pose`, `cut_out`: the interface of networks; blazepose: MediaPipe's.
 clothing: `Clothing`: the colours of a person's clothes.
 tracking, tracklets: `track_person`, `track_people`: people followed through the pictures of one

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import pandas as pd
 
 from courtside.quality import causes, measures
-from courtside.quality.doubts import Doubts
+from courtside.quality.calibration_doubts import Doubts
 from courtside.quality.seen import Seen, disagreement, shown, without
 from courtside.study.execution.verdicts import ALL, COLUMNS, DOUBTFUL, FAILED, GOOD, ORDER, WHOLE
 

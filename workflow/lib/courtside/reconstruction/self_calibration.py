@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration.people import from_nothing, relative_poses
+from courtside.calibration.people.metric_scale import Heights, KnownLength
 from courtside.calibration.people.relative_poses import Take
-from courtside.calibration.people.unit import Heights, KnownLength
 from courtside.calibration.people.views import Limits, Seen, joined
 from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera

@@ -34,13 +34,11 @@ def faults(
 
 def _read(name: str, device: Device, skeleton_file: Callable[[str], Path]) -> None:
     # 0.3 s, which sessions without devices, or with unchanged ones, save
-    from courtside.devices import mocopi, nuitrack, open_depth
+    from courtside.devices import open_depth, open_motion
 
     if device.skeleton is None:
         open_depth.read(device.file, name)
         return
     joints = skeleton.read(skeleton_file(device.skeleton))
-    if device.is_suit:
-        mocopi.read(device.file, joints, source=name, unit=device.unit, angles=device.angles)
-    else:
-        nuitrack.read(device.file, joints.joints, name, unit=device.unit)
+    stated = {"unit": device.unit, "angles": device.angles}
+    open_motion.read(device.file, joints, device=name, kind=device.kind, **stated)

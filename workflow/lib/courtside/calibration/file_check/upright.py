@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration.people import unit, world_frame
+from courtside.calibration.people import metric_scale, world_frame
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
 from courtside.geometry.triangulation import triangulate_all
@@ -64,7 +64,7 @@ def _bodies(cameras: Sequence[Camera], xy: NDArray) -> tuple[NDArray, NDArray]:
     flat = joints[:, times].reshape(len(cameras), -1, 2)
     xyz = triangulate_all(cameras, flat).reshape(len(times), len(names), 3)
     place = {name: xyz[:, at] for at, name in enumerate(names)}
-    head, hip, ankle = (unit.middle(place, part) for part in ENDS)
+    head, hip, ankle = (metric_scale.middle(place, part) for part in ENDS)
     low = np.where(np.isfinite(ankle), ankle, hip)
     known = np.isfinite(head).all(axis=1) & np.isfinite(low).all(axis=1)
     return head[known], low[known]

@@ -8,7 +8,8 @@ held_out: `score`, `verdicts`, `better`: whether cameras are better, by what the
 knocks: `find`, `in_all`, `between`, `undone`, `row`, `lines`: cameras knocked have two poses
 resection: `lost`, `expected`, `find`, `widened`, `line`: cameras that agree with nobody
 relative_poses: `pair`, `pose`: relative poses of cameras from tracks of unknown persons
-unit: `Body`, `KnownLength`, `of_clicks`, `find`, `combined`, `by_lengths`, `by_heights`: the unit
+metric_scale: `Scale`, `Body`, `KnownLength`, `of_clicks`, `find`, `combined`, `by_lengths`,
+    `by_heights`: the scale from stated heights and known lengths
 world_frame: `floor`, `axes`, `of_shape`: the floor from feet or points, axes, covariance
 warnings: `find`: warnings about cameras from people alone
 from_nothing: `guess`, `adjust`, `check`, `summary`: cameras from people alone

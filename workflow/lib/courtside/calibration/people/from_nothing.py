@@ -15,9 +15,9 @@ from courtside.calibration.file_check import residuals
 from courtside.calibration.people import (
     adjustment,
     held_out,
+    metric_scale,
     prior,
     relative_poses,
-    unit,
     views,
     warnings,
     world_frame,
@@ -64,7 +64,7 @@ class Found:
     cameras: list[Camera]
     covariance: CameraCovariance
     score: Score  # on held-out blocks of time
-    scale: unit.Unit
+    scale: metric_scale.Scale
     warnings: list[str]  # one line each
     places: NDArray  # (N, 3) m: joints that define the world frame of the covariance
 
@@ -74,8 +74,8 @@ def guess(
     sizes: Mapping[str, tuple[int, int]],
     lenses: Mapping[str, Camera],
     takes: Sequence[Take],
-    heights_m: unit.Heights,
-    known: Sequence[unit.KnownLength] = (),
+    heights_m: metric_scale.Heights,
+    known: Sequence[metric_scale.KnownLength] = (),
 ) -> Guess:
     """Return initial cameras from the tracks of people.
 
@@ -98,7 +98,7 @@ def guess(
     _, cameras, tracks = max(tried, key=lambda one: one[0])
     joints = [_placed(cameras, takes, track) for track in tracks]
     bodies = [_body(track, xyz) for track, xyz in zip(tracks, joints, strict=True)]
-    scale = unit.find(cameras, bodies, heights_m, known).metres
+    scale = metric_scale.find(cameras, bodies, heights_m, known).metres
     cameras = [_scaled(camera, scale) for camera in cameras]
     world = world_frame.floor(scale * np.concatenate(joints), cameras)
     return Guess([world.camera(camera) for camera in cameras], tracks)
@@ -171,14 +171,14 @@ def _explained(cameras, takes: Sequence[Take], tracks: Sequence[Track]) -> float
     return total
 
 
-def _body(track: Track, xyz: NDArray, time_s: NDArray | None = None) -> unit.Body:
+def _body(track: Track, xyz: NDArray, time_s: NDArray | None = None) -> metric_scale.Body:
     """Return the body of a track's joints (T, J, 3) at times (T,); without times, of frames."""
     seen = np.flatnonzero(np.isfinite(xyz).all(axis=-1).any(axis=-1))
     times = np.arange(len(xyz)) if time_s is None else time_s
     first, last = (float(times[at]) for at in seen[[0, -1]]) if len(seen) else (0.0, 0.0)
     take, rows = track
     tracklets = frozenset((camera, row) for camera, own in enumerate(rows) for row in own)
-    return unit.Body(take, unit.length(xyz), len(seen), first, last, tracklets)
+    return metric_scale.Body(take, metric_scale.length(xyz), len(seen), first, last, tracklets)
 
 
 def adjust(
@@ -186,9 +186,9 @@ def adjust(
     lenses: Mapping[str, Camera],
     seen: Seen,
     tracks: Sequence[Track],
-    heights_m: unit.Heights,
+    heights_m: metric_scale.Heights,
     limits: Limits,
-    known: Sequence[unit.KnownLength] = (),
+    known: Sequence[metric_scale.KnownLength] = (),
 ) -> Found:
     """Adjust cameras, initially in metres, with the people that they see.
 
@@ -203,7 +203,7 @@ def adjust(
         joints = _joints(fitted.cameras, seen, limits)
         shape = world_frame.of_shape(fitted.cameras, fitted.covariance, _places(joints), 0.0)
         bodies = _bodies(joints, seen, tracks)
-        scale = unit.find(fitted.cameras, bodies, heights_m, known, shape)
+        scale = metric_scale.find(fitted.cameras, bodies, heights_m, known, shape)
         cameras = [_scaled(camera, scale.metres) for camera in fitted.cameras]
     joints = _joints(cameras, seen, limits)
     clicked = [triangulate_all(cameras, one.xy) for one in known if one.on_floor]
@@ -275,7 +275,7 @@ def _places(joints: NDArray) -> NDArray:
     return places[np.linspace(0, len(places) - 1, MOST_PLACES).astype(int)]
 
 
-def _bodies(joints: NDArray, seen: Seen, tracks: Sequence[Track]) -> list[unit.Body]:
+def _bodies(joints: NDArray, seen: Seen, tracks: Sequence[Track]) -> list[metric_scale.Body]:
     each = [(track, seen.track == track) for track in np.unique(seen.track)]
     return [_body(tracks[track], joints[own], seen.time_s[own]) for track, own in each]
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
-from courtside.calibration.people import unit
+from courtside.calibration.people import metric_scale
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
 from courtside.geometry.similarity import Sim3
@@ -50,13 +50,15 @@ def floor(xyz: NDArray, cameras: Sequence[Camera], on_floor: NDArray | None = No
     place = {name: xyz[:, at] for at, name in enumerate(skeleton.JOINTS)}
     ankles = np.concatenate([place["left_ankle"], place["right_ankle"]])
     ankles = ankles[np.isfinite(ankles).all(axis=1)]
-    if not len(ankles) or not np.isfinite(unit.length(xyz)):
+    if not len(ankles) or not np.isfinite(metric_scale.length(xyz)):
         raise InputError(
             "people: expected hips, knees, ankles and shoulders that two cameras see in "
-            f"{unit.LEAST_FRAMES} frames or more, found fewer; film whole bodies, with the feet in "
-            "the picture"
+            f"{metric_scale.LEAST_FRAMES} frames or more, found fewer; film whole bodies, with "
+            "the feet in the picture"
         )
-    upward = rotations.unit(unit.middle(place, "shoulder") - unit.middle(place, "ankle"))
+    upward = rotations.unit(
+        metric_scale.middle(place, "shoulder") - metric_scale.middle(place, "ankle")
+    )
     up = rotations.unit(np.nanmedian(upward, axis=0))
     middle = np.median(ankles, axis=0)
     centres = [camera.centre_in_world for camera in cameras]
@@ -64,7 +66,10 @@ def floor(xyz: NDArray, cameras: Sequence[Camera], on_floor: NDArray | None = No
     slopes, offset = _lowest_plane((ankles - middle) @ turn.T)
     normal = np.array([*-slopes, 1.0])
     up = rotations.unit(turn.T @ normal)
-    sole = float(offset / np.linalg.norm(normal)) - ANKLE * unit.length(xyz) / unit.OF_HEIGHT
+    sole = (
+        float(offset / np.linalg.norm(normal))
+        - ANKLE * metric_scale.length(xyz) / metric_scale.OF_HEIGHT
+    )
     if on_floor is not None and len(on_floor):
         about = on_floor - on_floor.mean(axis=0)
         _, extent, directions = np.linalg.svd(about, full_matrices=False)
@@ -143,7 +148,7 @@ def halves_apart(
     half, a mask (T,), has too few frames with whole bodies. Other arguments as for `floor`.
     """
     whole = np.isfinite(joints).all(axis=(1, 2))
-    if min((whole & half).sum(), (whole & ~half).sum()) < unit.LEAST_FRAMES:
+    if min((whole & half).sum(), (whole & ~half).sum()) < metric_scale.LEAST_FRAMES:
         return None
     one, other = (floor(joints[rows], cameras, on_floor) for rows in (half, ~half))
     middle = np.nanmedian(joints.reshape(-1, 3), axis=0)

@@ -342,7 +342,7 @@ class Detector:
     options: dict[str, Any] = field(default_factory=dict)  # of its decoder
 
     def decoder_options(self) -> dict[str, Any]:
-        """Return the keyword arguments of `courtside.pose.decoders.person_detector`."""
+        """Return the keyword arguments of `courtside.pose.open_network.person_detector`."""
         return {"decoder": self.decoder, **_outputs(self.network), **self.options}
 
 
@@ -368,7 +368,7 @@ class Model:
         return self.decoder == "blazepose"
 
     def decoder_options(self) -> dict[str, Any]:
-        """Return the keyword arguments of `courtside.pose.decoders.landmark_network`."""
+        """Return the keyword arguments of `courtside.pose.open_network.landmark_network`."""
         outputs = _outputs(self.landmarks) if self.landmarks else {}
         return {"decoder": self.decoder, **outputs, **self.options}
 

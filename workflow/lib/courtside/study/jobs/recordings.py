@@ -108,7 +108,7 @@ def network_file(job: Job, part: str) -> str | list:
 
 
 def decoder(job: Job, part: str) -> dict[str, Any]:
-    """Return how a part of a model is run: arguments of `courtside.pose.decoders`."""
+    """Return how a part of a model is run: arguments of `courtside.pose.open_network`."""
     found = job.model.detector if part == "detector" else job.model
     return found.decoder_options() if found else {}
 

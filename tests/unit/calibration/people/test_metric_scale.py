@@ -1,12 +1,12 @@
-"""The unit of length by stated heights and known lengths: assignment, errors, warnings."""
+"""The scale by stated heights and known lengths: assignment, errors, warnings."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from courtside.calibration.people import prior, unit
-from courtside.calibration.people.unit import OF_HEIGHT, Body
+from courtside.calibration.people import metric_scale, prior
+from courtside.calibration.people.metric_scale import OF_HEIGHT, Body
 from courtside.geometry import camera as camera_models
 from courtside.geometry import triangulation
 from courtside.geometry.similarity import Sim3
@@ -39,17 +39,18 @@ def named(heights):
 
 
 def test_a_body_is_as_long_in_every_posture():
-    one, other = (unit.length(xyz) for xyz in WALK)
+    one, other = (metric_scale.length(xyz) for xyz in WALK)
     assert other / one == pytest.approx(tracks_made.SIZES[1] / tracks_made.SIZES[0], rel=0.01)
-    assert np.isnan(unit.length(WALK[0, :10]))
+    assert np.isnan(metric_scale.length(WALK[0, :10]))
 
 
 def test_heights_give_metres_the_tallest_to_the_longest():
     bodies, heights = [body(1.8), body(1.5), body(1.5, take=1)], [[1.5, 1.8], [1.5]]
-    found = unit.by_heights(bodies, named(heights))
-    alone = unit.by_heights(bodies[2:], named([[None, 1.8], [1.5]]))
+    found = metric_scale.by_heights(bodies, named(heights))
+    alone = metric_scale.by_heights(bodies[2:], named([[None, 1.8], [1.5]]))
     assert found.metres == pytest.approx(2.5) == alone.metres
-    least = np.hypot(unit.NETWORK_SIGMA, unit.OF_HEIGHT_SIGMA / 2)  # four persons taught the share
+    # four persons taught the share
+    least = np.hypot(metric_scale.NETWORK_SIGMA, metric_scale.OF_HEIGHT_SIGMA / 2)
     assert least < found.sigma < alone.sigma
     assert not found.warnings and not found.remarks and not alone.warnings
     (remark,) = alone.remarks
@@ -64,23 +65,27 @@ def test_two_tracks_of_one_person_are_not_two_persons():
         body(1.60, 90, 0, 2),
         body(1.61, 80, 6, 9),
     ]
-    found = unit.by_heights(bodies, named([[1.6, 1.8]]))
+    found = metric_scale.by_heights(bodies, named([[1.6, 1.8]]))
     assert found.metres == pytest.approx(2.5, rel=0.01)
     assert not found.warnings
 
 
 def test_somebody_else_beside_the_persons_has_no_height():
     bodies = [body(1.80, 300), body(1.65, 280), body(1.40, 100)]
-    assert unit.by_heights(bodies, named([[1.65, 1.8]])).metres == pytest.approx(2.5, rel=0.01)
+    assert metric_scale.by_heights(bodies, named([[1.65, 1.8]])).metres == pytest.approx(
+        2.5, rel=0.01
+    )
 
 
 def test_tracks_at_one_time_are_different_persons():
     """Apart in time, both would be of one person, and all would be 9 % longer."""
     tall = [body(1.8, 100, 0, 10), body(1.8, 100, 0, 10)]
-    assert unit.by_heights(tall, named([[1.8, 1.8]])).metres == pytest.approx(2.5)
-    assert unit.by_heights(tall, named([[1.65, 1.65]])).metres == pytest.approx(2.5 * 1.65 / 1.8)
+    assert metric_scale.by_heights(tall, named([[1.8, 1.8]])).metres == pytest.approx(2.5)
+    assert metric_scale.by_heights(tall, named([[1.65, 1.65]])).metres == pytest.approx(
+        2.5 * 1.65 / 1.8
+    )
     both = [body(1.70, 100, 0, 10), body(1.74, 100, 5, 10), body(1.72, 50, 0, 4)]
-    found = unit.by_heights(both, named([[1.74, 1.70]]))
+    found = metric_scale.by_heights(both, named([[1.74, 1.70]]))
     assert found.metres == pytest.approx(2.5, rel=0.01)
 
 
@@ -88,7 +93,7 @@ def test_tracks_that_share_a_tracklet_may_be_one_person():
     """One camera exchanged two people: both tracks are of the tall one, the other is not seen."""
     alone = body(1.85, take=1)
     exchanged = [body(1.84, tracklets={(0, 1), (1, 0)}), body(1.86, tracklets={(0, 1), (1, 1)})]
-    found = unit.by_heights([*exchanged, alone], named([[1.85, 1.65], [1.85]]))
+    found = metric_scale.by_heights([*exchanged, alone], named([[1.85, 1.65], [1.85]]))
     assert found.metres == pytest.approx(2.5, rel=0.005)
     (remark,) = found.remarks
     assert remark.startswith("only one person's height defines the scale")
@@ -97,13 +102,13 @@ def test_tracks_that_share_a_tracklet_may_be_one_person():
 def test_another_assignment_that_agrees_as_well_gives_a_warning():
     """Two bodies at different times and a third: the lower two or the upper two."""
     bodies = [body(1.6, 100, 0, 3), body(1.7, 100, 4, 7), body(1.8, 100, 8, 10)]
-    found = unit.by_heights(bodies, named([[1.7, 1.7 * 1.7 / 1.6]]))
+    found = metric_scale.by_heights(bodies, named([[1.7, 1.7 * 1.7 / 1.6]]))
     (warning,) = found.warnings
     assert warning.startswith("stated heights: another assignment of heights to persons agrees")
 
 
 def test_heights_that_contradict_each_other_give_a_warning():
-    (warning,) = unit.by_heights([body(1.8), body(1.6)], named([[1.8, 1.7]])).warnings
+    (warning,) = metric_scale.by_heights([body(1.8), body(1.6)], named([[1.8, 1.7]])).warnings
     assert warning.startswith("stated heights disagree by 6.1 %: if 1.70 m is right, the person of")
     assert "1.80 m is 1.91 m tall" in warning
 
@@ -111,7 +116,7 @@ def test_heights_that_contradict_each_other_give_a_warning():
 def test_many_persons_are_ordered_by_length():
     heights = [1.5 + 0.05 * at for at in range(7)]
     bodies = [body(one) for one in heights[::-1]]
-    assert unit.by_heights(bodies, named([heights])).metres == pytest.approx(2.5)
+    assert metric_scale.by_heights(bodies, named([heights])).metres == pytest.approx(2.5)
 
 
 @pytest.mark.parametrize(
@@ -129,12 +134,12 @@ def test_many_persons_are_ordered_by_length():
 )
 def test_a_take_that_tells_no_scale_is_named_with_its_persons(heights, found):
     with pytest.raises(InputError, match=f"`height_m` of every person, .* found {found}; state"):
-        unit.by_heights([body(1.7)], named(heights))
+        metric_scale.by_heights([body(1.7)], named(heights))
 
 
 def test_tracks_without_legs_or_trunk_are_not_counted():
     with pytest.raises(InputError, match="found take t1 with 0 of these tracks for p1;"):
-        unit.by_heights([body(np.nan)], named([[1.7]]))
+        metric_scale.by_heights([body(np.nan)], named([[1.7]]))
 
 
 def clicked(noise_px=0.0, seed=0, length_m=2.0, cameras=(0, 1, 2, 3)):
@@ -142,13 +147,13 @@ def clicked(noise_px=0.0, seed=0, length_m=2.0, cameras=(0, 1, 2, 3)):
     xy = LINE_XY + noise_px * np.random.default_rng(seed).normal(size=LINE_XY.shape)
     xy[[at for at in range(4) if at not in cameras]] = np.nan
     stated = [{"points": ["left", "right"], "length_m": length_m}]
-    (found,) = unit.of_clicks(stated, ["left", "right"], xy, **CLICK_PX)
+    (found,) = metric_scale.of_clicks(stated, ["left", "right"], xy, **CLICK_PX)
     return found
 
 
 def by_length(cameras, known, shape=None):
-    """Return the unit from one known length."""
-    return unit.by_lengths(cameras, [known], shape)[0][0]
+    """Return the scale from one known length."""
+    return metric_scale.by_lengths(cameras, [known], shape)[0][0]
 
 
 @pytest.mark.parametrize("cameras", [(0, 1), (0, 1, 2, 3)])
@@ -158,7 +163,9 @@ def test_a_known_length_gives_metres_as_uncertain_as_its_clicks(cameras):
     metres = 2.0 / lengths([one.xy for one in noisy])
     one = by_length(SMALL, noisy[0])
     assert one.metres == pytest.approx(metres[0])
-    expected = np.linalg.norm([np.std(metres / 2.5), unit.KNOWN_SIGMA_M / 2.0, unit.BEND_SIGMA])
+    expected = np.linalg.norm(
+        [np.std(metres / 2.5), metric_scale.KNOWN_SIGMA_M / 2.0, metric_scale.BEND_SIGMA]
+    )
     assert one.sigma == pytest.approx(expected, rel=0.05)
     assert one.by == "left to right"
 
@@ -197,7 +204,7 @@ def racket(seed, scatter_px, bias_px):
     xy += bias_px * rng.normal(size=(len(TRUE), 1, 2))
     stated = [{"points": [f"top{k}", f"butt{k}"], "length_m": RACKET_M} for k in range(len(FIVE))]
     click = {"click_sigma_px": 2 * scatter_px, "click_bias_px": 2 * bias_px}  # of 3840 px width
-    return unit.of_clicks(stated, names, xy, **click)
+    return metric_scale.of_clicks(stated, names, xy, **click)
 
 
 @pytest.mark.parametrize(("scatter_px", "bias_px"), [(3.0, 0.0), (0.0, 6.0), (3.0, 3.0)])
@@ -205,11 +212,11 @@ def test_clicks_of_a_racket_at_several_places_err_together_as_stated(
     monkeypatch, scatter_px, bias_px
 ):
     """Over many draws the errors of five lengths have the stated covariance."""
-    monkeypatch.setattr(unit, "BEND_SIGMA", 0.0)
-    monkeypatch.setattr(unit, "KNOWN_SIGMA_M", 0.0)
+    monkeypatch.setattr(metric_scale, "BEND_SIGMA", 0.0)
+    monkeypatch.setattr(metric_scale, "KNOWN_SIGMA_M", 0.0)
     draws = [racket(seed, scatter_px, bias_px) for seed in range(N_DRAWS)]
     metres = RACKET_M / lengths([one.xy for draw in draws for one in draw]).reshape(N_DRAWS, -1)
-    each, covariance = unit.by_lengths(SMALL, draws[0])
+    each, covariance = metric_scale.by_lengths(SMALL, draws[0])
     assert [one.metres for one in each] == pytest.approx(metres[0])
     off = np.log(metres / 2.5)
     largest = np.diag(covariance).max()
@@ -218,8 +225,10 @@ def test_clicks_of_a_racket_at_several_places_err_together_as_stated(
 
 
 def test_a_racket_at_several_places_is_as_certain_as_its_own_length_and_the_bend_allow():
-    one, five = (unit.find(SMALL, (), named([[None]]), racket(0, 3.0, 0.0)[:n]) for n in (1, 5))
-    common = np.hypot(unit.KNOWN_SIGMA_M / RACKET_M, unit.BEND_SIGMA)
+    one, five = (
+        metric_scale.find(SMALL, (), named([[None]]), racket(0, 3.0, 0.0)[:n]) for n in (1, 5)
+    )
+    common = np.hypot(metric_scale.KNOWN_SIGMA_M / RACKET_M, metric_scale.BEND_SIGMA)
     assert common < five.sigma < 0.7 * one.sigma
     assert five.by == "top0 to butt0 and 4 others"
     clicks = np.sqrt(five.sigma**2 - common**2) / np.sqrt(one.sigma**2 - common**2)
@@ -227,14 +236,14 @@ def test_a_racket_at_several_places_is_as_certain_as_its_own_length_and_the_bend
 
 
 def test_weights_follow_the_covariance_and_are_not_negative():
-    units = [unit.Unit(metres, sigma, by) for metres, sigma, by in
+    scales = [metric_scale.Scale(metres, sigma, by) for metres, sigma, by in
              ((1.00, 0.02, "a"), (1.01, 0.02, "b"), (1.03, 0.05, "c"))]  # fmt: skip
-    apart = unit.combined(units[:2], np.diag([4e-4, 4e-4]))
+    apart = metric_scale.combined(scales[:2], np.diag([4e-4, 4e-4]))
     assert apart.metres == pytest.approx(np.sqrt(1.01)) and apart.sigma == pytest.approx(2e-4**0.5)
-    alike = unit.combined(units[:2], 4e-4 * np.array([[1.0, 0.99], [0.99, 1.0]]))
+    alike = metric_scale.combined(scales[:2], 4e-4 * np.array([[1.0, 0.99], [0.99, 1.0]]))
     assert alike.sigma == pytest.approx(0.02, rel=0.01)
     worse = np.array([[4e-4, 9e-4], [9e-4, 25e-4]])
-    assert unit.combined([units[0], units[2]], worse).metres == pytest.approx(1.0)
+    assert metric_scale.combined([scales[0], scales[2]], worse).metres == pytest.approx(1.0)
 
 
 def test_the_shape_of_cameras_makes_a_known_length_less_certain():
@@ -247,22 +256,22 @@ def test_the_shape_of_cameras_makes_a_known_length_less_certain():
 
 def test_a_known_length_counts_more_than_heights_and_stands_for_them():
     bodies = [body(1.80), body(1.60)]
-    found = unit.find(SMALL, bodies, named([[1.83, 1.63]]), [clicked()])
+    found = metric_scale.find(SMALL, bodies, named([[1.83, 1.63]]), [clicked()])
     assert found.metres == pytest.approx(2.5, rel=0.006)  # heights alone: 1.8 % off
     assert found.by == "left to right, stated heights"
     assert found.sigma < by_length(SMALL, clicked()).sigma
     assert not found.warnings
-    without = unit.find(SMALL, bodies, named([[None, 1.6]]), [clicked()])
+    without = metric_scale.find(SMALL, bodies, named([[None, 1.6]]), [clicked()])
     assert (without.metres, without.by) == (pytest.approx(2.5), "left to right")
-    (warning,) = unit.find(SMALL, bodies, named([[1.9, 1.69]]), [clicked()]).warnings
+    (warning,) = metric_scale.find(SMALL, bodies, named([[1.9, 1.69]]), [clicked()]).warnings
     assert warning.startswith("stated heights: expected a change of all lengths by 2.")
     assert "found +4.2 %; check them against left to right" in warning
-    told = unit.find(SMALL, bodies, named([[1.9, 1.6]]), [clicked()]).warnings
+    told = metric_scale.find(SMALL, bodies, named([[1.9, 1.6]]), [clicked()]).warnings
     assert any(line.startswith("stated heights disagree by ") for line in told)
 
 
 def test_heights_of_persons_who_are_not_seen_are_not_needed_beside_a_known_length():
-    found = unit.find(SMALL, [body(1.8)], named([[1.8, 1.6]]), [clicked()])
+    found = metric_scale.find(SMALL, [body(1.8)], named([[1.8, 1.6]]), [clicked()])
     assert (found.metres, found.by) == (pytest.approx(2.5), "left to right")
 
 
@@ -272,4 +281,4 @@ def test_a_known_length_without_clicks_is_named():
     with pytest.raises(
         InputError, match=r"length a to b: expected clicks of both .* none of b, on"
     ):
-        unit.of_clicks([{"points": ["a", "b"]}], ["a"], np.zeros((4, 1, 2)), **CLICK_PX)
+        metric_scale.of_clicks([{"points": ["a", "b"]}], ["a"], np.zeros((4, 1, 2)), **CLICK_PX)

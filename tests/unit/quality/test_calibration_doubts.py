@@ -9,7 +9,7 @@ import pytest
 
 from courtside.calibration.file_check import faults
 from courtside.geometry import camera as cameras
-from courtside.quality import doubts
+from courtside.quality import calibration_doubts
 from courtside.records.cameras import clicks
 from fixtures.cameras import corner_cameras as hall
 
@@ -42,8 +42,8 @@ def quality(tmp_path):
 
 def test_a_fault_that_the_check_of_a_file_names_is_of_its_camera(tmp_path, quality):
     wrong = [TRUE[0], faults.mirrored_point(TRUE[1], 0), *TRUE[2:]]
-    found = doubts.read(quality, checked(tmp_path, wrong))
-    assert found == doubts.Doubts(by_check={"c1": MIRRORED})
+    found = calibration_doubts.read(quality, checked(tmp_path, wrong))
+    assert found == calibration_doubts.Doubts(by_check={"c1": MIRRORED})
     assert found.of("c1") == f"by the check of the calibration file {MIRRORED}"
     assert found.of("c0") == ""
 
@@ -51,13 +51,13 @@ def test_a_fault_that_the_check_of_a_file_names_is_of_its_camera(tmp_path, quali
 def test_a_fault_that_no_camera_is_named_for_is_of_all(tmp_path, quality):
     turns = [(0.02, 0, 0), (0, 0.03, 0), (0, -0.02, 0.01), (-0.02, 0.02, 0)]
     wrong = [cameras.turned(one, turn) for one, turn in zip(TRUE, turns, strict=True)]
-    found = doubts.read(quality, checked(tmp_path, wrong))
+    found = calibration_doubts.read(quality, checked(tmp_path, wrong))
     (line,) = found.shared
     assert not found.by_check and "no single fault of it explains this" in line
 
 
 def test_nothing_is_said_of_a_good_file(tmp_path, quality):
-    assert doubts.read(quality, checked(tmp_path, TRUE)) == doubts.Doubts()
+    assert calibration_doubts.read(quality, checked(tmp_path, TRUE)) == calibration_doubts.Doubts()
 
 
 def test_both_cameras_that_are_exchanged_and_all_faults_of_one_are_told(tmp_path, quality):
@@ -65,7 +65,7 @@ def test_both_cameras_that_are_exchanged_and_all_faults_of_one_are_told(tmp_path
     one = {"what": MIRRORED, "cameras": ["c1"]}
     check = tmp_path / "check.json"
     check.write_text(json.dumps({"warnings": ["x"], "faults": [both, one]}))
-    found = doubts.read(quality, check)
+    found = calibration_doubts.read(quality, check)
     assert found.by_check == {"c0": both["what"], "c1": f"{both['what']} and {MIRRORED}"}
     assert found.shared == ()
 
@@ -74,9 +74,9 @@ def test_painted_lines_and_the_calibration_itself_are_heard(tmp_path):
     quality, court = tmp_path / "quality.json", tmp_path / "court.json"
     quality.write_text(json.dumps({"warnings": ["floor: it tilts"], "remarks": ["one person"]}))
     court.write_text(json.dumps({"warnings": [], "cameras": {"c1": "sees"}, "shared": ["frame"]}))
-    found = doubts.read(quality, court_json=court)
+    found = calibration_doubts.read(quality, court_json=court)
     assert found.shared == ("floor: it tilts", "frame") and found.of("c1") == "it sees"
-    both = doubts.Doubts({"c1": "sees"}, {"c1": "it is odd"})
+    both = calibration_doubts.Doubts({"c1": "sees"}, {"c1": "it is odd"})
     assert both.of("c1") == "it sees, and by the check of the calibration file it is odd"
 
 
@@ -84,9 +84,9 @@ def test_a_world_that_is_not_upright_is_said_beside_a_fault_of_a_camera(tmp_path
     content = {"warnings": ["fault", "not upright"], "shared": ["not upright"], "faults": []}
     check = tmp_path / "check.json"
     check.write_text(json.dumps(content))
-    assert doubts.read(quality, check).shared == ("fault", "not upright")
+    assert calibration_doubts.read(quality, check).shared == ("fault", "not upright")
     content["faults"] = [{"what": MIRRORED, "cameras": ["c1"]}]
     check.write_text(json.dumps(content))
-    assert doubts.read(quality, check) == doubts.Doubts(
+    assert calibration_doubts.read(quality, check) == calibration_doubts.Doubts(
         by_check={"c1": MIRRORED}, shared=("not upright",)
     )

@@ -1,6 +1,6 @@
-"""The unit of length of cameras from people alone, from stated heights and known lengths.
+"""The scale of cameras from people alone, from stated heights and known lengths.
 
-Heights are stated for persons; which track shows which person is estimated with the unit. A known
+Heights are stated for persons; which track shows which person is estimated with it. A known
 length lies between two points at rest that are clicked in two cameras or more.
 """
 
@@ -42,7 +42,7 @@ ONE_HEIGHT = "only one person's height defines the scale; add a second person, o
 MOST_NAMED = 4  # lengths that a line names
 MOST_WAYS = 4096  # assignments of tracks to persons in one take; only the longest tracks are used
 MOST_PERSONS = 5  # of a take with assignments; with more, tracks are ordered by length
-ROUNDS = 4  # of assignment and unit, in turn
+ROUNDS = 4  # of assignment and scale, in turn
 
 # Stated heights, m, by take and person; None of a person of whom none is stated.
 Heights = Mapping[str, Mapping[str, float | None]]
@@ -61,8 +61,8 @@ class Body:
 
 
 @dataclass(frozen=True)
-class Unit:
-    """The unit of length."""
+class Scale:
+    """The scale of cameras: the length of their unit, m."""
 
     metres: float  # per unit
     sigma: float  # standard deviation, share
@@ -140,8 +140,8 @@ def find(
     heights_m: Heights,
     known: Sequence[KnownLength] = (),
     shape: NDArray | None = None,
-) -> Unit:
-    """Return the unit from stated heights and known lengths, weighted by their covariance.
+) -> Scale:
+    """Return the scale from stated heights and known lengths, weighted by their covariance.
 
     `shape` (K, K) is the covariance of the cameras' columns without their scale. Heights are not
     needed if a length is known. Contradictions become warnings.
@@ -154,8 +154,8 @@ def find(
     return combined(each, covariance)
 
 
-def combined(each: Sequence[Unit], covariance: NDArray) -> Unit:
-    """Return one unit from several, `covariance` (U, U) of their logarithms.
+def combined(each: Sequence[Scale], covariance: NDArray) -> Scale:
+    """Return one scale from several, `covariance` (U, U) of their logarithms.
 
     The weights are those of least squares, without negative ones.
     """
@@ -163,25 +163,25 @@ def combined(each: Sequence[Unit], covariance: NDArray) -> Unit:
         return each[0]
     weight = np.maximum(np.linalg.solve(covariance, np.ones(len(each))), 0.0)
     weight /= weight.sum()
-    unit = float(np.exp(weight @ np.log([one.metres for one in each])))
+    scale = float(np.exp(weight @ np.log([one.metres for one in each])))
     warnings = [line for one in each for line in one.warnings]
     warnings += [
         f"{one.by}: expected a change of all lengths by {SURE * 100 * one.sigma:.1f} % at most if "
-        f"only these define the scale, found {100 * (one.metres / unit - 1):+.1f} %; check them "
+        f"only these define the scale, found {100 * (one.metres / scale - 1):+.1f} %; check them "
         f"against {each[int(weight.argmax())].by}"
         for one in each
-        if abs(np.log(one.metres / unit)) > SURE * one.sigma
+        if abs(np.log(one.metres / scale)) > SURE * one.sigma
     ]
     by = ", ".join(one.by for one in each)
     if len(each) > MOST_NAMED:
         by = f"{each[0].by} and {len(each) - 1} others"
-    return Unit(unit, float(np.sqrt(weight @ covariance @ weight)), by, tuple(warnings))
+    return Scale(scale, float(np.sqrt(weight @ covariance @ weight)), by, tuple(warnings))
 
 
 def by_lengths(
     cameras: Sequence[Camera], known: Sequence[KnownLength], shape: NDArray | None = None
-) -> tuple[list[Unit], NDArray]:
-    """Return the units from known lengths, and the covariance (L, L) of their logarithms.
+) -> tuple[list[Scale], NDArray]:
+    """Return the scales from known lengths, and the covariance (L, L) of their logarithms.
 
     They have in common: the error of the cameras' shape, the bias of the clicks in a picture, the
     bend by a network, and the error of the length of one object at several places: known lengths
@@ -199,8 +199,10 @@ def by_lengths(
     covariance += same * KNOWN_SIGMA_M**2 / np.outer(length_m, length_m)
     sigma = np.sqrt(np.diag(covariance))
     ratio = length_m / own
-    units = [Unit(float(r), float(s), k.name) for r, s, k in zip(ratio, sigma, known, strict=True)]
-    return units, covariance
+    scales = [
+        Scale(float(r), float(s), k.name) for r, s, k in zip(ratio, sigma, known, strict=True)
+    ]
+    return scales, covariance
 
 
 def _share(
@@ -240,14 +242,14 @@ def _share(
     return own, variance, by_bias, by_column
 
 
-def by_heights(bodies: Sequence[Body], heights_m: Heights) -> Unit:
-    """Return the unit from the stated heights of each take's persons.
+def by_heights(bodies: Sequence[Body], heights_m: Heights) -> Scale:
+    """Return the scale from the stated heights of each take's persons.
 
     Tracks are assigned to persons so that the lengths of all bodies agree best. Tracks with common
     times are of different persons, unless they share a tracklet, because a camera exchanged two
     people. A track may be of no person, and a person may have no track. A take is used if all its
     heights are stated and it has as many tracks. There are warnings if another assignment agrees
-    about as well and gives another unit, and if heights contradict each other. Raises `InputError`
+    about as well and gives another scale, and if heights contradict each other. Raises `InputError`
     if no take can be used.
     """
     takes = _takes(bodies, heights_m)
@@ -258,17 +260,17 @@ def by_heights(bodies: Sequence[Body], heights_m: Heights) -> Unit:
             "add such a take, or state `known_lengths`: nothing else defines the scale"
         )
     starts = np.unique(np.concatenate([take.ratio().ravel() for take in takes]).round(4))
-    found = [_converged(takes, unit) for unit in starts[np.isfinite(starts)]]
-    cost, unit, ratios = min(found, key=lambda one: one[0])
+    found = [_converged(takes, scale) for scale in starts[np.isfinite(starts)]]
+    cost, scale, ratios = min(found, key=lambda one: one[0])
     stated = [list(own.values()) for own in heights_m.values()]
     persons = sum(max(own.count(height) for own in stated) for height in ratios)
     of_height = np.hypot(OF_HEIGHT_SIGMA, STATED_SIGMA_M / min(ratios))
     learned = OF_HEIGHT_SIGMA / np.sqrt(LEARNED_FROM)
     sigma = float(np.linalg.norm([of_height / np.sqrt(persons), learned, NETWORK_SIGMA]))
-    rivals = [np.expm1(one[1] - unit) for one in found if one[0] < cost + SURE**2]
+    rivals = [np.expm1(one[1] - scale) for one in found if one[0] < cost + SURE**2]
     warnings = [*_rivals(rivals, sigma), *_disagreeing(ratios, SURE * np.sqrt(2) * of_height)]
     remarks = (ONE_HEIGHT,) if persons == 1 else ()
-    return Unit(float(np.exp(unit)), sigma, HEIGHTS, tuple(warnings), remarks)
+    return Scale(float(np.exp(scale)), sigma, HEIGHTS, tuple(warnings), remarks)
 
 
 @dataclass(frozen=True, eq=False)
@@ -284,10 +286,10 @@ class _Assignments:
         """Return the logarithm (W, B) of metres per unit by each track."""
         return np.log(OF_HEIGHT * self.height_m / self.length)
 
-    def best(self, unit: float) -> tuple[float, NDArray, NDArray]:
+    def best(self, scale: float) -> tuple[float, NDArray, NDArray]:
         """Return the best assignment: its cost, in variances, heights and ratios (B,)."""
         own = np.hypot(OF_HEIGHT_SIGMA, STATED_SIGMA_M / self.height_m)
-        off = (self.ratio() - unit) / np.hypot(own, MEASURED_SIGMA)
+        off = (self.ratio() - scale) / np.hypot(own, MEASURED_SIGMA)
         cost = np.nan_to_num(off**2, nan=NOBODY**2) @ self.weight + NOBODY**2 * self.n_unseen
         at = int(cost.argmin())
         return float(cost[at]), self.height_m[at], self.ratio()[at]
@@ -340,23 +342,23 @@ def _assignments(bodies: Sequence[Body], stated: Iterable[float | None]) -> _Ass
 
 
 def _converged(
-    takes: Sequence[_Assignments], unit: float
+    takes: Sequence[_Assignments], scale: float
 ) -> tuple[float, float, dict[float, float]]:
-    """Return the cost, the logarithm of the unit, and the same by height, from a first unit."""
+    """Return the cost, the logarithm of the scale, and the same by height, from a first scale."""
     for _ in range(ROUNDS):
-        best = [take.best(unit) for take in takes]
+        best = [take.best(scale) for take in takes]
         height_m, ratio = (np.concatenate(part) for part in list(zip(*best, strict=True))[1:])
         weight = np.concatenate([take.weight for take in takes])
         ratios = {}
         for one in np.unique(height_m[np.isfinite(height_m)]):
             own = height_m == one
             ratios[float(one)] = float(np.average(ratio[own], weights=weight[own]))
-        unit = float(np.mean(list(ratios.values())))
-    return sum(take.best(unit)[0] for take in takes), unit, ratios
+        scale = float(np.mean(list(ratios.values())))
+    return sum(take.best(scale)[0] for take in takes), scale, ratios
 
 
 def _rivals(rivals: Sequence[float], sigma: float) -> Iterator[str]:
-    """Yield a warning if other assignments that agree as well give another unit."""
+    """Yield a warning if other assignments that agree as well give another scale."""
     if (other := max(rivals, key=abs, default=0.0)) and abs(other) > sigma:
         yield (
             "stated heights: another assignment of heights to persons agrees about as well and "
