@@ -82,7 +82,8 @@ def test_every_kind_is_found(gym):
 def test_a_table_of_another_key_is_told_with_the_key(tmp_path, columns, key):
     (tmp_path / "table.csv").write_text(f"{columns}\n")
     (found,) = survey.survey(tmp_path, root=tmp_path)
-    assert (found.kind, found.note) == ("unusable", f"by its columns `{key}`; name it there")
+    note = f"by its columns the table of the key `{key}`; name it there in the session"
+    assert (found.kind, found.note) == ("unusable", note)
 
 
 def test_folders_of_keypoints_are_found(tmp_path):

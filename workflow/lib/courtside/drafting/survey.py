@@ -152,7 +152,8 @@ def _table(path: Path) -> dict[str, Any] | None:
         return {"kind": "racket"}
     for key, columns in OTHER_TABLES.items():
         if header >= CLICKED | columns:
-            return {"kind": "unusable", "note": f"by its columns `{key}`; name it there"}
+            note = f"by its columns the table of the key `{key}`; name it there in the session"
+            return {"kind": "unusable", "note": note}
     if header >= CLICKED:
         expected = ",".join(clicks.COLUMNS)
         note = f"clicked points? expected the columns {expected}, found {','.join(sorted(header))}"
