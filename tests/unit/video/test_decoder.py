@@ -132,6 +132,18 @@ def test_a_late_range_reads_only_from_the_key_frame_before(files, monkeypatch):
     assert len(taken) == 12 + 1
 
 
+def test_frames_far_apart_are_read_from_the_key_frames_before_them(files, tmp_path):
+    whole = [image for _, image in reader.frames(files["b_frames.mp4"])]
+    _, at, size = packets(files["b_frames.mp4"])[14]
+    path = altered(tmp_path, files["b_frames.mp4"], at, bytes(size))
+    read = list(decoder.pictures(list_packets(path), [2, 49, 55]))
+    assert [index for index, _ in read] == [2, 49, 55]
+    assert all(np.array_equal(image, whole[index]) for index, image in read)
+    # Going on from the key frame 12 would save nine frames only: the damaged one is decoded.
+    with pytest.raises(InputError, match="frame 1[2-9]"):
+        list(decoder.pictures(list_packets(path), [2, 20]))
+
+
 def test_damage_before_the_range_does_not_matter(files, tmp_path):
     _, at, size = packets(files["b_frames.mp4"])[1]
     path = altered(tmp_path, files["b_frames.mp4"], at, bytes(size))

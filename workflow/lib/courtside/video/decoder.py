@@ -20,6 +20,8 @@ from courtside.video.packets import Listing, damage, opened, raise_logged
 
 STRICT = {"err_detect": "crccheck+bitstream+buffer+explode"}
 ONE = 65536  # display matrices are in 16.16 fixed point
+# Opening a file and seeking in it take as long as decoding some ten frames.
+MIN_SKIPPED = 12  # frames
 
 
 class _DamageError(Exception):
@@ -109,15 +111,16 @@ def _decode(listing: Listing, key_pts: int, seek: int | None) -> Iterator[av.Vid
 
 
 def pictures(listing: Listing, wanted: Sequence[int]) -> Iterator[tuple[int, NDArray]]:
-    """Decode wanted frames into upright pictures; those between are decoded but not converted.
+    """Decode wanted frames into upright pictures; long stretches between them are skipped.
 
     `wanted` are one or more increasing indices into `listing.pts`. Pictures (H, W, 3) uint8, BGR,
-    come with their indices. Raises `InputError` as `decode_checked`; also if the size changes.
+    come with their indices. Raises `InputError` as `decode_checked`, for frames that are decoded;
+    also if the size changes.
     """
     reformatter, matrix = VideoReformatter(), None
     shape, rest = None, iter(wanted)
     target: int | None = next(rest)
-    for index, frame in decode_checked(listing, wanted[0], wanted[-1] + 1):
+    for index, frame in _decode_around(listing, wanted):
         if index != target:
             continue
         target = next(rest, None)
@@ -134,6 +137,19 @@ def pictures(listing: Listing, wanted: Sequence[int]) -> Iterator[tuple[int, NDA
             )
         shape = image.shape
         yield index, image
+
+
+def _decode_around(
+    listing: Listing, wanted: Sequence[int]
+) -> Iterator[tuple[int, av.VideoFrame]]:
+    """Decode the wanted frames, and those between unless a later key frame saves many of them."""
+    indices = np.asarray(wanted)
+    keys = np.append(0, np.searchsorted(listing.pts, listing.key_pts))
+    key_before = keys[np.searchsorted(keys, indices, side="right") - 1]
+    far = key_before[1:] - indices[:-1] > MIN_SKIPPED
+    parts = [indices] if listing.by_order else np.split(indices, np.flatnonzero(far) + 1)
+    for part in parts:
+        yield from decode_checked(listing, int(part[0]), int(part[-1]) + 1)
 
 
 def _picture(frame: av.VideoFrame, reformatter: VideoReformatter, matrix: NDArray) -> NDArray:
