@@ -3,7 +3,7 @@
     python benchmarks/blender.py RESULTS [--environments DIR]
 
 Every BVH and GLB file of the takes of RESULTS is imported into Blender, with the options that
-config/README.md names. The heads of its bones are compared, at the frames of the record, with the
+docs/results.md names. The heads of its bones are compared, at the frames of the record, with the
 joints of the skeletal model (`motion/`), of the stages, or of the device. A bone that is no joint
 of the record is left out. It writes nothing; its numbers stand in docs/numbers/by_hand.csv.
 """

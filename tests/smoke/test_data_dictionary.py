@@ -1,10 +1,12 @@
-"""Every CSV of the study has a place in the data dictionary, which describes its every column."""
+"""The data dictionary describes every column of every CSV, and what the JSON of cameras holds."""
 
 import csv
+import json
 from fnmatch import fnmatchcase
 
 import pytest
 
+from courtside.geometry import camera
 from fixtures.study.data_dictionary import (
     OF_FOOTWORK,
     OF_KINEMATICS,
@@ -14,7 +16,9 @@ from fixtures.study.data_dictionary import (
 )
 from smoke.snakemake_runs import ROOT
 
-# Parts of config/README.md: a heading (all below it), `heading | first cell` (rows of a table below
+DOCUMENTS = ("docs/results.md", "config/README.md")  # clicks are described where they are made
+
+# Parts of these documents: a heading (all below it), `heading | first cell` (rows of a table below
 # it), or `: words` (the paragraph that holds these words).
 FRAMES, OF_CALIBRATION = "Columns of the frame table", "Columns of the evaluation"
 MOVEMENT, TIDY = "Columns of the movement table", "Columns of the 3D CSV"
@@ -36,6 +40,7 @@ PLACES = {
     "plans/*/map.csv": [f"{FIGURES} | error_map"],
     "*/calibration/file/check.csv": ["Columns of the check of a calibration file"],
     "*/calibration/file/videos.csv": ["Columns of the check of videos"],
+    "*/calibration/file/court.csv": ["Columns of the check by painted lines"],
     "*/calibration/*/refinement.csv": ["Columns of the refinement by people"],
     "*/calibration/*/knocks.csv": ["Columns of the knocks"],
     "*/pose2d_steadied/*.csv": [SHAKE],
@@ -176,7 +181,7 @@ def faults(results, dictionary):
 
 @pytest.fixture(scope="module")
 def dictionary():
-    return Dictionary((ROOT / "config" / "README.md").read_text())
+    return Dictionary("\n".join((ROOT / name).read_text() for name in DOCUMENTS))
 
 
 def test_every_part_that_tables_are_sent_to_is_there(dictionary):
@@ -189,6 +194,26 @@ def test_every_column_of_the_study_is_described(tiny_study, dictionary):
     found, n_tables = faults(tiny_study, dictionary)
     assert found == []
     assert n_tables > 60
+
+
+def keys(report, names):
+    """Yield the keys of a JSON file at all depths, but for names of cameras and points."""
+    for key, value in report.items():
+        if key not in names:
+            yield key
+        if isinstance(value, dict):
+            yield from keys(value, names)
+
+
+def test_every_key_of_a_calibration_s_quality_is_described(tiny_study, dictionary):
+    found = set()
+    for path in tiny_study.glob("*/calibration/*/quality.json"):
+        report = json.loads(path.read_text())
+        cameras = camera.read_toml(path.with_name("cameras.toml"))
+        names = {one.name for one in cameras} | set(report.get("left_out", ()))
+        found |= set(keys(report, names))
+    assert len(found) > 20
+    assert dictionary.undescribed(found, ["Cameras", "Quality of a calibration"]) == []
 
 
 def test_a_column_that_nobody_described_is_found(tmp_path, dictionary):

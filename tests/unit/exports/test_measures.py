@@ -15,8 +15,9 @@ from courtside.study import measure_names
 from fixtures.people import footwork, moving_model, walker
 from fixtures.study import data_dictionary
 
-CONFIG = Path(__file__).parents[3] / "config"
-README = CONFIG / "README.md"
+ROOT = Path(__file__).parents[3]
+CONFIG = ROOT / "config"
+RESULTS = ROOT / "docs" / "results.md"
 TABLE = derived_joints.read(CONFIG / "derived_joints.yaml")
 
 
@@ -36,7 +37,7 @@ def of_raw(record, how, sexes=None):
     return kinematics.measure(smooth, record, TABLE, "blazepose33", how, sexes)
 
 
-DESCRIBED = {  # in the data dictionary of config/README.md
+DESCRIBED = {  # in the data dictionary, docs/results.md
     "frame_idx", "time_s", "person", "POINT_x_m", "POINT_sd_mm", "POINT_speed_m_s",
     "POINT_speed_sd_m_s", "POINT_ground_speed_m_s", "POINT_ground_speed_sd_m_s",
     "POINT_acceleration_m_s2", "POINT_acceleration_sd_m_s2", "POINT_reason", "ANGLE_deg",
@@ -74,7 +75,7 @@ def test_a_row_for_every_frame(people):
 
 def test_every_measure_is_described(people):
     found = [*measures.summary(people, "filtered")["measure"], "neck_height_max"]
-    dictionary = data_dictionary.Dictionary(README.read_text(encoding="utf-8"))
+    dictionary = data_dictionary.Dictionary(RESULTS.read_text(encoding="utf-8"))
     assert dictionary.undescribed(found, data_dictionary.OF_KINEMATICS) == ["neck_height_max"]
     (fault,) = measure_names.unknown("a.yaml", found)
     assert "neck_height_max" in fault

@@ -17,11 +17,11 @@ KNOWN += ["results/south/figures/errors.png", "results/{session,north|south}/{ta
     [
         ("reportt", "a rule or a file that one makes, found neither; did you mean 'report'?"),
         ("results/report.htm", "found neither; did you mean 'results/report.html'?"),
-        ("xyz", "found neither; see config/README.md, Files that the study makes"),
+        ("xyz", "found neither; see docs/results.md"),
         ("results/nort/pages/quality.html", "north, south, found 'nort'; did you mean 'north'?"),
         ("results/x/a.csv", "a session of the study, one of north, south, found 'x'; name it"),
         ("results/north/pages/qualiti.html", "did you mean 'results/north/pages/quality.html'?"),
-        ("results/north/figures/errors.png", "found neither; see config/README.md"),
+        ("results/north/figures/errors.png", "found neither; see docs/results.md"),
         ("results/figures/errors.png", "did you mean 'results/south/figures/errors.png'?"),
     ],
 )

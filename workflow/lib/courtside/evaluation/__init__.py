@@ -17,5 +17,5 @@ racket: `calibrate`, `measure`, `score`, `rows`: one trial of measuring a racket
 numbers: Numbers of the documents, and where each comes from
 tables: Tables of the study from these
 
-`config/README.md` describes the columns of their tables.
+`docs/results.md` describes the columns of their tables.
 """

@@ -12,7 +12,7 @@ from courtside.kinematics.joint_angles import Angle
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.skeletal_motion import SkeletalMotion
 
-# The data dictionary of config/README.md describes the columns.
+# The data dictionary, docs/results.md, describes the columns.
 SUMMARY_COLUMNS = (
     "person", "measure", "value", "sigma", "sigma_camera", "unit", "n", "definition",
 )  # fmt: skip

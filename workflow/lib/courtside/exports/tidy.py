@@ -9,7 +9,7 @@ from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.errors import StrPath
 
-# The data dictionary of config/README.md describes them.
+# The data dictionary, docs/results.md, describes them.
 COLUMNS = (
     "frame_idx", "time_s", "person", "joint", "x_m", "y_m", "z_m", "sd_x_mm", "sd_y_mm", "sd_z_mm",
     "sd_keypoints_mm", "sd_cameras_mm", "sd_network_mm", "outlier", "n_views", "reproj_error_px",

@@ -12,7 +12,7 @@ from courtside.study.execution.verdicts import ALL, CALIBRATION, ORDER, WAY, WHO
 
 KEY = ("session", "take", *WAY)
 MEASURED = ("person", "measure", "value", "sigma", "sigma_camera", "unit", "n", "definition")
-# The data dictionary of config/README.md describes them.
+# The data dictionary, docs/results.md, describes them.
 COLUMNS = (*KEY, *MEASURED, "quality", "provenance", "sha256")
 NUMBERS = ("value", "sigma", "sigma_camera", "n")
 TEXTS = tuple(name for name in COLUMNS if name not in NUMBERS)

@@ -53,7 +53,7 @@ def compare(
 ) -> pd.DataFrame:
     """Compare two networks, one row per measure of the `pairs` of `pair`.
 
-    Columns: `agreement.table.csv` of `config/README.md`. A verdict is `unsure` if the limits lie
+    Columns: `agreement.table.csv` of `docs/results.md`. A verdict is `unsure` if the limits lie
     within the change, their intervals do not; `unknown` for too few values. `InputError` if no
     measure has `min_subjects` subjects with `min_repeats` repeats each.
     """

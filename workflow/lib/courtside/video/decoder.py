@@ -139,9 +139,7 @@ def pictures(listing: Listing, wanted: Sequence[int]) -> Iterator[tuple[int, NDA
         yield index, image
 
 
-def _decode_around(
-    listing: Listing, wanted: Sequence[int]
-) -> Iterator[tuple[int, av.VideoFrame]]:
+def _decode_around(listing: Listing, wanted: Sequence[int]) -> Iterator[tuple[int, av.VideoFrame]]:
     """Decode the wanted frames, and those between unless a later key frame saves many of them."""
     indices = np.asarray(wanted)
     keys = np.append(0, np.searchsorted(listing.pts, listing.key_pts))

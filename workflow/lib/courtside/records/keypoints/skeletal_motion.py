@@ -37,7 +37,7 @@ class SkeletalMotion:
     # Rotation of each segment's axes in its parent's, of the root in the world; NaN where not
     # fitted
     parent_from_segment: Annotated[NDArray, "float P T S 3 3"]
-    angles: Annotated[NDArray, "str A"]  # names of joint angles (config/README.md)
+    angles: Annotated[NDArray, "str A"]  # names of joint angles (docs/results.md)
     angle_deg: Annotated[NDArray, "float P T A"]  # NaN where not fitted
     angle_sigma_deg: Annotated[NDArray, "float P T A"]
 

@@ -12,7 +12,7 @@ from courtside.study.configuration.sessions import Study
 from courtside.study.errors import InputError, nearest
 from courtside.study.jobs.job import Job
 
-MADE = "see config/README.md, Files that the study makes"
+MADE = "see docs/results.md"
 OF_SESSION = re.compile(r"\{session\b[^{}]*\}")
 
 
