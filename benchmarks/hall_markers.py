@@ -250,7 +250,7 @@ def checked(data):
     if lacking:
         sys.exit(
             f"{data}: expected the recording mocap_8, found no {lacking[0]}; it is no part of the "
-            "project: docs/measured.md says where it is from"
+            "project: docs/measured/real_footage.md says where it is from"
         )
 
 

@@ -1,4 +1,4 @@
-"""Write the tables of README.md and docs/measured.md, and their register docs/numbers.csv.
+"""Write the tables of README.md and docs/measured/, and their register docs/numbers.csv.
 
 `snakemake`, then `python docs/make_tables.py [results]`. With `--documents` the tables are written
 from the register as it is, without results.

@@ -344,7 +344,7 @@ def test_without_the_recording_of_the_hall_one_line_says_where_it_is_from(tmp_pa
     with pytest.raises(SystemExit) as caught:
         hall_markers.checked(tmp_path)
     assert "expected the recording mocap_8, found no mocap.csv" in str(caught.value)
-    assert "docs/measured.md" in str(caught.value) and "\n" not in str(caught.value)
+    assert "docs/measured/real_footage.md" in str(caught.value) and "\n" not in str(caught.value)
 
 
 def test_the_session_of_the_hall_is_a_session(tmp_path):

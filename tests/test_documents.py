@@ -32,6 +32,19 @@ def test_every_link_leads_to_a_file_or_folder(path):
     assert [link for link in links if not (path.parent / link).exists()] == []
 
 
+def anchors(path):
+    """Return the anchors of a document's headings, as GitHub makes them."""
+    headings = re.findall(r"^#+ (.*)$", path.read_text(encoding="utf-8"), flags=re.M)
+    return {re.sub(r"[^\w\- ]", "", text.lower()).replace(" ", "-") for text in headings}
+
+
+@pytest.mark.parametrize("path", MARKDOWN, ids=name)
+def test_every_anchor_is_a_heading(path):
+    links = re.findall(r"\]\(([^)#:]*)#([^)]*)\)", path.read_text(encoding="utf-8"))
+    wanted = [((path.parent / to if to else path), anchor) for to, anchor in links]
+    assert [anchor for to, anchor in wanted if anchor not in anchors(to)] == []
+
+
 def test_every_term_of_the_glossary_says_where_it_lives():
     entries = re.split(r"^- (?=\*\*)", GLOSSARY, flags=re.M)[1:]
     assert len(entries) > 50

@@ -1,6 +1,7 @@
 """Court points of a real hall: what its source gives wrong is named; the rest gives the cameras.
 
-The recording is no part of the project (docs/measured.md): without it these tests are skipped.
+The recording is no part of the project (docs/measured/real_footage.md): without it these tests are
+skipped.
 """
 
 import re

@@ -1,4 +1,4 @@
-"""The tables of README.md and docs/measured.md are what the register of numbers gives."""
+"""The tables of README.md and docs/measured/ are what the register of numbers gives."""
 
 import functools
 import re
@@ -22,20 +22,20 @@ def numbers():
     return study.kept(ROOT)
 
 
-@pytest.mark.parametrize("name", study.DOCUMENTS)
+@pytest.mark.parametrize("name", study.documents(ROOT))
 def test_tables_are_exactly_those_of_the_register(name):
     assert (ROOT / name).read_text(encoding="utf-8") == study.filled(numbers(), ROOT)[name]
 
 
 def test_every_table_of_the_register_is_shown_and_every_view_used():
-    texts = [(ROOT / name).read_text(encoding="utf-8") for name in study.DOCUMENTS]
+    texts = [(ROOT / name).read_text(encoding="utf-8") for name in study.documents(ROOT)]
     shown = {name for text in texts for name in document_tables.names(text)}
     assert shown == set(VIEWS)
     assert {VIEWS[name].table for name in shown} == {number.table for number in numbers()}
 
 
 def test_the_documents_have_no_table_of_numbers_outside_the_markers():
-    for name in study.DOCUMENTS:
+    for name in study.documents(ROOT):
         text = document_tables.BLOCK.sub("", (ROOT / name).read_text(encoding="utf-8"))
         rows = re.findall(r"^\| .* \|$", text, flags=re.M)
         assert [row for row in rows if re.search(MEASURED, row)] == []

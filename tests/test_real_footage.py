@@ -1,9 +1,9 @@
 """The whole method on real video of a real person: against another result, and rigid limbs.
 
-The calibration file has mirrored principal points (docs/measured.md); `views` are mended as the
-session says, `views_of_file` are as they are. There is no truth. The references are OpenPose's
-keypoints of the same videos, triangulated by the same cameras, and the TRC that Pose2Sim made of
-these keypoints with the file as it is. Agreement to a few centimetres is what can be asked.
+The calibration file has mirrored principal points (docs/measured/real_footage.md); `views` are
+mended as the session says, `views_of_file` are as they are. There is no truth. The references are
+OpenPose's keypoints of the same videos, triangulated by the same cameras, and the TRC that Pose2Sim
+made of these keypoints with the file as it is. Agreement to a few centimetres is what can be asked.
 """
 
 import json

@@ -14,7 +14,7 @@ on one of them, `--against TABLE.csv` on the other. It counts the files of each 
 bit-equal and names the first stage that is not. Pose networks give bit-equal keypoints with
 `detect_pose: providers: [cpu]`, the default, only: by cuda and others they differ a little.
 
-It also counts the numbers of README.md and docs/measured.md that these results would change;
+It also counts the numbers of README.md and docs/measured/ that these results would change;
 `--numbers` lists them, as they are printed and as they would be, and its exit status is 1 if there
 is one.
 """

@@ -23,20 +23,21 @@ def repository(tmp_path):
     shutil.copytree(ROOT / "config", tmp_path / "config")
     for path in (ROOT / "docs" / "numbers").glob("*.csv"):
         (folder / path.name).write_text(path.read_text())
-    for name, table in (("README.md", "racket"), ("docs/measured.md", "angles")):
+    (tmp_path / "docs" / "measured").mkdir()
+    for name, table in (("README.md", "racket"), ("docs/measured/movement.md", "angles")):
         (tmp_path / name).write_text(f"# Title\n\n<!-- table: {table} -->\n<!-- end -->\n")
     return tmp_path
 
 
 def test_documents_are_written_once_and_then_stay(source, repository):
     found = study.numbers(source.folder, repository, MADE)
-    assert study.write(found, repository) == [study.REGISTER, *study.DOCUMENTS]
+    assert study.write(found, repository) == [study.REGISTER, *study.documents(repository)]
     assert "| 12.7; 11.9 |" in (repository / "README.md").read_text()
     assert study.write(found, repository) == []
     kept = {number.source for number in register.read(repository / study.REGISTER)}
     assert not [source for source in kept if source.startswith("docs/")]
     assert study.filled(study.kept(repository), repository) == {
-        name: (repository / name).read_text() for name in study.DOCUMENTS
+        name: (repository / name).read_text() for name in study.documents(repository)
     }
 
 

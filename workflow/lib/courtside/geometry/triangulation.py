@@ -22,8 +22,8 @@ GRADUATION = 1.6  # each round narrows the kernel by this factor
 SETTLING = 5  # steps with the last kernel
 WIDEST = 2.0  # beyond this many limits a view is never used
 # Of points that need the views of low scores, too (`weak_m`). ASSUME: chosen on the players of the
-# development sessions (docs/measured.md): there keypoints are 0.02 of the person's height off, 0.4
-# of the limit, and their squared error grows with the inverse root of the score.
+# development sessions (docs/measured/joints.md): there keypoints are 0.02 of the person's height
+# off, 0.4 of the limit, and their squared error grows with the inverse root of the score.
 USUAL = 0.4  # standard deviation of a keypoint, in units of the limit
 WIDER = 0.125  # the limit grows with the score to the power of minus this
 LEAST_SCORE = 1e-4  # for the limit, lower scores count as this

@@ -201,7 +201,7 @@ def _rows(camera: str, wanted_s: NDArray, table: DataFrame) -> NDArray:
     return rows
 
 
-# ASSUME: thresholds that separate simulated knocks from tremor (docs/measured.md).
+# ASSUME: thresholds that separate simulated knocks from tremor (docs/measured/joints.md).
 WINDOW_S = 1.0  # before and after a knock: medians over this time are compared
 LEAST_S = 0.4  # of it must be known on both sides, to tell that the new pose is kept
 LEAST_PX = 1.0  # of a knock

@@ -18,7 +18,7 @@ from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D, unkn
 from courtside.records.keypoints.skeleton import Skeleton
 
 # ASSUME: a joint with a larger standard deviation needs views of low scores, too. With 0.08 to 0.16
-# m the joints of the development sessions are as near the truth (docs/measured.md).
+# m the joints of the development sessions are as near the truth (docs/measured/joints.md).
 WEAK_M = 0.12
 OPEN_M = 1.0  # ASSUME: a joint with a larger one is nowhere: rays that are nearly parallel
 

@@ -16,7 +16,7 @@ from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.errors import InputError, StrPath, reading
 
 # Ridge, share of the vectors' mean square: undetermined shares stay near zero. Another weight did
-# not help (docs/measured.md).
+# not help (docs/measured/joints.md).
 RIDGE = 1e-3
 OUTLIER = 1.5  # ASSUME: times the median error: beyond it a frame loses weight (Huber)
 ROUNDS = 15  # of reweighting

@@ -32,7 +32,7 @@ OUTLIER_M = 0.1  # an error above it is an outlier's: half the length of a forea
 # Variances stated over variances fitted, of good places and of outliers. Bodies that are not in the
 # fit have more outliers than the weights say, and an outlier's ellipsoid is too small by its share.
 # Chosen on development bodies, each left out of the fit, so that 90 % ellipsoids hold 60 % or more
-# of the errors above `OUTLIER_M` with two, three and four views (docs/measured.md).
+# of the errors above `OUTLIER_M` with two, three and four views (docs/measured/joints.md).
 STATED_GOOD, STATED_OUTLIER = 0.5, 2.0
 # Standard deviation per axis of a recorded person's joints: the root mean square distance between
 # the joint centres of a markerless and a marker-based system [Kanko2021]_, 30 people who walk: 36

@@ -5,7 +5,7 @@ part depends on the direction from which a camera sees it. Vectors of the first 
 the same for all cameras. Those of the second (`of_views`) differ between the cameras; they move the
 triangulated joint by what the accepted views make of them. Shares of both kinds were fitted on
 players around whom cameras stood far away, near, and high on stands: offsets of the body alone,
-fitted with one layout, are wrong in another one (docs/measured.md).
+fitted with one layout, are wrong in another one (docs/measured/joints.md).
 """
 
 from collections.abc import Sequence

@@ -30,7 +30,8 @@ KNOWN = {
     "incremental": {"ba_refine_focal_length": False, "ba_refine_extra_params": False},
 }
 # Mappers that map again in turn, while the best model explains less than this of any image's
-# verified matches. Chosen on small halls with ten images (docs/measured.md): a wrong map had 0.66.
+# verified matches. Chosen on small halls with ten images (docs/measured/running.md): a wrong map
+# had 0.66.
 AGAIN = {"global": {"global": 0.75, "incremental": 0.65}}
 # Of all verified matches: of two halls whose lone model explained 0.01 and 0.10 more than two that
 # agreed, the first lone model was wrong and the second right.

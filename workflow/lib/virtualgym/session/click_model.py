@@ -7,7 +7,7 @@ the point uncertain along them. On top of that comes the hand. Seen through the 
 
 No number here is the estimator's. In real pictures of a hall, 3840 px wide, the clicks of ten
 cameras on the floor scatter by 1.4 px per axis where the lens model fits best, and by 3 to 7 px,
-which also hold errors of lens and court, in most (docs/measured.md).
+which also hold errors of lens and court, in most (docs/measured/real_footage.md).
 """
 
 import numpy as np

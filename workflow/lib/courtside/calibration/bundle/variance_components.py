@@ -22,7 +22,7 @@ from courtside.calibration.bundle.problem import IMAGE, POSE, Network
 from courtside.statistics import normal_errors
 
 # Redundant observations that the priors count for. The first was chosen on small halls
-# (docs/measured.md); ASSUME: the two others, which were not varied.
+# (docs/measured/calibration_by_walk.md); ASSUME: the two others, which were not varied.
 CLICKS_PRIOR = 1.0  # of all clicks together, about the stated sigma
 CAMERA_PRIOR = 4.0  # of one camera's clicks along one axis, about the factor of all clicks
 TIES_PRIOR = 6.0  # of the ties, about the spread of their residuals

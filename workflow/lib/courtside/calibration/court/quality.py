@@ -19,7 +19,8 @@ from courtside.geometry.camera import Camera, in_picture, project
 from courtside.study.errors import InputError
 
 # Of the verified matches of a pair of images. Chosen on small halls with ten images
-# (docs/measured.md): wrong maps explained 0.24 or less of one pair, good ones 0.36 or more of all.
+# (docs/measured/running.md): wrong maps explained 0.24 or less of one pair, good ones 0.36 or more
+# of all.
 SUPPORTED = 0.3
 # ASSUME: heights of a match, from the floor to a player's reach; the grid is about 2 m wide on a
 # badminton court.

@@ -20,7 +20,7 @@ from courtside.calibration.court_lines.evidence import Fields
 from courtside.calibration.court_lines.views import Samples, Views
 
 # ASSUME: all of these are tuned by hand on development sessions, but for the widest lens and the
-# second draw: these were added for a view of a real hall (docs/measured.md).
+# second draw: these were added for a view of a real hall (docs/measured/real_footage.md).
 WIDEST_PX = 1600  # larger pictures are made smaller: lines stay 1 px wide
 COARSE_PX, FINE_PX = 8.0, 2.5  # per 1280 px of width: tolerance before and after refinement
 COARSE_SAMPLES, FINE_M = 120, 0.3  # of all lines; between samples of a line

@@ -31,7 +31,7 @@ NEAR = 2e-3  # ASSUME: of the picture's longer side, from an epipolar line
 TURNS, TURNED_DEG, TYPICAL, CHANCE, SEED = 40, (2.0, 10.0), 0.9, 0.012, 0
 # ASSUME: how much more likely the pictures must be if cameras are exchanged, as a logarithm, and
 # the largest share of it that the cameras as they are may have. Exchanged cameras of virtual halls
-# gain 22 and more where their pictures have enough in common (docs/measured.md).
+# gain 22 and more where their pictures have enough in common (docs/measured/ways_to_calibrate.md).
 SURE, LEFT = 15.0, 0.5
 FEW = 6  # cameras: 720 orders
 APART = 5.0  # ASSUME: of two exchanges, the worse by less than this is possible, too

@@ -23,7 +23,8 @@ FREE = (faults.FOCAL, faults.TURNED, faults.ZOOMED, faults.MOVED)
 MOST_MIRRORED = 8  # coordinates mirrored together are tried up to so many: 256 ways
 # ASSUME: the least gain of an explanation without and with free numbers; and what is too much
 # without an explanation: of static points as a share of the longer side of the picture, of joints
-# as a share of people's height. Perfect cameras stay well below (docs/measured.md).
+# as a share of people's height. Perfect cameras stay well below
+# (docs/measured/ways_to_calibrate.md).
 LEAST_GAIN = {False: 0.15, True: 0.3}
 LARGEST = {"static": 2e-3, "people": 0.035}
 MEASURES = {"static": residuals.rms_px, "people": residuals.typical_px}

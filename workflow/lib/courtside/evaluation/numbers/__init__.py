@@ -1,4 +1,4 @@
-"""Numbers of the README and of docs/measured.md: each from its source, kept in one register.
+"""Numbers of the README and of docs/measured/: each from its source, kept in one register.
 
 register: `Number`, `Source`, `listed`, `read`, `write`, `stale`: the register, and what it rests on
 document_tables: `View`, `render`, `fill`: tables of documents, filled from the register

@@ -22,7 +22,7 @@ from courtside.evaluation.numbers.views import VIEWS
 from courtside.study.errors import InputError, StrPath
 
 REGISTER = "docs/numbers.csv"
-DOCUMENTS = ("README.md", "docs/measured.md")
+PAGES = "docs/measured"  # the folder of documents
 SUMMARY = "summary"  # the first table of the README
 SUMMED_UP = {  # what was measured: table, regular expression of its row, what is shown of it
     "cameras from a walk and 18 clicks, six virtual halls: RMS error of 3D points over the court, "
@@ -142,9 +142,16 @@ def write(numbers_: list[Number], repository: StrPath) -> list[str]:
     return changed
 
 
+def documents(repository: StrPath) -> list[str]:
+    """Return the paths of the documents with tables, within the repository."""
+    pages = sorted((Path(repository) / PAGES).glob("*.md"))
+    return ["README.md", *(f"{PAGES}/{page.name}" for page in pages)]
+
+
 def filled(numbers_: list[Number], repository: StrPath) -> dict[str, str]:
     """Return the documents with their tables of these numbers, by the documents' names."""
-    texts = {name: (Path(repository) / name).read_text(encoding="utf-8") for name in DOCUMENTS}
+    names = documents(repository)
+    texts = {name: (Path(repository) / name).read_text(encoding="utf-8") for name in names}
     return {name: document_tables.fill(text, VIEWS, numbers_) for name, text in texts.items()}
 
 
