@@ -220,8 +220,13 @@ def test_damaged_frames_shown_before_the_key_frame_do_not_matter(files, tmp_path
 
 
 def test_a_piece_that_begins_between_key_frames_begins_with_the_first_that_decodes(files, tmp_path):
-    """As later files of a camcorder; the key frames are every twelve, groups are open."""
+    """As later files of a camcorder; the key frames are every twelve, groups are open.
+
+    Frames that do not decode leave the others at their times since the first of the file, by
+    which frames of cameras that share a clock are paired.
+    """
     source = files["open_gop.ts"]
+    shown = sorted(pts for pts, _, _ in packets(source))
     for k in (3, 14, 30):
         path = tmp_path / f"piece{k}.ts"
         _, at, _ = packets(source)[k]
@@ -229,8 +234,14 @@ def test_a_piece_that_begins_between_key_frames_begins_with_the_first_that_decod
         read = list(reader.frames(path))
         first = -(-k // 12) * 12
         assert numbers(read) == list(range(first, 60))
-        np.testing.assert_allclose([t for t, _ in read], np.arange(60 - first) / 30, atol=1e-4)
+        lost = first - shown.index(min(pts for pts, _, _ in packets(source)[k:]))
+        assert lost > 0
+        at_s = (lost + np.arange(60 - first)) / 30
+        np.testing.assert_allclose([t for t, _ in read], at_s, atol=1e-4)
         assert glance(path).n_frames == 60 - first
+        every = list(reader.extract_frames(path, 0.5))
+        wanted_s = np.arange(-(-lost // 15), (lost + 59 - first) // 15 + 1) / 2
+        np.testing.assert_allclose([t for _, t, _ in every], wanted_s, atol=1 / 60)
 
 
 def test_a_packet_missing_from_the_middle_is_found(tmp_path):

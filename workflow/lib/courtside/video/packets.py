@@ -34,6 +34,9 @@ class Listing:
 
     path: Path
     pts: NDArray  # (T,) int: when each frame is shown, increasing
+    # When the file's first frame is shown; before `pts[0]` if it does not decode: frame n of
+    # synchronised cameras is one moment.
+    zero: int
     # (T,) int: for each frame, the last shown of those decoded up to it: it may depend on that one.
     leans_on: NDArray
     key_pts: NDArray  # (K,) int: those where decoding can begin
@@ -46,7 +49,7 @@ class Listing:
 
     @property
     def times_s(self) -> NDArray:
-        """Seconds since the first frame, (T,)."""
+        """Seconds since the first frame of the file, (T,)."""
         return self.seconds(self.pts)
 
     @property
@@ -55,8 +58,8 @@ class Listing:
         return float(self.seconds(self.end))
 
     def seconds(self, ticks: int | NDArray) -> NDArray:
-        """Convert ticks into seconds since the first frame, with one rounding."""
-        return (ticks - self.pts[0]) * self.tick_s.numerator / self.tick_s.denominator
+        """Convert ticks into seconds since the file's first frame, with one rounding."""
+        return (np.asarray(ticks) - self.zero) * self.tick_s.numerator / self.tick_s.denominator
 
 
 def list_packets(path: StrPath, *, stop_s: float | None = None) -> Listing:
@@ -102,7 +105,7 @@ def _read_listing(path: Path) -> Listing:
         if not packets:
             raise InputError(f"{path}: expected frames, found {problem or 'none'}: {MEND}")
         # A piece of a recording that was cut up anywhere begins with frames that no decoder can
-        # show: they depend on frames before the file.
+        # show: they depend on frames before the file. The others keep their times.
         stamped = [packet for packet in stamped if start is None or packet[0] >= start]
         stored = np.array([packet[0] for packet in stamped])
         order = np.argsort(stored, kind="stable")
@@ -112,6 +115,7 @@ def _read_listing(path: Path) -> Listing:
         listing = Listing(
             path=path,
             pts=pts,
+            zero=min(p for p, *_ in packets if p is not None),
             leans_on=np.maximum.accumulate(np.argsort(order))[order],
             key_pts=np.array(sorted(packet[0] for packet in stamped if packet[3]), dtype=int),
             tick_s=cast(Fraction, stream.time_base),  # None only where nothing was read

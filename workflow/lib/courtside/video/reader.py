@@ -100,16 +100,17 @@ def in_range(listing: Listing, start_s: float | None, stop_s: float | None) -> r
 def extract_frames(path: StrPath, every_s: float) -> Iterator[tuple[int, float, NDArray]]:
     """Decode the frames nearest to a regular grid of times: index in the file, time and picture.
 
-    The grid begins at 0 and ends with the last frame. A frame nearest to several grid times comes
-    once; of two equally near, the earlier is taken. ValueError if the spacing `every_s` is not
-    positive; all else is as for `frames`.
+    The grid has the time 0 and lies between the first frame and the last. A frame nearest to
+    several grid times comes once; of two equally near, the earlier is taken. ValueError if the
+    spacing `every_s` is not positive; all else is as for `frames`.
     """
     if not every_s > 0:
         raise ValueError(f"every_s must be positive, not {every_s}")
     listing = list_packets(path)
     times_s = listing.times_s
-    n_grid = int(np.floor(times_s[-1] / every_s + 1e-9)) + 1
-    wanted = np.unique(_nearest(times_s, every_s * np.arange(n_grid)))
+    last = int(np.floor(times_s[-1] / every_s + 1e-9))
+    first = min(int(np.ceil(times_s[0] / every_s)), last)
+    wanted = np.unique(_nearest(times_s, every_s * np.arange(first, last + 1)))
     for index, image in pictures(listing, wanted.tolist()):
         yield index, float(times_s[index]), image
 
