@@ -233,7 +233,7 @@ def test_gopro_counts_for_itself_and_cuts_up_recordings():
     assert sorted(told) == ["gym/left/GP010001.MP4", "gym/left/GX020034.MP4"]
     assert all(
         why.startswith("chapter 2 of a recording")
-        and "join the chapters without their sound" in why
+        and "join the chapters by `python workflow/join_chapters.py`" in why
         for why in told.values()
     )
 

@@ -150,7 +150,7 @@ def _without_later_chapters(found: Guess, recordings: Sequence[Recording]) -> li
         if recording.device and recording.device.chapter > 1:
             why = (
                 f"chapter {recording.device.chapter} of a recording that its camera cut up; join "
-                "the chapters without their sound (config/README.md), else later frames are late"
+                "the chapters by `python workflow/join_chapters.py`, and keep them elsewhere"
             )
             found.unused.append((recording, why))
         else:
