@@ -6,6 +6,8 @@ import pytest
 from courtside.reconstruction import resampling
 from courtside.records.devices.clocks import Clock
 from fixtures.cameras import sync_takes
+from fixtures.people import performers
+from virtualgym.body import stance
 
 CAMERA = sync_takes.rig(1)[0]
 PERSON = sync_takes.athlete(np.random.default_rng(0), 20.0)
@@ -38,6 +40,63 @@ def test_a_dropped_frame_is_a_gap():
     xy, _ = resampling.resample(view(time_s), np.arange(10) / 60, Clock())
     assert np.isnan(xy[0, 4:6]).all()
     assert np.isfinite(np.delete(xy[0], [4, 5], axis=0)).all()
+
+
+@pytest.mark.parametrize(("rate_hz", "whole"), [(60, True), (50, True), (30, False)])
+def test_a_dark_stretch_at_half_the_rate_is_bridged_up_to_45_ms(rate_hz, whole):
+    """In seconds: what a camera of 30 Hz does all the time is good enough for one of 60 Hz."""
+    steps = np.r_[np.ones(20), np.full(10, 2), np.ones(20)] / rate_hz
+    time_s = np.concatenate([[0], np.cumsum(steps)])
+    own = np.arange(61) / rate_hz
+    xy, score = resampling.resample(view(time_s), own, Clock())
+    assert np.isfinite(xy[0, 20:41:2]).all()
+    assert np.isfinite(xy[0, 21:41:2]).all() == np.isfinite(score[0, 21:41:2]).all() == whole
+    assert np.isnan(xy[0, 21:41:2]).all() == (not whole)
+
+
+def test_wrists_at_a_stroke_in_a_dark_stretch_err_less_than_keypoints():
+    """Virtual players: 60 Hz that drops to 30 for a while; keypoints err by some 20 mm."""
+    found_mm = []
+    for seed in range(3):
+        motion = performers.perform("shot", seed)
+        hit_s = motion.events["hit"]
+        bright_s = hit_s - 0.2 - np.arange(60)[::-1] / 60
+        time_s = np.concatenate([bright_s, bright_s[-1] + np.arange(1, 40) / 30])
+        at_s = hit_s + np.arange(-0.25, 0.15, 1 / 240)
+        wrist = [mm(motion, each) for each in (time_s, at_s)]
+        keypoints = view(time_s)
+        keypoints.xy[:] = wrist[0][:, np.newaxis]
+        xy, _ = resampling.resample(keypoints, at_s, Clock())
+        found_mm.append(np.linalg.norm(xy[0, :, 0] - wrist[1], axis=-1))
+    found_mm = np.concatenate(found_mm)
+    assert np.sqrt((found_mm**2).mean()) < 4 and found_mm.max() < 15
+
+
+def mm(motion, time_s):
+    """Return the wrist of the racket's arm, (T, 2) mm: to the side and up."""
+    joints = [stance.joints(motion.stance(each), performers.BODY) for each in time_s]
+    return 1000 * np.array([one["right_wrist"][[0, 2]] for one in joints])
+
+
+def test_a_parabola_is_met_exactly_where_the_rate_changes():
+    """And beside a dropped frame: the outer frames are not as far as the inner ones."""
+    time_s = np.cumsum(np.r_[0, np.ones(6), 2, 2, 1, 2, np.ones(6)] / 60)
+    keypoints = view(time_s)
+    keypoints.xy[:] = (500 * time_s**2 - 300 * time_s)[None, :, None, None]
+    at_s = np.arange(8, 8 * 19 - 8) / 480
+    xy, _ = resampling.resample(keypoints, at_s, Clock())
+    true = 500 * at_s**2 - 300 * at_s
+    np.testing.assert_allclose(xy[0], np.broadcast_to(true[:, None, None], xy[0].shape), atol=1e-9)
+
+
+def test_noise_of_frames_close_together_is_no_speed_across_a_gap():
+    """At 240 Hz a gap of 42 ms: a cubic through its neighbours would double the noise."""
+    keypoints = view(np.r_[np.arange(20), 29 + np.arange(20)] / 240)
+    rng, found = np.random.default_rng(0), []
+    for _ in range(100):
+        keypoints.xy[:] = rng.normal(0, 1, keypoints.xy.shape)
+        found.append(resampling.resample(keypoints, np.array([24 / 240]), Clock())[0])
+    assert np.std(found) == pytest.approx(np.sqrt(0.5), abs=0.05)  # half-way between two
 
 
 def test_equal_clocks_pass_through_unchanged():

@@ -114,8 +114,9 @@ def _odd(look: Glance) -> Iterator[str]:
         )
     if look.duration_s and look.late_s > LATE_SHARE * look.duration_s:
         yield (
-            f"{look.late_s:.1f} s of {look.duration_s:.1f} s are gaps between frames, 1.5 usual "
-            "intervals or longer, in which joints are missing: fix rate and exposure, in more light"
+            f"{look.late_s:.1f} s of {look.duration_s:.1f} s are gaps between frames, longer than "
+            "45 ms and 1.5 usual intervals, in which joints are missing: fix rate and exposure, in "
+            "more light"
         )
 
 
