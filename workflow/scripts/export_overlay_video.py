@@ -21,13 +21,16 @@ def main(paths, mp4, *, camera, blur_faces, trim_s, crf, effort, keep_background
     points, joints = keypoints.read_3d(paths.pose3d), skeleton.read(paths.skeleton)
     track = overlay_video.track(one, points, joints)
     start_s, stop_s = trim_s or (None, None)
-    rate_hz = reader.probe(paths.video, stop_s=stop_s).rate_hz
+    info, times_s = reader.probe(paths.video, stop_s=stop_s), None
+    if info.variable_rate:
+        times_s = reader.frame_times(paths.video, stop_s=stop_s)
+        times_s = times_s[times_s >= (start_s or 0)]
     frames = reader.frames(paths.video, start_s=start_s, stop_s=stop_s)
     drawn = overlay_video.pictures(
         frames, track, colours=COLOURS, hide_faces=blur_faces, keep_background=keep_background
     )
     pictures = log.progress(drawn, len(track.own_s), f"{camera}: frames")
-    writer.write_video(mp4, pictures, rate_hz, crf=crf, effort=effort)
+    writer.write_video(mp4, pictures, info.rate_hz, crf=crf, effort=effort, times_s=times_s)
 
 
 if __name__ == "__main__":

@@ -1,20 +1,27 @@
 """A video with skeletons burnt in: long, fast, large as its source, colours at joints, no faces."""
 
+import runpy
 from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from courtside.exports import overlay_video
 from courtside.figures.style import style
+from courtside.reconstruction import camera_shake
 from courtside.records.cameras.footage import Footage
 from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.errors import InputError
 from courtside.video import reader, writer
 from fixtures.cameras import scene, shaken
 from fixtures.people import walker
 
 COLOURS = style.DETECTED_BGR, style.REPROJECTED_BGR, style.REJECTED_BGR
+ROOT = Path(__file__).parents[3]
+FILES = ("cameras", "pose2d", "people", "sync", "shake", "pose3d", "skeleton")
 N = 12
 FACE = [walker.SKELETON.index(joint) for joint in walker.SKELETON.groups["face"]]
 WRIST = walker.SKELETON.index("left_wrist")
@@ -202,6 +209,36 @@ def test_the_file_is_like_its_source(take, tmp_path):
     x, y = np.round(take[1].xy[0, 7, WRIST]).astype(int)
     assert np.abs(image[y, x] - COLOURS[0]).max() < 60  # H.264 keeps half the colour's resolution
     assert np.abs(image[20, -20] - 90).max() < 6  # grey stays grey
+
+
+@pytest.mark.parametrize("first", [0, 3])
+def test_the_overlay_of_an_uneven_video_shows_each_frame_at_its_time(
+    take, tmp_path, monkeypatch, first
+):
+    """As that of a phone which films at half its rate in the dark; also where a take is trimmed."""
+    camera, view, points = take
+    times_s = np.cumsum(np.r_[0, np.full(5, 0.02), np.full(6, 0.04)])
+    source, result = tmp_path / "source.mp4", tmp_path / "overlay.mp4"
+    pictures = (image for _, image in grey_frames(camera, times_s))
+    writer.write_video(source, pictures, 33, crf=30, effort="ultrafast", times_s=times_s)
+    seen = replace(view, time_s=times_s[first:], xy=view.xy[:, first:], score=view.score[:, first:])
+    monkeypatch.setattr(camera_shake, "read_as_filmed", lambda *_: [Footage(camera, seen, Clock())])
+    monkeypatch.setattr(keypoints, "read_3d", lambda _: points)
+    monkeypatch.setattr(skeleton, "read", lambda _: walker.SKELETON)
+    script = runpy.run_path(str(ROOT / "workflow" / "scripts" / "export_overlay_video.py"))
+    script["main"](
+        SimpleNamespace(video=source, **dict.fromkeys(FILES)),
+        result,
+        camera=camera.name,
+        blur_faces=False,
+        trim_s=[0.05, 9.0] if first else None,
+        crf=30,
+        effort="ultrafast",
+        keep_background=True,
+    )
+    np.testing.assert_allclose(
+        reader.frame_times(result), times_s[first:] - times_s[first], atol=1 / 90_000
+    )
 
 
 def test_an_odd_picture_grows_by_a_pixel(take):

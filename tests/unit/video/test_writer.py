@@ -24,6 +24,38 @@ def test_every_frame_is_there_at_its_time(tmp_path, rate_hz):
     assert [number_in(image) for _, image in reader.frames(path)] == list(range(40))
 
 
+@pytest.mark.parametrize("start_s", [0.0, 7.31])
+def test_uneven_frames_are_shown_at_their_times(tmp_path, start_s):
+    """As of a phone: 30 Hz, 15 in the dark, a frame of 24 ms between, one dropped."""
+    steps = np.r_[np.full(12, 1 / 30), np.full(10, 1 / 15), 0.024, np.full(8, 1 / 30), 0.1]
+    times_s = start_s + np.concatenate([[0], np.cumsum(steps)])
+    path, n = tmp_path / "a.mp4", len(times_s)
+    pictures = (draw(k) for k in range(n))
+    assert writer.write_video(path, pictures, 1 / steps.mean(), crf=18, times_s=times_s) == n
+    read = list(reader.frames(path))
+    assert [number_in(image) for _, image in read] == list(range(n))
+    np.testing.assert_allclose([t for t, _ in read], times_s - start_s, atol=1 / 90_000)
+    capture, by_opencv = cv2.VideoCapture(str(path)), []
+    while capture.read()[0]:
+        by_opencv.append(capture.get(cv2.CAP_PROP_POS_MSEC) / 1000)
+    np.testing.assert_allclose(by_opencv, times_s - start_s, atol=1 / 90_000)
+
+
+@pytest.mark.parametrize(
+    ("times_s", "message"),
+    [
+        ([0, 0.1, 0.1], "increasing"),
+        ([0, 0.1], "a time for each frame, found 2"),
+        ([0, 1, 2, 3], "found 4"),
+    ],
+)
+def test_times_that_are_not_those_of_the_frames_are_refused(tmp_path, times_s, message):
+    with pytest.raises(ValueError, match=message):
+        pictures = (draw(k) for k in range(3))
+        writer.write_video(tmp_path / "a.mp4", pictures, 10, crf=18, times_s=times_s)
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_any_frame_can_be_sought(tmp_path):
     path = write(tmp_path / "a.mp4", rate_hz=10.0)
     for k in (39, 0, 17, 25):
