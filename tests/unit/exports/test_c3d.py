@@ -51,13 +51,6 @@ def test_the_same_record_gives_the_same_bytes(written, tmp_path):
     assert (tmp_path / "again.c3d").read_bytes() == path.read_bytes()
 
 
-def test_a_take_too_long_for_the_format_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(c3d, "MOST_FRAMES", 19)
-    with pytest.raises(InputError, match="at most 19 frames"):
-        c3d.write(tmp_path / "long.c3d", replace(walker.points()), 0)
-    assert list(tmp_path.iterdir()) == []
-
-
 def fourth_words(path, n_points, n_frames):
     """Return (T, J, 4) as the bytes of a file with floating-point data have them."""
     content = path.read_bytes()
@@ -135,14 +128,37 @@ def one_joint(n_frames):
     )
 
 
-def test_the_frame_counter_reaches_65535_and_no_further(tmp_path):
+def test_frames_that_the_header_counts_need_no_other_number(tmp_path):
     path = tmp_path / "long.c3d"
-    with pytest.raises(InputError, match=r"long\.c3d: expected .* at most 65535 .* found 65536"):
-        c3d.write(path, one_joint(65536), 0)
-    assert not path.exists()
     c3d.write(path, one_joint(65535), 0)
     assert struct.unpack_from("<HH", path.read_bytes(), 6) == (1, 65535)
-    assert ezc3d.c3d(str(path))["data"]["points"].shape == (4, 1, 65535)
+    found = ezc3d.c3d(str(path))
+    assert found["data"]["points"].shape == (4, 1, 65535)
+    assert "LONG_FRAMES" not in found["parameters"]["POINT"]
+
+
+def test_more_frames_than_the_header_counts_are_written_with_their_number(tmp_path, caplog):
+    path, record = tmp_path / "long.c3d", one_joint(70001)
+    record.xyz[0, :, 0, 0] = np.arange(70001) / 1000
+    c3d.write(path, record, 0)
+    words = fourth_words(path, 1, 70001)
+    np.testing.assert_array_equal(words[:, 0, 0], np.arange(70001))
+    assert (words[..., 3] == 0).all()
+    assert struct.unpack_from("<HH", path.read_bytes(), 6) == (1, 65535)
+    point = ezc3d.c3d(str(path))["parameters"]["POINT"]
+    assert point["LONG_FRAMES"]["value"] == 70001
+    assert point["FRAMES"]["value"] == 65535
+    assert "see the first 65535 alone: give them the TRC file" in caplog.text
+
+
+def test_another_reader_finds_more_frames_than_the_header_counts(tmp_path):
+    peer = pytest.importorskip("c3d", reason="needs `pip install c3d`")
+    record = one_joint(70001)
+    record.xyz[0, :, 0, 0] = np.arange(70001) / 1000
+    c3d.write(tmp_path / "long.c3d", record, 0)
+    with (tmp_path / "long.c3d").open("rb") as stream:
+        found = [points[0, 0] for _, points, _ in peer.Reader(stream).read_frames()]
+    assert found == list(range(70001))
 
 
 def test_one_frame_has_no_rate(tmp_path):

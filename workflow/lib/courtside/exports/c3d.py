@@ -7,6 +7,9 @@ The fourth word of a point, taken as an integer, has the residual in its low byt
 |POINT:SCALE|, and the cameras that saw the point in its high byte (c3d.org, "3D point residuals").
 ezc3d 1.7 exchanges the two bytes, so the words are written here. Programs that read by ezc3d
 therefore see 0 for every point that is there.
+
+The header and POINT:FRAMES count at most 65,535 frames. The number of more is in POINT:LONG_FRAMES
+(c3d.org, "LONG_FRAMES"), which ezc3d does not read: to programs that use it, the file ends there.
 """
 
 import struct
@@ -17,6 +20,7 @@ from numpy.typing import NDArray
 
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.errors import InputError, StrPath
+from courtside.study.execution import log
 from courtside.study.execution.files import atomic
 
 MM_PER_M = 1000.0
@@ -24,7 +28,7 @@ MISSING = -1.0
 MOST_RESIDUAL_MM = 127.0  # above, readers that take the byte as signed see a missing point
 BLOCK_BYTES = 512
 FIRST_DATA_BLOCK = slice(16, 18)  # of the header: the block, from 1, in which the points begin
-MOST_FRAMES = 65535  # the header counts frames in 16 bits
+MOST_COUNTED = 65535  # frames: header and POINT:FRAMES count in 16 bits
 
 
 def write(path: StrPath, keypoints: Keypoints3D, person: int) -> None:
@@ -33,15 +37,14 @@ def write(path: StrPath, keypoints: Keypoints3D, person: int) -> None:
     A point's residual is its root-mean-square standard deviation over the axes, mm, of all errors
     that are known (`Keypoints3D.covariance`), 127 where it is larger; -1 marks a
     missing point, 0 one without a known uncertainty (interpolated, for one). Raises `InputError` if
-    the take is longer than C3D's frame counter allows, or one frame, which has no rate; if the disk
-    refuses the file.
+    the take is one frame, which has no rate, or the disk refuses the file.
     """
     xyz = keypoints.xyz[person] * MM_PER_M
     n_frames, n_joints, _ = xyz.shape
-    if not 2 <= n_frames <= MOST_FRAMES:
+    if n_frames < 2:
         raise InputError(
-            f"{path}: expected at least 2 and at most {MOST_FRAMES} frames in a C3D file, found "
-            f"{n_frames}; change `trim_s` of the take"
+            f"{path}: expected at least 2 frames in a C3D file, found {n_frames}; change `trim_s` "
+            "of the take"
         )
     file = ezc3d.c3d()
     file["header"]["points"]["first_frame"] = 0
@@ -51,6 +54,13 @@ def write(path: StrPath, keypoints: Keypoints3D, person: int) -> None:
     point["LABELS"]["value"] = [str(joint) for joint in keypoints.joints]
     file.add_parameter("POINT", "X_SCREEN", ["+X"])
     file.add_parameter("POINT", "Y_SCREEN", ["+Z"])
+    if n_frames > MOST_COUNTED:
+        file.add_parameter("POINT", "LONG_FRAMES", [float(n_frames)])
+        log.logger.warning(
+            "%s: %d frames; programs that read by ezc3d, such as OpenSim, see the first %d alone: "
+            "give them the TRC file",
+            *(path, n_frames, MOST_COUNTED),
+        )
     points = np.ones((4, n_joints, n_frames))
     points[:3] = xyz.transpose(2, 1, 0)
     file["data"]["points"] = points
