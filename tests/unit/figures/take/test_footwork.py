@@ -1,8 +1,10 @@
 """The figure of footwork draws the stances."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from courtside.calibration.court import court
@@ -47,3 +49,26 @@ def test_no_court_and_no_step(found):
     made.draw_without_rendering()
     assert "landings: 0" in made.subfigs[0].axes[0].get_title()
     assert drawing.table(steps).columns.tolist()[:2] == ["person", "foot"]
+
+
+def test_a_take_of_minutes_has_landings_a_minute_and_the_mean_contact(found):
+    contacts, steps, events = found
+    n_rounds = 50  # of three seconds
+    later = 3.0 * np.arange(n_rounds)
+    long = replace(
+        contacts,
+        time_s=np.concatenate([contacts.time_s + at for at in later]),
+        probability=np.tile(contacts.probability, (1, n_rounds, 1)),
+    )
+    each = [steps.assign(onset_s=steps.onset_s + at) for at in later]
+    made = drawing.draw(long, pd.concat(each, ignore_index=True), events, None)
+    made.draw_without_rendering()
+    _, landings, share = made.subfigs[0].axes
+    for foot, line in zip(("left", "right"), landings.lines, strict=False):
+        per_minute = 20 * steps[steps.foot == foot].onset_s.notna().sum()
+        assert line.get_ydata().mean() == pytest.approx(per_minute, rel=0.02)
+    assert landings.lines[2].get_label() == "lunges"
+    mean = np.nanmean(contacts.probability[0], axis=0)
+    drawn = [line.get_ydata().mean() for line in share.lines]
+    assert drawn == pytest.approx(mean.tolist(), abs=0.02)
+    assert share.get_xlabel() == "time (s): means of each 5 s"

@@ -94,3 +94,22 @@ def test_a_person_who_was_never_seen_is_drawn_empty(tables):
     numbers = frames.select_dtypes("number").columns.difference(["time_s", "frame_idx"])
     frames[numbers] = np.nan
     speeds.draw(frames, summary, None).draw_without_rendering()
+
+
+def test_a_take_of_minutes_is_drawn_by_windows_and_by_the_time_in_each_square(tables):
+    frames, summary = tables
+    rows = [frames.assign(time_s=frames.time_s + 6.1 * at) for at in range(21)]
+    long = pd.concat(rows, ignore_index=True)
+    drawing = speeds.draw(long, summary, court.read(CONFIG / "courts" / "badminton.yaml"))
+    drawing.draw_without_rendering()
+    plan, _, speed, angle = drawing.subfigs[0].axes
+    seconds = plan.collections[-1].get_array()
+    assert float(np.ma.masked_invalid(seconds).sum()) == pytest.approx(len(long) / 30, rel=0.01)
+    assert angle.get_xlabel() == "time (s): median and 5 to 95 % of each 5 s"
+    first = long[long.time_s < 5]
+    line = speed.lines[0].get_xydata()[0]
+    assert line == pytest.approx([2.5, first.neck_ground_speed_m_s.median()])
+    band = speed.collections[0].get_paths()[0].vertices
+    at_first = band[band[:, 0] == 2.5, 1]
+    wanted = first.neck_ground_speed_m_s.quantile([0.05, 0.95]).tolist()
+    assert [at_first.min(), at_first.max()] == pytest.approx(wanted)

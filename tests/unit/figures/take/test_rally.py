@@ -1,5 +1,7 @@
 """The timeline of a rally draws the strokes of the table, also where there are none."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -56,3 +58,28 @@ def test_a_player_without_strokes_is_drawn_with_the_trunk_alone(made):
     (axis,) = rally.draw(strokes[:0], events[:0], points).axes
     assert len(axis.lines) == 1
     assert axis.get_title(loc="left") == "p1: 0 strokes"
+
+
+def test_a_take_of_minutes_has_strokes_a_minute_and_its_liveliest_part(made):
+    points, strokes, events = made
+    n_frames = 30 * 150
+    bare = points.frames(np.arange(n_frames) % len(points.time_s))
+    long = replace(bare, time_s=np.arange(n_frames) / 30)
+    rare, dense = np.arange(2.5, 150, 10), 92 + np.arange(0.5, 25, 2)
+    at_s = np.sort(np.concatenate([rare, dense]))
+    hits = strokes.iloc[np.zeros(len(at_s), int)].reset_index(drop=True)
+    drawing = rally.draw(hits.assign(time_s=at_s, overhead=True), events, long)
+    drawing.draw_without_rendering()
+    strip, part = drawing.axes
+    high = [bar for bar in strip.patches if bar.get_height() > 20]
+    assert {bar.get_x() + bar.get_width() / 2 for bar in high} == {92.5, 97.5, 102.5, 107.5, 112.5}
+    start_s, stop_s = part.get_xlim()
+    assert start_s <= dense[0] and dense[-1] <= stop_s <= start_s + 30
+    shown = [line.get_xdata()[0] for line in part.lines if len(line.get_xdata()) == 2]
+    assert shown == pytest.approx([at for at in at_s if start_s <= at <= stop_s])
+    assert strip.get_title(loc="left") == f"p1: {len(at_s)} strokes"
+
+
+@pytest.mark.parametrize(("at_s", "start_s"), [([], 0), ([1.0], 0), ([80, 149], 79), ([149], 120)])
+def test_the_liveliest_part_lies_within_the_take(at_s, start_s):
+    assert rally.liveliest(np.array(at_s, float), np.arange(151.0)) == start_s

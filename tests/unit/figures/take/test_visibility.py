@@ -54,3 +54,20 @@ def test_the_least_views_of_several_persons_are_named_so():
     shown = np.asarray(lower.images[0].get_array())
     np.testing.assert_array_equal(shown, record.n_views.min(axis=0).T)
     assert "least of all persons" in lower.get_title()
+
+
+def test_a_take_of_minutes_has_means_of_windows():
+    record = walker.points(n_frames=4000, n_persons=2)
+    record = replace(record, time_s=np.arange(4000) / 10)
+    record.n_views[:] = np.arange(4000)[None, :, None] // 100 % 2 + 1  # 10 s each
+    given = {"c0": np.full(record.n_views.shape, 0.5)}
+    given["c0"][1, 200:275, 6] = np.nan
+    given["c0"][1, 300:400, 6] = np.nan
+    rows = visibility.table(record, given)
+    assert len(rows) == 2 * 40 * len(record.joints)
+    own = rows[(rows.person == "p2") & (rows.joint == record.joints[6])]
+    assert own.time_s.tolist() == [5 + 10 * at for at in range(40)]
+    assert own.n_views.tolist() == [1, 2] * 20
+    assert own.score_c0.tolist()[2] == 0.5 and np.isnan(own.score_c0.tolist()[3])
+    (_, lower, *_) = visibility.draw(rows, walker.SKELETON).axes
+    assert lower.get_xlabel() == "time (s): means of each 10 s"

@@ -1,11 +1,12 @@
 """Footwork of a take: where feet stood on the court, and when."""
 
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from courtside.calibration.court.court import Court
-from courtside.figures.style import court_plan, style
+from courtside.figures.style import court_plan, style, windows
 from courtside.records.footwork import FEET, Contacts
 from courtside.statistics import normal_errors
 
@@ -26,8 +27,12 @@ def table(steps: pd.DataFrame) -> pd.DataFrame:
 def draw(
     contacts: Contacts, steps: pd.DataFrame, events: pd.DataFrame, court: Court | None
 ) -> Figure:
-    """Draw each person in a row: stances from above, and contact of both feet over time."""
+    """Draw each person in a row: stances from above, and contact of both feet over time.
+
+    Of a take of minutes there are landings a minute, and the mean contact of each window.
+    """
     people = contacts.person_id.tolist()
+    window_s = windows.length_s(contacts.time_s)
     drawing = style.figure(ROW_MM * max(len(people), 1))
     for row, part in enumerate(drawing.subfigures(len(people), 1, squeeze=False)[:, 0]):
         grid = part.add_gridspec(2, 2, width_ratios=(1.0, 1.6))
@@ -35,8 +40,13 @@ def draw(
         happened = events[events.person == people[row]]
         _draw_places(part.add_subplot(grid[:, 0]), own, court, people[row])
         stances = part.add_subplot(grid[0, 1])
-        _draw_stances(stances, own, happened)
-        _draw_contact(part.add_subplot(grid[1, 1], sharex=stances), contacts, row)
+        contact = part.add_subplot(grid[1, 1], sharex=stances)
+        if window_s:
+            _draw_landings(stances, contacts, row, own, window_s)
+            _draw_mean_contact(contact, contacts, row, window_s)
+        else:
+            _draw_stances(stances, own, happened)
+            _draw_contact(contact, contacts, row)
     return drawing
 
 
@@ -89,3 +99,29 @@ def _draw_contact(axis: Axes, contacts: Contacts, person: int) -> None:
         axis.plot(contacts.time_s, own, color=COLOURS[foot], linewidth=0.8, label=f"{foot} foot")
     axis.set(xlabel="time (s)", ylabel="probability of contact", ylim=(-0.03, 1.03))
     axis.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2, borderaxespad=0)
+
+
+def _draw_landings(
+    axis: Axes, contacts: Contacts, person: int, own: pd.DataFrame, window_s: int
+) -> None:
+    """Draw the landings of each foot, and the lunges, of each window as a number a minute."""
+    seen = np.isfinite(contacts.probability[person]).any(axis=1)
+    lines = {f"{foot} foot": (own.foot == foot, colour) for foot, colour in COLOURS.items()}
+    lines["lunges"] = own.kind == "lunge", "black"
+    for label, (which, colour) in lines.items():
+        onsets = own.onset_s[which].dropna().to_numpy()
+        rate = windows.a_minute(onsets, contacts.time_s, seen, window_s)
+        axis.plot(rate.index, rate, color=colour, linewidth=0.9, label=label)
+    axis.set(ylabel="landings a minute")
+    axis.set_ylim(bottom=0)
+    axis.tick_params(labelbottom=False)
+    axis.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=3, borderaxespad=0)
+
+
+def _draw_mean_contact(axis: Axes, contacts: Contacts, person: int, window_s: int) -> None:
+    for at, foot in enumerate(contacts.foot.tolist()):
+        chance = contacts.probability[person, :, at]
+        share = windows.known(contacts.time_s, chance, window_s).mean()
+        axis.plot(share.index, share, color=COLOURS[foot], linewidth=0.9)
+    axis.set(xlabel=f"time (s): means of each {window_s} s")
+    axis.set(ylabel="share of time on the floor", ylim=(-0.03, 1.03))

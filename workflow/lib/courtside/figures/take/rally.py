@@ -4,13 +4,15 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
-from courtside.figures.style import bars, style
+from courtside.figures.style import bars, style, windows
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.statistics.normal_errors import WITHIN_90
 from courtside.strokes import signals
 
-HEAD_MM, ROW_MM = 22, 45
+HEAD_MM, ROW_MM, STRIP_MM = 22, 45, 25
+LIVELIEST_S = 30.0  # of a take of minutes, which are drawn
 A_ROW = 4  # entries of the legend
 KINDS = {True: ("overhead stroke", style.RIGHT), False: ("low stroke", style.LEFT)}
 STEPS = {"split_step": ("split step", "v", 5), "step": ("step", "|", 4), "lunge": ("lunge", "D", 3)}
@@ -30,21 +32,88 @@ def draw(strokes: pd.DataFrame, events: pd.DataFrame, points: Keypoints3D) -> Fi
     """Draw each person in a row: strokes as bars as wide as their 90 % interval, landings of feet.
 
     `strokes` are of `courtside.strokes.detect.table`, `events` of `courtside.records.footwork`.
+    Of a take of minutes there are the strokes a minute of each window, and the half minute with the
+    most strokes of all.
     """
+    if window_s := windows.length_s(points.time_s):
+        return _draw_long(strokes, events, points, window_s)
+    drawing = style.figure(HEAD_MM + ROW_MM * max(len(points.person_id), 1))
+    rows = drawing.subplots(len(points.person_id), 1, sharex=True, squeeze=False)[:, 0]
+    _draw_rows(rows, strokes, events, points)
+    _name(drawing, rows)
+    return drawing
+
+
+def _draw_long(
+    strokes: pd.DataFrame, events: pd.DataFrame, points: Keypoints3D, window_s: int
+) -> Figure:
+    start_s = liveliest(strokes.time_s.to_numpy(), points.time_s)
+    part = start_s, start_s + LIVELIEST_S
+    n_people = len(points.person_id)
+    drawing = style.figure(HEAD_MM + (STRIP_MM + ROW_MM) * max(n_people, 1))
+    above, below = drawing.subfigures(2, 1, height_ratios=(STRIP_MM, ROW_MM))
+    strips = above.subplots(n_people, 1, sharex=True, squeeze=False)[:, 0]
+    for at, (axis, person) in enumerate(zip(strips, points.person_id, strict=True)):
+        own = strokes[strokes.person == str(person)]
+        seen = np.isfinite(points.xyz[at, :, :, 0]).any(axis=1)
+        _draw_strip(axis, own, points.time_s, seen, window_s)
+        axis.axvspan(*part, color="0.8", linewidth=0, zorder=0)
+        axis.set_title(f"{person}: {_counted(own)}", loc="left")
+    strips[-1].set_xlabel(f"time (s): each {window_s} s; grey: drawn below")
+    rows = below.subplots(n_people, 1, sharex=True, squeeze=False)[:, 0]
+    frames = slice(*np.searchsorted(points.time_s, part).tolist())
+    strokes, events = strokes[strokes.time_s.between(*part)], events[events.stop_s.between(*part)]
+    _draw_rows(rows, strokes, events, points.frames(frames))
+    _name(drawing, rows)
+    return drawing
+
+
+def liveliest(at_s: NDArray, time_s: NDArray) -> float:
+    """Return when the part of a take with the most of the events at `at_s` (N,) begins, s."""
+    starts = np.concatenate([time_s[:1], np.clip(np.sort(at_s) - 1, *_within(time_s))])
+    n_events = [np.count_nonzero((at_s >= one) & (at_s <= one + LIVELIEST_S)) for one in starts]
+    return float(starts[np.argmax(n_events)])
+
+
+def _within(time_s: NDArray) -> tuple[float, float]:
+    return time_s[0], max(time_s[0], time_s[-1] - LIVELIEST_S)
+
+
+def _draw_strip(
+    axis: Axes, own: pd.DataFrame, time_s: NDArray, seen: NDArray, window_s: int
+) -> None:
+    """Draw the strokes a minute of each window, low ones below overhead ones."""
+    bottom: pd.Series | float = 0.0
+    for overhead in (False, True):
+        at_s = own.time_s[own.overhead.astype(bool) == overhead].to_numpy()
+        rate = windows.a_minute(at_s, time_s, seen, window_s).fillna(0)
+        look: dict = {"color": KINDS[overhead][1], "alpha": 0.7}
+        axis.bar(rate.index, rate, 0.9 * window_s, bottom, **look)
+        bottom = bottom + rate
+    axis.set(ylabel="strokes\na minute", xlim=(time_s[0], time_s[-1]))
+
+
+def _draw_rows(
+    rows: NDArray, strokes: pd.DataFrame, events: pd.DataFrame, points: Keypoints3D
+) -> None:
     people = list(map(str, points.person_id))
-    drawing = style.figure(HEAD_MM + ROW_MM * max(len(people), 1))
-    rows = drawing.subplots(len(people), 1, sharex=True, squeeze=False)[:, 0]
     for at, (axis, person) in enumerate(zip(rows, people, strict=True)):
         own = strokes[strokes.person == person]
-        counted = "1 stroke" if len(own) == 1 else f"{len(own)} strokes"
         _draw_person(axis, own, signals.of_person(points, at))
         _draw_steps(axis, events[events.person == person])
         hands = ", ".join(f"{hand} hand ({source})" for hand, source in _hands(own))
-        axis.set_title(f"{person}: {counted}{', ' if hands else ''}{hands}", loc="left", pad=11)
+        title = f"{person}: {_counted(own)}{', ' if hands else ''}{hands}"
+        axis.set_title(title, loc="left", pad=11)
     rows[-1].set_xlabel("time (s)")
+
+
+def _counted(own: pd.DataFrame) -> str:
+    return "1 stroke" if len(own) == 1 else f"{len(own)} strokes"
+
+
+def _name(drawing: Figure, rows: NDArray) -> None:
     named = bars.named(rows)
     drawing.legend(named.values(), named, loc="outside upper right", ncols=min(len(named), A_ROW))
-    return drawing
 
 
 def _hands(own: pd.DataFrame) -> list[tuple[str, str]]:

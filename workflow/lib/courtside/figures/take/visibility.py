@@ -7,7 +7,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from courtside.figures.style import style
+from courtside.figures.style import style, windows
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.keypoints.skeleton import Skeleton
 
@@ -17,17 +17,29 @@ A_ROW = 6  # cameras in the legend
 def table(points: Keypoints3D, scores: Mapping[str, NDArray]) -> pd.DataFrame:
     """Return scores and numbers of views over time; empty if a camera saw nothing.
 
-    `scores` (P, T, J) are of each camera at the times of the points.
+    `scores` (P, T, J) are of each camera at the times of the points. Of a take of minutes, all are
+    means of windows.
     """
-    n_persons, n_frames, n_joints = points.n_views.shape
+    time_s, drawn = points.time_s, {"n_views": points.n_views}
+    drawn |= {f"score_{camera}": score for camera, score in scores.items()}
+    if window_s := windows.length_s(time_s):
+        by = windows.middles(time_s, time_s[0], window_s)
+        time_s = np.unique(by)
+        drawn = {name: _means(values, by == time_s[:, None]) for name, values in drawn.items()}
+    n_persons, n_frames, n_joints = drawn["n_views"].shape
     columns = {
-        "time_s": np.tile(np.repeat(points.time_s, n_joints), n_persons),
+        "time_s": np.tile(np.repeat(time_s, n_joints), n_persons),
         "person": np.repeat(points.person_id, n_frames * n_joints),
         "joint": np.tile(points.joints, n_persons * n_frames),
-        "n_views": points.n_views.ravel(),
     }
-    columns |= {f"score_{camera}": score.ravel() for camera, score in scores.items()}
+    columns |= {name: values.ravel() for name, values in drawn.items()}
     return pd.DataFrame(columns)
+
+
+def _means(values: NDArray, inside: NDArray) -> NDArray:
+    """Return the means (P, W, J) of what is known of values (P, T, J) in windows (W, T)."""
+    each = np.ma.masked_invalid(values)
+    return np.ma.stack([each[:, at].mean(axis=1) for at in inside], axis=1).filled(np.nan)
 
 
 def draw(rows: pd.DataFrame, skeleton: Skeleton) -> Figure:
@@ -52,6 +64,8 @@ def draw(rows: pd.DataFrame, skeleton: Skeleton) -> Figure:
     lower.set(yticks=range(len(joints)), yticklabels=[joint.replace("_", " ") for joint in joints])
     lower.tick_params(axis="y", labelsize=6)
     least = "" if rows.person.nunique() < 2 else ", least of all persons"
-    lower.set(xlabel="time (s)", title=f"Views that each joint rests on (0: missing){least}")
+    means = f": means of each {step:g} s" if step >= windows.LENGTHS_S[0] else ""
+    lower.set_title(f"Views that each joint rests on (0: missing){least}")
+    lower.set_xlabel(f"time (s){means}")
     drawing.colorbar(image, ax=lower, ticks=range(len(names) + 1), label="views", pad=0.01)
     return drawing
