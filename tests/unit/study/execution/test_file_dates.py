@@ -1,6 +1,7 @@
 """Files dated in the future, or exchanged for older ones, are told before any job runs."""
 
 import os
+import re
 import subprocess
 import time
 
@@ -44,6 +45,13 @@ def test_the_file_furthest_ahead_is_named_and_the_advice_mends_it(tmp_path):
         pytest.skip("the advice is for PowerShell, which is not the shell here")
     subprocess.run(str(e.value).rpartition(": ")[2], shell=True, check=True)
     assert file_dates.check_future([tmp_path / "data"]) is None
+
+
+def test_a_file_in_a_folder_within_a_folder_is_looked_at(tmp_path):
+    (tmp_path / "data").mkdir()
+    late = dated(tmp_path / "data" / "left_json" / "1.json", time.time() + DAY_S)
+    with pytest.raises(InputError, match=re.escape(f"{late}: expected a date in the past")):
+        file_dates.check_future([tmp_path])
 
 
 def test_the_advice_on_windows_is_for_powershell(tmp_path, monkeypatch):

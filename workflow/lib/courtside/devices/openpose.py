@@ -60,8 +60,9 @@ def read(
         )
     empty = np.empty((0, len(skeleton.joints), 3))
     people = [empty] * len(times)
-    for number, path in files.items():
+    for number, name in files.items():
         if number - first < len(people):  # the last one may be one too many
+            path = Path(folder, name)
             people[number - first] = _people(path, len(skeleton.joints), skeleton.name)
     _check_px(folder, np.concatenate(people))
     _check_order(folder, skeleton.name, people)
@@ -145,8 +146,8 @@ def sample(folder: StrPath, skeleton: Skeleton) -> NDArray:
 
 def _looked_at(folder: StrPath) -> list[Path]:
     """Return some files of a folder, from all of its frames."""
-    files = [path for _, path in sorted(frame_numbers.numbered(folder).items())]
-    return files[:: max(1, len(files) // LOOKED_AT)]
+    names = [name for _, name in sorted(frame_numbers.numbered(folder).items())]
+    return [Path(folder, name) for name in names[:: max(1, len(names) // LOOKED_AT)]]
 
 
 def is_one(path: StrPath) -> bool:

@@ -1,8 +1,10 @@
 """Dates of files from which Snakemake concludes wrongly: in the future, or of an exchanged file."""
 
+import itertools
+import os
 import shlex
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from datetime import datetime
 from pathlib import Path
 
@@ -23,9 +25,9 @@ def check_future(named: Iterable[StrPath]) -> None:
     """
     there = [path for path in map(Path, dict.fromkeys(named)) if path.exists()]
     latest_s = time.time() + SLACK_S
-    every = (path for one in there for path in ([one] if one.is_file() else one.rglob("*")))
-    found = (path for path in every if path.is_file())
-    late = {dated for path in found if (dated := (path.stat().st_mtime, path))[0] > latest_s}
+    files_there = [(one.stat().st_mtime, str(one)) for one in there if one.is_file()]
+    below = (dated for one in there if one.is_dir() for dated in _dated(one))
+    late = {dated for dated in itertools.chain(files_there, below) if dated[0] > latest_s}
     if not late:
         return
     when_s, path = max(late)
@@ -34,6 +36,16 @@ def check_future(named: Iterable[StrPath]) -> None:
         f"{_in_words(time.time())}), as in {len(late) - 1} more; set this computer's clock "
         f"if it is wrong, otherwise give them today's date: {_advice(there)}"
     )
+
+
+def _dated(folder: StrPath) -> Iterator[tuple[float, str]]:
+    """Yield date, s, and path of each file below a folder: one look at each, for there are many."""
+    with os.scandir(folder) as every:
+        for one in every:
+            if one.is_dir(follow_symlinks=False):
+                yield from _dated(one.path)
+            elif one.is_file():
+                yield one.stat().st_mtime, one.path
 
 
 def check_exchanged(kept: StrPath, apart: Iterable[StrPath]) -> None:
