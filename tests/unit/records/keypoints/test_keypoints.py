@@ -1,5 +1,6 @@
 """Records of keypoints survive their files."""
 
+import tracemalloc
 from dataclasses import fields, replace
 
 import numpy as np
@@ -70,3 +71,34 @@ def test_a_cut_off_or_missing_file_is_named(tmp_path):
     path.write_bytes(path.read_bytes()[:-100])
     with pytest.raises(InputError, match=r"f\.npz: expected an npz file"):
         keypoints.read_3d(path)
+
+
+def test_errors_that_are_not_known_need_no_memory(tmp_path):
+    record = walker.points(n_frames=3000)
+    unknown = keypoints.unknown_errors(record.xyz)
+    for name in ("covariance_camera", "covariance_network"):
+        assert unknown[name].shape == (*record.xyz.shape, 3)
+        assert np.isnan(unknown[name]).all()
+    path = tmp_path / "long.npz"
+    keypoints.write_3d(path, replace(record, **unknown))
+    lost = np.zeros(record.xyz.shape[:-1], bool)
+    lost[0, 7, 3] = True
+    tracemalloc.start()
+    found = keypoints.read_3d(path).without(lost)
+    kept = tracemalloc.get_traced_memory()[0]
+    tracemalloc.stop()
+    assert kept < 3 * record.xyz.nbytes  # three covariances alone have nine times as much
+    for name, values in unknown.items():
+        np.testing.assert_array_equal(getattr(found, name), values)
+
+
+def test_what_is_known_of_the_errors_of_some_points_is_read_and_left_out_with_them(tmp_path):
+    record = walker.points()
+    record.covariance_2d[0, 5:] = np.nan
+    path = tmp_path / "some.npz"
+    keypoints.write_3d(path, record)
+    lost = np.zeros(record.xyz.shape[:-1], bool)
+    lost[0, 2, 3] = True
+    found = keypoints.read_3d(path).without(lost).covariance_2d
+    assert np.isnan(found[0, 2, 3]).all() and np.isnan(found[0, 5:]).all()
+    np.testing.assert_array_equal(found[0, :2], record.covariance_2d[0, :2])

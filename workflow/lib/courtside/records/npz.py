@@ -42,13 +42,14 @@ def read(
     """Read arrays written by `write`: one for each key of `spec`.
 
     `spec` may be a function that returns it by the keys that the file has. An `InputError` if the
-    file is not an npz of this form, or its arrays are not as stated.
+    file is not an npz of this form, or its arrays are not as stated. An array of NaN alone is not
+    writable (`unknown`).
     """
     with (
         reading(path, f"an npz file ({form})"),
         require_type(np.load(path, allow_pickle=False), np.lib.npyio.NpzFile) as stored,
     ):
-        found = {key: np.asarray(stored[key]) for key in stored.files}
+        found = {key: _lean(np.asarray(stored[key])) for key in stored.files}
     stated = str(found.pop("format", "no format"))
     if stated != form:
         raise InputError(f"{path}: expected format {form!r}, found {stated!r}; make it again")
@@ -56,6 +57,20 @@ def read(
     if fault:
         raise InputError(f"{path}: {fault}; make it again")
     return found
+
+
+def unknown(shape: tuple[int, ...]) -> NDArray:
+    """Return an array of NaN, not writable, that is one number in memory.
+
+    Of an hour of two persons each covariance that is not known would need 800 MB.
+    """
+    return np.broadcast_to(np.nan, shape)
+
+
+def _lean(array: NDArray) -> NDArray:
+    """Return an array, in the form of `unknown` if it is one of NaN alone."""
+    known = array.dtype != float or array.ndim == 0 or not np.isnan(array).all()
+    return array if known else unknown(array.shape)
 
 
 def spec_of(record: type) -> Spec:

@@ -100,7 +100,8 @@ class Keypoints3D:
         What was stated of their errors is unknown, too.
         """
         nothing = lost[..., None]
-        errors = {key: getattr(self, key).copy() for key in unknown_errors(self.xyz)}
+        stated = {key: getattr(self, key) for key in unknown_errors(self.xyz)}
+        errors = {key: one.copy() for key, one in stated.items() if not np.isnan(one).all()}
         for one in errors.values():
             one[lost] = np.nan
         return replace(
@@ -122,13 +123,17 @@ class Keypoints3D:
 
 
 def unknown_errors(xyz: NDArray) -> dict[str, NDArray]:
-    """Return the fields of a `Keypoints3D` with points `xyz` whose errors nothing is known of."""
+    """Return the fields of a `Keypoints3D` with points `xyz` whose errors nothing is known of.
+
+    Not writable: each is one NaN in memory.
+    """
+    each = npz.unknown((*xyz.shape, 3))
     return {
-        "covariance_2d": np.full((*xyz.shape, 3), np.nan),
-        "covariance_camera": np.full((*xyz.shape, 3), np.nan),
-        "covariance_network": np.full((*xyz.shape, 3), np.nan),
-        "offset": np.full(xyz.shape, np.nan),
-        "outlier": np.full(xyz.shape[:-1], np.nan),
+        "covariance_2d": each,
+        "covariance_camera": each,
+        "covariance_network": each,
+        "offset": npz.unknown(xyz.shape),
+        "outlier": npz.unknown(xyz.shape[:-1]),
     }
 
 
