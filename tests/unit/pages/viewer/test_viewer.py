@@ -107,10 +107,19 @@ def test_without_a_court_a_grid_lies_around_the_movement():
 
 def test_a_take_too_large_is_thinned_and_says_so(monkeypatch):
     monkeypatch.setattr(viewer, "LARGEST_BYTES", 8_000)
-    read = Stores(viewer.build("t", [layer(n_frames=200)]))
+    whole = layer(n_frames=200)
+    read = Stores(viewer.build("t", [whole]))
     kept = len(read.held["data-layers"][0]["time_s"])
-    assert kept in (100, 50, 25)
-    assert f"one frame of {200 // kept}" in read.held["data-scene"]["notes"][-1]
+    every = -(-200 // kept)
+    assert 1 < every < 10
+    rate = 1 / np.diff(whole.time_s)[0] / every
+    note = read.held["data-scene"]["notes"][-1]
+    assert f"one frame of {every} is in it, {rate:.2g} per second" in note
+    sizes = []
+    for denser in (every - 1, every):
+        packed = viewer_layers.packed(whole, np.zeros(3), denser)
+        sizes.append(sum(len(text) for text in packed.values() if isinstance(text, str)))
+    assert sizes[0] > 8_000 >= sizes[1]
     assert "one frame of" not in str(
         Stores(viewer.build("t", [layer()])).held["data-scene"]["notes"]
     )

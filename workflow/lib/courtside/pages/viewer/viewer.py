@@ -12,6 +12,7 @@ frame, speed, colours, shown layers, picked joint), `seek(time_s)`, `play()`, `p
 start of loading to the first picture).
 """
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -46,7 +47,7 @@ def build(
 
     `layers` are the methods to overlay, in the order of their switches; `ValueError` if there is
     none, or two have one name. Slider and keys step through the frames of the first. Layers larger
-    than 7.5 MB in total are thinned to every second, fourth ... frame, and the page says so.
+    than 7.5 MB in total are thinned to every second, third ... frame, and the page says so.
     Without a court a grid of 1 m is drawn. `notes` are lines below the picture, such as what a
     layer is.
     """
@@ -57,7 +58,11 @@ def build(
     middle = (low + high) / 2
     contents, every = _within(layers, middle)
     if every > 1:
-        notes = [*notes, f"To keep the page small, one frame of {every} is in it."]
+        shown_s = layers[0].time_s[::every]
+        rate = (len(shown_s) - 1) / (shown_s[-1] - shown_s[0]) if len(shown_s) > 1 else 0.0
+        each = f"one frame of {every} is in it, {rate:.2g} per second"
+        more = "for all frames of a part, make it a take of its own with trim_s"
+        notes = [*notes, f"To keep the page small, {each}; {more}."]
     scene = {
         "middle": middle,
         "low": low,
@@ -84,7 +89,7 @@ def _within(layers: Sequence[Layer], middle: NDArray) -> tuple[list[dict], int]:
         size = sum(len(text) for one in contents for text in one.values() if isinstance(text, str))
         if size <= LARGEST_BYTES or all(len(one["time_s"]) < 2 for one in contents):
             return contents, every
-        every *= 2
+        every = max(every + 1, math.ceil(every * size / LARGEST_BYTES))
 
 
 def _extent(layers: Sequence[Layer]) -> tuple[NDArray, NDArray]:
