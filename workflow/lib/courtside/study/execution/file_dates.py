@@ -26,7 +26,7 @@ def check_future(named: Iterable[StrPath]) -> None:
     there = [path for path in map(Path, dict.fromkeys(named)) if path.exists()]
     latest_s = time.time() + SLACK_S
     files_there = [(one.stat().st_mtime, str(one)) for one in there if one.is_file()]
-    below = (dated for one in there if one.is_dir() for dated in _dated(one))
+    below = (dated for one in there if one.is_dir() for dated in _dated(str(one)))
     late = {dated for dated in itertools.chain(files_there, below) if dated[0] > latest_s}
     if not late:
         return
@@ -38,7 +38,7 @@ def check_future(named: Iterable[StrPath]) -> None:
     )
 
 
-def _dated(folder: StrPath) -> Iterator[tuple[float, str]]:
+def _dated(folder: str) -> Iterator[tuple[float, str]]:
     """Yield date, s, and path of each file below a folder: one look at each, for there are many."""
     with os.scandir(folder) as every:
         for one in every:
