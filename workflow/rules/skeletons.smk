@@ -273,6 +273,7 @@ rule find_strokes:
     input:
         pose3d_npz=of_job(takes.measured),
         events_csv=paths.FOOT_EVENTS,
+        court=of_job(Job.court_file),
     output:
         strokes_csv=paths.STROKES,
         reactions_csv=paths.REACTIONS,

@@ -1,10 +1,13 @@
 """Verdicts: a fault of one camera is that camera's, its cause is named, and the rest is good."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from courtside.quality import causes, verdict
 from courtside.quality.calibration_doubts import Doubts
+from courtside.records.devices.clocks import Clock
 from courtside.study.execution.verdicts import ALL, COLUMNS, DOUBTFUL, FAILED, GOOD, WHOLE
 from fixtures.people import judged
 
@@ -25,6 +28,13 @@ def test_a_good_take_is_good_throughout():
     assert set(table["verdict"]) == {GOOD} and list(table.columns) == COLUMNS
     assert list(rows) == [(ALL, ALL), *((f"c{k}", ALL) for k in range(4)), (ALL, "p1"), (ALL, "p2")]
     assert table["sentence"].str.endswith(".").all()
+
+
+def test_a_camera_that_was_switched_on_later_is_good():
+    cameras = judged.footage(offset_s={1: 1.0})
+    cameras[1] = replace(cameras[1], clock=Clock(offset_s=-1.0))
+    rows, _ = wholes(cameras)
+    assert {row.verdict for row in rows.values()} == {GOOD}
 
 
 PLANTED = {

@@ -7,7 +7,7 @@ import pytest
 from courtside.footwork import feet
 from courtside.records import strokes, tables
 from courtside.strokes import reaction
-from fixtures.people import walking_feet
+from fixtures.people import walker, walking_feet
 
 COLUMNS = ["person", "event", "start_s", "start_sigma_s", "stop_s", "stop_sigma_s"]
 
@@ -76,6 +76,20 @@ def test_the_interval_from_a_simulated_hop_to_the_first_step_is_in_its_90_percen
     assert abs(error_s) < 0.04
     assert abs(error_s) < 1.645 * row.split_to_step_sigma_s
     assert row.to_step_s == pytest.approx(0.9, abs=0.03)
+
+
+def test_in_doubles_only_who_is_beyond_the_net_reacts():
+    four = walker.points(n_frames=60, n_persons=4)
+    y_m = np.array([2.0, 5.5, 9.0, 11.0])[:, None, None]
+    four.xyz[..., 1] = y_m
+    four.xyz[3] = np.nan  # of whom nobody knows the half
+    names = four.person_id.tolist()
+    feet = events(*((name, "split_step", 1.05, 1.2) for name in names))
+    for hitter, reacts in ((0, [2, 3]), (1, [2, 3]), (2, [0, 1, 3])):
+        rows = reaction.join(hits((names[hitter], 1.0, 0.03)), feet, four, 6.7)
+        assert rows.person.tolist() == [names[at] for at in reacts]
+    unnetted = reaction.join(hits((names[0], 1.0, 0.03)), feet, four, None)
+    assert unnetted.person.tolist() == names[1:]
 
 
 def test_alone_nobody_reacts():

@@ -1,6 +1,7 @@
 """Association over views and time: stick figures cross, occlude one another and leave."""
 
 import itertools
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -156,6 +157,32 @@ def test_three_people_and_two_bystanders_keep_their_identities(noise_px, dropout
         shares.append(stick_figures.right([i[:5] for i in found.index], truth, range(5)))
     assert np.mean(shares) >= 0.99
     assert min(shares) >= 0.98
+
+
+def test_two_teams_of_six_and_two_officials_are_each_followed_from_the_first_instant():
+    starts = [(x, y) for x in (-3, 0, 3) for y in (-5.5, -2, 2, 5.5)] + [(-5.5, 0), (5.5, 0)]
+    lines = [(np.array(at), np.add(at, (0.8, -0.6))) for at in starts]
+    time_s, people = walkers(*lines, seconds=4)
+    rng = np.random.default_rng(12)
+    cameras = cameras_around(4, rng)
+    xy, _ = stick_figures.seen(cameras, people, rng, noise_px=1.5)
+    found = associate(cameras, xy, time_s)
+    middle = people[:, ::3, stick_figures.TRUNK].mean(axis=2)
+    near = np.linalg.norm(found.path[:, None] - middle, axis=-1) < 0.3  # found, true, instants
+    assert near.mean(axis=2).max(axis=0).min() > 0.9  # by one found person each
+
+
+def test_more_people_than_can_be_followed_are_told(monkeypatch, caplog):
+    time_s, people = walkers(*(([x, 0], [x, 1]) for x in (-3, 0, 3)), seconds=2)
+    rng = np.random.default_rng(3)
+    cameras = cameras_around(3, rng)
+    xy, _ = stick_figures.seen(cameras, people, rng, noise_px=1.0, dropout=0)
+    assert associate(cameras, xy, time_s).placed.size == 3
+    assert not caplog.records
+    monkeypatch.setattr(association, "MOST_PEOPLE", 2)
+    assert associate(cameras, xy, time_s).placed.size == 2
+    (told,) = caplog.messages
+    assert re.match(r"c\d: expected at most 0 people at once, found 3; only 2 are followed", told)
 
 
 def test_a_camera_that_shows_another_person_in_its_only_row_is_left_out():

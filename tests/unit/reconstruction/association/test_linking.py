@@ -1,6 +1,7 @@
 """Candidates over time: exact places with gaps, crossings, and exchanged pieces."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 
@@ -52,6 +53,27 @@ def test_two_who_walk_apart_are_two_paths():
     paths = linking.link(found, piece, time_s, 4)
     assert sorted(map(sorted, persons_of(paths, person))) == [[0], [1]]
     assert (paths >= 0).sum() >= 56  # a person is believed in after some instants
+
+
+def test_all_of_a_team_are_known_at_the_first_instant():
+    people = [([x, 0, 1], [x, 2, 1]) for x in range(0, 24, 2)]
+    found, piece, time_s, person = candidates_of(lines(40, *people))
+    paths = linking.link(found, piece, time_s, 14)
+    assert sorted(person[paths[paths[:, 0] >= 0, 0]]) == list(range(12))
+
+
+def test_who_joins_a_team_is_followed_though_each_of_it_may_be_placed_in_several_ways():
+    people = [([x, 0, 1], [x, 2, 1]) for x in range(0, 24, 2)]
+    absent = {(11, instant) for instant in range(40)}
+    found, piece, time_s, person = candidates_of(lines(60, *people), missing=absent)
+    ways = [  # of one piece, nearly as likely
+        replace(found, xyz=found.xyz + 0.01 * k, view_cost=found.view_cost + 0.02 * k)
+        for k in range(3)
+    ]
+    order = np.argsort(np.tile(found.instant, 3), kind="stable")
+    paths = linking.link(candidates.concatenate(ways), np.tile(piece, (3, 1))[order], time_s, 14)
+    who = np.where(paths >= 0, np.tile(person, 3)[order][paths], -1)
+    assert (who[:, 45:] == 11).any(axis=0).all()  # half a second later
 
 
 class Worn:

@@ -266,11 +266,8 @@ def link(people: Sequence[NDArray]) -> NDArray:
     open_tracks: list[int] = []
     for at, found in enumerate(people):
         open_tracks = [k for k in open_tracks if at - last_seen[k] <= LONGEST_GAP]
-        costs = np.full((len(found), len(open_tracks)), np.inf)
-        for row, person in enumerate(found):
-            for column, k in enumerate(open_tracks):
-                costs[row, column] = _distance(tracks[k][last_seen[k]], person)
-        owner = _assign(costs)
+        before = [tracks[k][last_seen[k]] for k in open_tracks]
+        owner = _assign(_distances(np.stack(before), found)) if before and len(found) else {}
         for row, person in enumerate(found):
             if row in owner:
                 k = open_tracks[owner[row]]
@@ -288,21 +285,21 @@ def link(people: Sequence[NDArray]) -> NDArray:
     return _stacked(kept, people)
 
 
-def _distance(before: NDArray, after: NDArray) -> float:
-    """Return how far a person moved, as a share of the allowed; inf without a common point."""
-    step = np.linalg.norm(after[:, :2] - before[:, :2], axis=1)
-    both = np.isfinite(step)
-    if not both.any():
-        return np.inf
-    seen = before[np.isfinite(before[:, 0]), :2]
-    size_px = max(np.ptp(seen, axis=0).max(), LEAST_SIZE_PX)
-    return float(np.median(step[both]) / size_px / FARTHEST)
+def _distances(before: NDArray, after: NDArray) -> NDArray:
+    """Return how far (F, K) from each track (K, J, 3) each person (F, J, 3) is.
+
+    As a share of how far it may move; inf without a common point.
+    """
+    low, high = (edge(before[..., :2], axis=1) for edge in (np.nanmin, np.nanmax))
+    size_px = np.maximum((high - low).max(axis=1), LEAST_SIZE_PX)
+    step = np.sort(np.linalg.norm(after[:, None, :, :2] - before[..., :2], axis=-1), axis=-1)
+    n = np.isfinite(step).sum(axis=-1, keepdims=True)  # what is not finite is sorted last
+    middle = [np.take_along_axis(step, at, axis=-1) for at in (np.maximum(n - 1, 0) // 2, n // 2)]
+    return np.where(n > 0, sum(middle) / 2, np.inf)[..., 0] / size_px / FARTHEST
 
 
 def _assign(costs: NDArray) -> dict[int, int]:
     """Return {row: column} of the pairs that are near enough."""
-    if not costs.size:
-        return {}
     near = costs <= 1
     rows, columns = scipy.optimize.linear_sum_assignment(np.where(near, costs, 1e6))
     return {int(r): int(c) for r, c in zip(rows, columns, strict=True) if near[r, c]}

@@ -24,6 +24,7 @@ MOST_FRAMES = 600  # ASSUME: of all persons together; enough for shares known to
 AGREED = 0.05  # heights: as `triangulate.max_error_share`
 MIN_SCORE = 0.05  # of a keypoint that counts, as `triangulate.min_score`
 HALF = 0.5  # of the middles: fewer do not show a person
+ROUNDING_S = 1e-6  # of times that are converted between clocks
 MARGIN = 0.05  # of the picture: somebody nearer to its border may be cut off
 
 
@@ -37,6 +38,7 @@ class Seen:
     score: NDArray  # (C, P, T, K)
     rows: Sequence[NDArray]  # of each camera (R, T, K, 2) px: keypoints by tracklet
     height_px: NDArray  # (C, P, T)
+    filmed: NDArray  # (C, T): whether each camera ran
     at: NDArray  # (S,): the frames that are looked at
     # (C, P, S, K, 3) m: middles by all cameras but one and those of `out`; NaN where these disagree
     others: NDArray
@@ -48,14 +50,17 @@ class Seen:
         return shown(self.xy)
 
     def expected(self, camera: int) -> NDArray:
-        """Return whether a person is expected in a picture, (P, S): inside, or position unknown."""
+        """Return whether a person is expected in a picture, (P, S): inside, or position unknown.
+
+        Nobody is where the camera did not run.
+        """
         middle = np.ma.median(np.ma.masked_invalid(self.others[camera]), axis=2).filled(np.nan)
         unknown = np.isnan(middle).any(axis=-1)
         size = np.array(self.cameras[camera].size)
         with np.errstate(invalid="ignore"):
             place = project(self.cameras[camera], middle)
             inside = ((place > MARGIN * size) & (place < (1 - MARGIN) * size)).all(axis=-1)
-        return inside | unknown
+        return (inside | unknown) & self.filmed[camera, self.at]
 
     def errors(self, camera: int, xy: NDArray, model: Camera | None = None) -> NDArray:
         """Return keypoints (P, S, K, 2) minus the others' projections, heights."""
@@ -86,12 +91,17 @@ def gather(footage: Sequence[Footage], points: Keypoints3D, skeleton: Skeleton) 
     rows = [(track[:, :, sides[0]] + track[:, :, sides[1]]) / 2 for track in tracks]
     xy = (xy[:, :, :, sides[0]] + xy[:, :, :, sides[1]]) / 2
     score = np.minimum(score[:, :, :, sides[0]], score[:, :, :, sides[1]])
+    own_s = [clock.from_reference(points.time_s) for clock in clocks]
+    filmed = [
+        (time_s > view.time_s[0] - ROUNDING_S) & (time_s < view.time_s[-1] + ROUNDING_S)
+        for time_s, view in zip(own_s, views, strict=True)
+    ]
     step = max(1, len(points.time_s) * max(xy.shape[1], 1) // MOST_FRAMES)
     at = np.arange(0, len(points.time_s), step)
     nowhere = np.full((*xy[:, :, at].shape[:-1], 3), np.nan)
     limb_points = points.some_joints(sides[0] + sides[1])
-    whole = Seen(cameras, limb_points, xy, score, rows, height_px, at, nowhere)
-    return without(whole, ())
+    ran = np.stack(filmed)
+    return without(Seen(cameras, limb_points, xy, score, rows, height_px, ran, at, nowhere), ())
 
 
 def without(seen: Seen, out: tuple[int, ...]) -> Seen:

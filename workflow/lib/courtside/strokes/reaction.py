@@ -4,9 +4,13 @@ The feet are those of `courtside.records.footwork`: events with `start_s` (the l
 floor, of a split step; the foot leaves, of a step) and `stop_s` (the first foot lands).
 """
 
+from collections.abc import Hashable
+
 import numpy as np
 import pandas as pd
 
+from courtside.records.keypoints import skeleton
+from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.strokes import REACTION_COLUMNS
 
 # ASSUME: limits of a reaction to a stroke; no source is recorded.
@@ -14,10 +18,19 @@ EARLY_S = 0.3  # a split step may begin before the stroke: players foresee it,
 LANDS_EARLY_S = 0.1  # and land before it, or seem to
 LATEST_S = 1.2  # what begins later answers something else
 STEPS = ("step", "lunge")
+ABOUT_S = 0.5  # ASSUME: before and after a stroke nobody changes the half of the court
 
 
-def join(strokes: pd.DataFrame, events: pd.DataFrame) -> pd.DataFrame:
+def join(
+    strokes: pd.DataFrame,
+    events: pd.DataFrame,
+    points: Keypoints3D | None = None,
+    net_y_m: float | None = None,
+) -> pd.DataFrame:
     """Return a row for each stroke and each other person who has events: `REACTION_COLUMNS`.
+
+    With the skeletons `points` and the place of a net, partners of who hits have no row: those on
+    the same half of the court.
 
     `strokes` are of `courtside.strokes.detect.table`, `events` have the columns `person`, `event`,
     `start_s`, `start_sigma_s`, `stop_s`, `stop_sigma_s`. Intervals end when the split step lands
@@ -29,11 +42,26 @@ def join(strokes: pd.DataFrame, events: pd.DataFrame) -> pd.DataFrame:
     for hit in strokes.itertuples():
         after = strokes.time_s[strokes.time_s > hit.time_s]
         stop_s = min([hit.time_s + LATEST_S, *after])
-        for person in sorted(set(events.person.astype(str)) - {str(hit.person)}):
+        own_half = {str(hit.person), *_on_half(hit.person, hit.time_s, points, net_y_m)}
+        for person in sorted(set(events.person.astype(str)) - own_half):
             own = events[events.person.astype(str) == person]
             reacted = _reaction(hit.time_s, hit.sigma_s, own, stop_s)
             rows.append({"person": person, "opponent": hit.person, "hit_s": hit.time_s, **reacted})
     return pd.DataFrame(rows, columns=REACTION_COLUMNS)
+
+
+def _on_half(
+    person: Hashable, hit_s: float, points: Keypoints3D | None, net_y_m: float | None
+) -> set[str]:
+    """Return who is on the half of the court of a person at a hit; nobody without a net."""
+    if points is None or net_y_m is None:
+        return set()
+    about = np.abs(points.time_s - hit_s) <= ABOUT_S
+    trunk = np.isin(points.joints, skeleton.TRUNK)
+    y_m = np.ma.masked_invalid(points.xyz[:, about][:, :, trunk, 1])
+    beyond = np.sign(np.ma.median(y_m, axis=(1, 2)).filled(np.nan) - net_y_m)
+    own = beyond[points.person_id == person]
+    return set(points.person_id[beyond == own].astype(str)) if len(own) else set()
 
 
 def _reaction(hit_s: float, sigma_s: float, own: pd.DataFrame, stop_s: float) -> dict[str, float]:

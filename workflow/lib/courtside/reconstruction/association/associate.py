@@ -12,6 +12,7 @@ from courtside.geometry.camera import Camera
 from courtside.reconstruction.association import appearance, candidates, identity, lengths, linking
 from courtside.reconstruction.association.rows import Rows, describe
 from courtside.study.errors import InputError
+from courtside.study.execution import log
 
 # ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
 # Spacing of the instants at which rows are triangulated: costs grow with their number.
@@ -19,7 +20,7 @@ EVERY_S = 0.1
 # Persons followed beyond the rows that one camera shows at once: they come and go, and cameras see
 # different ones.
 EXTRA = 2
-MOST_PEOPLE = 10  # followed at once; each costs time in every history
+MOST_PEOPLE = 40  # followed at once; each costs time in every history
 FAR_FROM_COURT_M = 6.0  # places further beyond the lines are not triangulated well
 ALONE = 4.0  # bonus (log-likelihood) of a row that alone followed the person in a frame
 LEARNED_FROM = 200  # instants: from which colours of clothes are learned
@@ -87,7 +88,7 @@ def associate(
     found = _near_court(found, court)
     net = court.net["y_m"] if court is not None and court.net else None
     piece = _pieces(rows, found, instants)
-    chosen = linking.link(found, piece, time_s[instants], _slots(rows), net, looks)
+    chosen = linking.link(found, piece, time_s[instants], _slots(cameras, rows), net, looks)
     is_ray = found.is_ray[chosen] if len(found.instant) else np.zeros_like(chosen, bool)
     ray = (chosen >= 0) & is_ray
     seen_alone, chosen = np.where(ray, chosen, -1), np.where(ray, -1, chosen)
@@ -127,10 +128,20 @@ def on_frames(index: NDArray, time_s: NDArray, frame_s: NDArray) -> NDArray:
     return np.where(inside, np.where((own < 0) & free, other, own), -1)
 
 
-def _slots(rows: Sequence[Rows]) -> int:
+def _slots(cameras: Sequence[Camera], rows: Sequence[Rows]) -> int:
     """Return how many people may be in a take: as many as a camera shows at once, and some more."""
-    at_once = max(int(r.present.sum(axis=0).max(initial=0)) for r in rows)
-    return min(max(at_once, 1) + EXTRA, MOST_PEOPLE)
+    shown = [int(r.present.sum(axis=0).max(initial=0)) for r in rows]
+    at_once = max(*shown, 1)
+    if at_once + EXTRA > MOST_PEOPLE:
+        log.logger.warning(
+            "%s: expected at most %d people at once, found %d; only %d are followed, who may be "
+            "taken for others; leave spectators out of the pictures",
+            cameras[int(np.argmax(shown))].name,
+            MOST_PEOPLE - EXTRA,
+            at_once,
+            MOST_PEOPLE,
+        )
+    return min(at_once + EXTRA, MOST_PEOPLE)
 
 
 def _unplaced(cameras, xy, time_s, instants, alone: bool) -> Association:

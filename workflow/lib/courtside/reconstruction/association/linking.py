@@ -13,10 +13,14 @@ from courtside.reconstruction.association.rows import Rows
 # ASSUME: this block has no source but the development takes (CONTRIBUTING.md). Costs are negative
 # log-likelihoods.
 HISTORIES = 60  # kept after each instant
+# Further ones kept of each instant of birth within this time: at first, a new person costs more
+# than many variants of all others together.
+NEWBORN, NEWBORN_S = 5, 0.5
 HOPELESS = 20.0  # histories that cost this much more than the best are dropped
 PLACE_M = 0.07  # standard deviation of a body about its prediction one instant later
 ACCELERATION_MS2 = 6.0  # of a player, for predictions over gaps
 LARGEST_M = 4.0  # limit of the prediction's standard deviation, for persons lost for long
+WARM_S = 5.0  # at first, backwards: births take instants, and of many people one after another
 COAST_S = 0.3  # a lost person is expected to keep the velocity for this long
 BIRTH = 20.0  # cost of a new person: more than that of finding a lost one again
 SHORT = 2.0  # and at most this much an instant, or takes of half a second would have no people
@@ -27,7 +31,8 @@ EXCHANGE = 10.0  # cost of an uncut piece that changes its owner
 NET_CROSSED = 3.0  # cost of a player who changes the half of the court
 ONE_VIEW = 0.9  # rays with a larger cosine between them count as one view
 GAIN = 0.5  # of the velocity's update
-MOST = 16  # candidates considered in one instant
+# Candidates considered in one instant: at least so many, or so many for each person followed.
+MOST, MOST_EACH = 16, 4
 REMEMBERED = 30  # instants: a person's colours are the mean of about so many
 
 
@@ -37,6 +42,7 @@ class _Histories:
     def __init__(self, slots: int, n_cameras: int, n_colours: int) -> None:
         self.cost = np.zeros(1)
         self.alive = np.zeros((1, slots), bool)
+        self.born_s = np.full(1, -np.inf)  # of the last birth
         self.place = np.zeros((1, slots, 3))
         self.velocity = np.zeros((1, slots, 3))
         self.time_s = np.zeros((1, slots))  # of the last candidate
@@ -72,18 +78,21 @@ def link(
     constant-velocity prediction, and a price for each uncut tracklet piece that changes its owner,
     so that a view without a crossing carries identities through a crossing in another view. While
     only one view sees a person, its rays continue the history; the position along a ray is free. If
-    two people are behind one another, both may use the one visible row; its cost counts once.
+    two people are behind one another, both may use the one visible row; its cost counts once. It
+    starts some seconds after the first instant and goes back to it: who is there at the first
+    instant is known then.
     """
     colours = looks.middle(candidates) if looks else np.zeros((len(piece), 0))
     state = _Histories(slots, piece.shape[1], colours.shape[1])
     birth = min(BIRTH, SHORT * len(time_s))
     first = np.searchsorted(candidates.instant, np.arange(len(time_s) + 1))
+    most = max(MOST, MOST_EACH * slots)
+    warm = np.flatnonzero(time_s < time_s[0] + WARM_S)[:0:-1]
+    order = np.concatenate([warm, np.arange(len(time_s))])
+    running_s = np.concatenate([2 * time_s[0] - time_s[warm], time_s])
     parents, choices = [], []
-    for at, now_s in enumerate(time_s):
-        here = np.arange(first[at], first[at + 1])
-        if len(here) > MOST:
-            total = candidates.view_cost[here].sum(axis=1) + 99 * candidates.is_ray[here]
-            here = np.sort(here[np.argsort(total, kind="stable")[:MOST]])
+    for at, now_s in zip(order, running_s, strict=True):
+        here = _best(candidates, np.arange(first[at], first[at + 1]), most)
         if len(here):
             offered, seen = candidates.subset(here), colours[here]
             own = _own_cost(state, offered, now_s, birth, net_y_m)
@@ -94,7 +103,13 @@ def link(
             choice = np.full((len(parent), slots), -1)
         parents.append(parent)
         choices.append(np.where(choice >= 0, here[choice] if len(here) else -1, -1))
-    return _trace(state, parents, choices, slots)
+    return _trace(state, parents, choices, slots)[:, len(warm) :]
+
+
+def _best(candidates: Candidates, here: NDArray, most: int) -> NDArray:
+    """Return those of the candidates of an instant that are considered."""
+    total = candidates.view_cost[here].sum(axis=1) + 99 * candidates.is_ray[here]
+    return np.sort(here[np.argsort(total, kind="stable")[:most]])
 
 
 def _advance(state, own, offered, piece, colours, now_s) -> tuple[NDArray, NDArray]:
@@ -110,7 +125,7 @@ def _advance(state, own, offered, piece, colours, now_s) -> tuple[NDArray, NDArr
     _move(state, choice, offered, now_s)
     _own(state, pieces[order], shared[order])
     _remember(state, np.where(shared[order].any(axis=2), -1, choice), colours)
-    different = _different(state, choice)
+    different = _different(state, choice, now_s)
     state.keep(different)
     state.cost = state.cost - state.cost.min()
     return parent[different], choice[different]
@@ -178,7 +193,7 @@ def _spread_m(gone_s: NDArray) -> NDArray:
 def _assign(state, own, offered, now_s) -> tuple[NDArray, NDArray, NDArray]:
     """Return parents (H',), choices (H', S) and costs (H',) of the best assignments."""
     count, slots, n = own.shape
-    parent, cost = np.arange(count), state.cost
+    parent, cost, born_s = np.arange(count), state.cost, state.born_s
     choice = np.full((count, slots), -1)
     taken_rows = np.zeros((count, n, offered.row.shape[1]), bool)
     same = (offered.row[:, None] == offered.row[None]) & (offered.row[:, None] >= 0)
@@ -191,8 +206,12 @@ def _assign(state, own, offered, now_s) -> tuple[NDArray, NDArray, NDArray]:
         every = np.concatenate([missed[parent, slot, None], own[parent, slot] + lost], axis=1)
         every += cost[:, None]
         near = np.flatnonzero(every <= every.min() + HOPELESS)
-        best = near[np.argsort(every.flat[near], kind="stable")[: 3 * HISTORIES]]
+        best = near[np.argsort(every.flat[near], kind="stable")]
         source, taken = np.divmod(best, n + 1)
+        fresh = (taken > 0) & ~state.alive[parent[source], slot]
+        born_s = np.where(fresh, now_s, born_s[source])
+        kept = _kept(born_s, now_s, 3 * HISTORIES)
+        best, source, taken, born_s = best[kept], source[kept], taken[kept], born_s[kept]
         parent, cost, choice = parent[source], every.flat[best], choice[source]
         choice[:, slot] = taken - 1
         taken_rows = taken_rows[source] | np.where(
@@ -215,6 +234,7 @@ def _move(state: _Histories, choice: NDArray, offered: Candidates, now_s: float)
     velocity = np.where(gone_s > COAST_S, 0.5 * speed, old + GAIN * (speed - old))
     state.velocity[history, slot] = np.where(born, 0.0, velocity)
     state.place[history, slot], state.time_s[history, slot] = new, now_s
+    state.born_s[history[born[:, 0]]] = now_s
     state.alive[history, slot] = True
     # Rays of one view leave the place along them open; a second view closes it.
     before, ray = state.ray[history, slot], direction.any(axis=1)
@@ -248,17 +268,22 @@ def _remember(state: _Histories, choice: NDArray, colours: NDArray) -> None:
     state.worn = np.where(np.expand_dims(known, 2), new, state.worn)
 
 
-def _different(state: _Histories, choice: NDArray) -> NDArray:
+def _different(state: _Histories, choice: NDArray, now_s: float) -> NDArray:
     """Return the best histories; of those with the same present state only the best one."""
-    seen, kept = set(), []
+    first: dict[bytes, int] = {}
     for at in range(len(choice)):  # the cheapest comes first
         key = choice[at].tobytes() + state.owned[at].tobytes() + state.time_s[at].tobytes()
-        if key not in seen:
-            seen.add(key)
-            kept.append(at)
-            if len(kept) == HISTORIES:
-                break
-    return np.array(kept)
+        first.setdefault(key, at)
+    different = np.array(list(first.values()))
+    return different[_kept(state.born_s[different], now_s, HISTORIES)]
+
+
+def _kept(born_s: NDArray, now_s: float, most: int) -> NDArray:
+    """Return the histories kept, of those of the last births (H,), s, the cheapest first."""
+    kept = np.arange(len(born_s)) < most
+    for birth_s in np.unique(born_s[now_s - born_s < NEWBORN_S]):
+        kept[np.flatnonzero(born_s == birth_s)[:NEWBORN]] = True
+    return np.flatnonzero(kept)
 
 
 def _trace(state, parents, choices, slots) -> NDArray:

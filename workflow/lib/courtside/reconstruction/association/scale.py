@@ -4,7 +4,7 @@ In a calibration in feet, or without a scale, only lengths are wrong: all views 
 """
 
 from collections.abc import Sequence
-from itertools import combinations, product
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,21 +43,22 @@ def trunks(cameras: Sequence[Camera], xy: Sequence[NDArray], names: Sequence[str
     at = np.unique(np.linspace(0, xy[0].shape[1] - 1, MOST_INSTANTS).astype(int))
     found: list[NDArray] = []
     for one, other in combinations(range(len(cameras)), 2):
-        for first, second in product(xy[one], xy[other]):
-            pair = np.stack([_ends(first[at], ends), _ends(second[at], ends)])
-            views = [cameras[one], cameras[other]]
-            xyz = triangulate_all(views, pair.reshape(2, -1, 2)).reshape(-1, 2, 3)
-            seen = np.stack([project(camera, xyz) for camera in views])
-            off_px = np.linalg.norm(seen - pair, axis=-1).max(axis=2)
-            size_px = np.linalg.norm(pair[:, :, 0] - pair[:, :, 1], axis=-1)
-            good = (off_px <= AGREE * size_px).all(axis=0)
-            found.append(np.linalg.norm(xyz[good, 0] - xyz[good, 1], axis=-1))
+        views = [cameras[one], cameras[other]]
+        # Each row of one camera with each of the other, (2, P, Q, n, 2, 2).
+        first, second = _ends(xy[one][:, at], ends), _ends(xy[other][:, at], ends)
+        pair = np.stack(np.broadcast_arrays(first[:, None], second[None]))
+        xyz = triangulate_all(views, pair.reshape(2, -1, 2)).reshape(*pair.shape[1:-1], 3)
+        seen = np.stack([project(camera, xyz) for camera in views])
+        off_px = np.linalg.norm(seen - pair, axis=-1).max(axis=-1)
+        size_px = np.linalg.norm(pair[..., 0, :] - pair[..., 1, :], axis=-1)
+        good = (off_px <= AGREE * size_px).all(axis=0)
+        found.append(np.linalg.norm(xyz[good][:, 0] - xyz[good][:, 1], axis=-1))
     return np.concatenate(found) if found else np.empty(0)
 
 
 def _ends(joints: NDArray, ends: Sequence[int]) -> NDArray:
-    """Return the middles of shoulders and of hips, (T, 2, 2) px; `ends` are of `skeleton.TRUNK`."""
-    return joints[:, list(ends)].reshape(len(joints), 2, 2, 2).mean(axis=2)
+    """Return the middles of shoulders and of hips, (P, n, 2, 2) px; `ends` as `skeleton.TRUNK`."""
+    return joints[:, :, list(ends)].reshape(*joints.shape[:2], 2, 2, 2).mean(axis=3)
 
 
 def check(
