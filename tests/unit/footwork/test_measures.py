@@ -47,7 +47,7 @@ def test_counts_and_times_of_a_run():
 def test_every_measure_is_described():
     found = values(run(), court.read(CONFIG / "courts" / "badminton.yaml")).index
     assert {"jumps", "swing_time_right", "steps_rear_left", "rally_1_step_rate"} <= set(found)
-    text = (CONFIG / "README.md").read_text(encoding="utf-8")
+    text = (CONFIG.parent / "docs" / "results.md").read_text(encoding="utf-8")
     dictionary = data_dictionary.Dictionary(text)
     assert dictionary.undescribed([*found, "hops"], data_dictionary.OF_FOOTWORK) == ["hops"]
 
