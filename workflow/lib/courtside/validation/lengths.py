@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from courtside.records.devices.clocks import FEWEST_FRAMES
-from courtside.video.glance import Glance
+from courtside.video.glance import LONGEST_STEP, LONGEST_STEP_S, Glance
 
 # Started and stopped together, cameras differ by one frame; half a frame more for rounding.
 SPARE_FRAMES = 1.5
@@ -115,8 +115,8 @@ def _odd(look: Glance) -> Iterator[str]:
     if look.duration_s and look.late_s > LATE_SHARE * look.duration_s:
         yield (
             f"{look.late_s:.1f} s of {look.duration_s:.1f} s are gaps between frames, longer than "
-            "45 ms and 1.5 usual intervals, in which joints are missing: fix rate and exposure, in "
-            "more light"
+            f"{1000 * LONGEST_STEP_S:g} ms and {LONGEST_STEP:g} usual intervals, in which joints "
+            "are missing: fix rate and exposure, in more light"
         )
 
 
