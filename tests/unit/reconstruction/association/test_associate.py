@@ -182,7 +182,8 @@ def test_more_people_than_can_be_followed_are_told(monkeypatch, caplog):
     monkeypatch.setattr(association, "MOST_PEOPLE", 2)
     assert associate(cameras, xy, time_s).placed.size == 2
     (told,) = caplog.messages
-    assert re.match(r"c\d: expected at most 0 people at once, found 3; only 2 are followed", told)
+    line = r"camera c\d: expected at most 0 people at once, found 3; only 2 are followed"
+    assert re.match(line, told)
 
 
 def test_a_camera_that_shows_another_person_in_its_only_row_is_left_out():

@@ -134,8 +134,8 @@ def _slots(cameras: Sequence[Camera], rows: Sequence[Rows]) -> int:
     at_once = max(*shown, 1)
     if at_once + EXTRA > MOST_PEOPLE:
         log.logger.warning(
-            "%s: expected at most %d people at once, found %d; only %d are followed, who may be "
-            "taken for others; leave spectators out of the pictures",
+            "camera %s: expected at most %d people at once, found %d; only %d are followed, who "
+            "may be taken for others; leave spectators out of the pictures",
             cameras[int(np.argmax(shown))].name,
             MOST_PEOPLE - EXTRA,
             at_once,
