@@ -33,7 +33,7 @@ except ImportError:  # Windows does not tell the memory
 sys.path += [str(ROOT / "workflow" / "lib"), str(ROOT / "workflow" / "scripts")]
 
 from courtside.evaluation.numbers.players import NETWORK
-from courtside.records.keypoints import keypoints, skeleton
+from courtside.records.keypoints import keypoints, people, skeleton
 
 LINE = "{step:<22}{minutes:>8g} min{n_frames:>8}{ms_per_frame:>9.3f} ms{peak_mib:>8.0f} MiB"
 
@@ -96,9 +96,10 @@ def steps(folder, given):
         (given.cameras, pose2d, sync),
         {"synchronised": False, "stated": {}, **parameters["synchronise_cameras"]},
     )
-    who = {"several": len(given.persons) > 1, "calibration": given.cameras.parent.name}
+    who = {"several": False, "calibration": given.cameras.parent.name}
     yield "associate_people", (paths, made["people"]), who
-    fusion = {"sex_of": dict.fromkeys(given.persons), "fusion": {"used": names, "rule": "robust"}}
+    persons = people.read(made["people"]).person_id.tolist()  # the path jumps at each repetition
+    fusion = {"sex_of": dict.fromkeys(persons), "fusion": {"used": names, "rule": "robust"}}
     fusion |= {"recorded": True, **parameters["triangulate"]}
     yield "triangulate", (paths, made["raw"]), fusion
     tables = {key: folder / "made" / f"{key}.csv" for key in ("cutoffs", "frames", "summary")}
@@ -114,7 +115,7 @@ def steps(folder, given):
         skeletons=made["last"], raw=made["raw"], cutoffs=tables["cutoffs"],
         skeleton=shape, derived=table, cameras=given.cameras, covariance=given.covariance,
     )  # fmt: skip
-    sex_of = dict.fromkeys(given.persons, "m")
+    sex_of = dict.fromkeys(persons, "m")
     measured = {"max_gap_s": filtering["max_gap_s"], "stage": "corrected", "sex_of": sex_of}
     yield "measure_kinematics", (paths, tables["frames"], tables["summary"]), measured
 
@@ -160,7 +161,6 @@ def main():
     given = SimpleNamespace(
         cameras=calibration / "cameras.toml",
         covariance=covariance if covariance.is_file() else None,
-        persons=["person-1"],
         model=asked.model,
         skeleton=skeleton_of(views[0]),
     )
