@@ -37,13 +37,15 @@ class Errors:
     covariance: NDArray  # (T, J, 3, 3) m2, each joint's own; NaN where unknown
     network: NDArray  # (T, J) m2: the network's variance per axis
     alike: NDArray  # (J, J): correlation of the network's errors
-    shared: NDArray  # (T, J, 3, R) m: of R causes that all joints share, of standard deviation 1
+    # By joint (T, 3, R) m: of R causes that all joints share, of standard deviation 1. Joints other
+    # than those of limbs, most of them, have one NaN in memory.
+    shared: Sequence[NDArray]
 
     def variance(self, joints: Sequence[int], slopes: Sequence[NDArray]) -> NDArray:
         """Return the variance (T,) of a value by its slopes (T, 3) per metre of some joints."""
         pairs = list(zip(joints, slopes, strict=True))
         own = sum(np.einsum("ti,tij,tj->t", s, self.covariance[:, at], s) for at, s in pairs)
-        cause = sum(np.einsum("ti,tir->tr", s, self.shared[:, at]) for at, s in pairs)
+        cause = sum(np.einsum("ti,tir->tr", s, self.shared[at]) for at, s in pairs)
         total = own + np.sum(np.square(cause), axis=-1)
         sigma = np.sqrt(self.network)
         for (one, first), (other, second) in product(pairs, pairs):
@@ -56,7 +58,7 @@ def independent(covariance: NDArray) -> Errors:
     """Return errors that are independent between joints; `covariance` is (T, J, 3, 3) m2."""
     n_frames, n_joints = covariance.shape[:2]
     nothing = np.zeros((n_frames, n_joints))
-    return Errors(covariance, nothing, np.eye(n_joints), np.zeros((n_frames, n_joints, 3, 0)))
+    return Errors(covariance, nothing, np.eye(n_joints), [np.zeros((n_frames, 3, 0))] * n_joints)
 
 
 def with_frame(field: Field, frame: NDArray) -> Field:
@@ -78,13 +80,20 @@ def of_person(points: Keypoints3D, person: int, field: Field | None = None) -> E
     Those of cameras are of limb joints alone, NaN elsewhere.
     """
     network = NETWORK_SHARE * variances(points.covariance_network[person])
-    shared = np.nan_to_num(points.offset[person])[..., None]
+    known = points.joints.tolist()
+    shared = list(np.nan_to_num(points.offset[person]).swapaxes(0, 1)[..., None])
     if field is not None:
-        limbs = np.isin(points.joints, skeleton.JOINTS)[:, None]
-        places = np.where(limbs, points.xyz[person], np.nan)
-        shared = np.concatenate([shared, over(field, places)], axis=-1)
+        for at, joint in enumerate(known):
+            shared[at] = _with_cameras(shared[at], joint, points.xyz[person, :, at], field)
     found = independent(points.covariance_2d[person])
-    return replace(found, network=network, alike=alike(points.joints.tolist()), shared=shared)
+    return replace(found, network=network, alike=alike(known), shared=shared)
+
+
+def _with_cameras(shared: NDArray, joint: str, xyz: NDArray, field: Field) -> NDArray:
+    """Return causes (T, 3, R) of one joint, at places (T, 3), with those of the cameras."""
+    if joint not in skeleton.JOINTS:
+        return np.broadcast_to(np.nan, (len(xyz), 3, 1))
+    return np.concatenate([shared, over(field, xyz)], axis=-1)
 
 
 def variances(covariance: NDArray) -> NDArray:

@@ -121,8 +121,9 @@ def _without_one(
     for left_out in range(n_cameras):
         rest = np.where(np.arange(n_cameras)[:, None] == left_out, 0.0, weight)
         enough = ((rest > 0).sum(axis=0) >= 2) & (weight[left_out] > 0)
-        at = np.flatnonzero(enough & np.isfinite(flat[:, 0]))
-        if len(at):
+        there = np.flatnonzero(enough & np.isfinite(flat[:, 0]))
+        for start in range(0, len(there), triangulation.BATCH):
+            at = there[start : start + triangulation.BATCH]
             views = triangulation.Views(cameras, xy.reshape(n_cameras, -1, 2)[:, at], rest[:, at])
             place = flat[at]
             for _ in range(STEPS):
