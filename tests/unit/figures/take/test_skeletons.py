@@ -29,6 +29,18 @@ def test_left_and_right_have_their_colours():
     assert sum("z = 2.0 m" in label for label in labels) == 3
 
 
+def test_several_persons_are_named_at_their_last_place():
+    record = walker.points(n_persons=2)
+    record.xyz[1, -3:] = np.nan
+    drawing = skeletons.draw(record, scene.ring(3), walker.SKELETON)
+    named = {text.get_text(): text.xy for text in drawing.axes[1].texts}
+    for person, last in (("p1", -1), ("p2", -4)):
+        at = record.person_id.tolist().index(person)
+        np.testing.assert_allclose(named[person], record.xyz[at, last, :, :2].mean(axis=0))
+    alone = skeletons.draw(walker.points(), scene.ring(3), walker.SKELETON)
+    assert "p1" not in {text.get_text() for text in alone.axes[1].texts}
+
+
 def test_labels_of_the_panels_do_not_overlap():
     drawing = skeletons.draw(walker.points(), scene.ring(3), walker.SKELETON)
     drawing.draw_without_rendering()

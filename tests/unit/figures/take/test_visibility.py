@@ -46,6 +46,13 @@ def test_the_picture_shows_the_fewest_views():
     np.testing.assert_array_equal(shown, record.n_views[0].T)
 
 
+def test_lines_of_many_cameras_differ():
+    record = walker.points()
+    drawing = visibility.draw(visibility.table(record, scores(record, 12)), walker.SKELETON)
+    looks = {(line.get_color(), line.get_linestyle()) for line in drawing.axes[0].lines}
+    assert len(looks) == 12
+
+
 def test_the_least_views_of_several_persons_are_named_so():
     record = walker.points(n_persons=2)
     record.n_views[0, 2], record.n_views[1, 6] = 1, 0

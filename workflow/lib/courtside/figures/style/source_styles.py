@@ -19,7 +19,7 @@ COLOURS = {
 OTHER = "#888888"
 ENDINGS = {"-rgb": "rgb", "-depth": "rgbd", "-corrected": "corrected"}
 WHOLE = {"mocopi": "inertial", "nuitrack": "nuitrack", "cameras": "cameras", "truth": "truth"}
-LINES, MARKERS = ("-", "--", "-.", ":"), "osD^v"
+MARKERS = "osD^v"
 
 
 @dataclass(frozen=True)
@@ -60,5 +60,6 @@ def looks(sources: Iterable[str], kinds: dict[str, str] | None = None) -> dict[s
         kind = kind_of(source, kinds)
         at = count[kind] = count.get(kind, -1) + 1
         colour = COLOURS.get(kind, OTHER)
-        found[source] = Look(kind, colour, LINES[at % len(LINES)], MARKERS[at % len(MARKERS)])
+        line, marker = (looks[at % len(looks)] for looks in (style.LINES, MARKERS))
+        found[source] = Look(kind, colour, line, marker)
     return found

@@ -18,6 +18,7 @@ DOTS_PER_INCH = 150
 MM_PER_INCH = 25.4
 # Okabe & Ito 2008: told apart with any colour vision.
 CYCLE = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
+LINES = ("-", "--", "-.", ":")
 LEFT, RIGHT, MIDDLE = "#0072B2", "#D55E00", "#666666"
 DETECTED_BGR, REPROJECTED_BGR, REJECTED_BGR = (0, 255, 255), (255, 120, 0), (0, 0, 255)
 SETTINGS = {
@@ -69,6 +70,12 @@ def legend_below(axis: Axes, below_mm: float, **look: Any) -> None:
     inches = axis.get_figure(root=True).dpi_scale_trans
     below = axis.transAxes + ScaledTranslation(0, -below_mm / MM_PER_INCH, inches)
     axis.legend(loc="upper center", bbox_to_anchor=(0.5, 0), bbox_transform=below, **look)
+
+
+def line_look(at: int) -> dict[str, str]:
+    """Return colour and line style of the line of an index: 28 that differ, then these again."""
+    again, colour = divmod(at, len(CYCLE))
+    return {"color": CYCLE[colour], "linestyle": LINES[again % len(LINES)]}
 
 
 def side_colour(*joints: str) -> str:

@@ -17,6 +17,7 @@ from courtside.records.keypoints.skeleton import Skeleton
 PATHS = ("left_wrist", "right_wrist", "left_ankle", "right_ankle")
 PERCENTILES = (0.5, 99.5)  # of the joints' positions, shown: without gross outliers
 ARROW_POINTS, AWAY_POINTS = 18, 5  # of a camera's direction, and from its tip to the name
+NAME_POINTS = 9  # from a person's last place to the name
 BELOW_MM = 10.5  # from the panel to the legend, for the numbers and the label of the axis
 N_POSES = 5
 DEEP_M = 0.5  # the box of people on the floor begins so far below it; others are not on z = 0
@@ -103,6 +104,8 @@ def _draw_above(axis: Axes, points: Keypoints3D, cameras: list[Camera], skeleton
         axis.plot(*path[:, :2].T, color=colour, linewidth=0.6, alpha=0.8)
     for camera in cameras:
         _draw_camera(axis, camera)
+    if len(points.person_id) > 1:
+        _name_persons(axis, points)
     for label, colour in (("left", style.LEFT), ("right", style.RIGHT), ("middle", style.MIDDLE)):
         axis.plot([], [], color=colour, label=label)
     style.legend_below(axis, BELOW_MM, ncols=3)
@@ -110,6 +113,17 @@ def _draw_above(axis: Axes, points: Keypoints3D, cameras: list[Camera], skeleton
     axis.set_aspect("equal", adjustable="datalim")
     axis.margins(0.12)
     axis.grid()
+
+
+def _name_persons(axis: Axes, points: Keypoints3D) -> None:
+    """Write each person's name where the person is last."""
+    middle = np.ma.masked_invalid(points.xyz[..., :2]).mean(axis=2).filled(np.nan)
+    for person, path in zip(points.person_id, middle, strict=True):
+        known = path[np.isfinite(path).all(axis=1)]
+        if len(known):
+            box = {"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 0.6}
+            look: dict = {"textcoords": "offset points", "ha": "center", "fontsize": 7, "bbox": box}
+            axis.annotate(str(person), known[-1], (0, NAME_POINTS), **look)
 
 
 def _draw_camera(axis: Axes, camera: Camera) -> None:

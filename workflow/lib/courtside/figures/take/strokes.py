@@ -56,7 +56,7 @@ def draw(rows: pd.DataFrame) -> Figure:
     drawing = style.figure(HEIGHT_MM)
     axes = drawing.subplots(len(LINES), len(KINDS), sharex=True, sharey="row")
     people = list(dict.fromkeys(rows.person))
-    colour = {person: style.CYCLE[k % len(style.CYCLE)] for k, person in enumerate(people)}
+    look = {person: style.line_look(at) for at, person in enumerate(people)}
     for column, (overhead, words) in enumerate(KINDS.items()):
         own = rows[rows.overhead == overhead]
         n_strokes = len(own.groupby(["person", "stroke"]))
@@ -65,7 +65,7 @@ def draw(rows: pd.DataFrame) -> Figure:
         for axis, name in zip(axes[:, column], LINES, strict=True):
             axis.axvline(0, color=style.MIDDLE, linewidth=0.8, linestyle=":")
             for person, part in own.groupby("person", sort=False):
-                _draw_lines(axis, part, name, colour[person], str(person))
+                _draw_lines(axis, part, name, look[person], str(person))
     for axis, words in zip(axes[:, 0], LINES.values(), strict=True):
         axis.set_ylabel(words)
         axis.set_ylim(bottom=0)
@@ -75,18 +75,20 @@ def draw(rows: pd.DataFrame) -> Figure:
     return drawing
 
 
-def _draw_lines(axis: Axes, part: pd.DataFrame, name: str, colour: str, person: str) -> None:
+def _draw_lines(
+    axis: Axes, part: pd.DataFrame, name: str, look: dict[str, str], person: str
+) -> None:
     """Draw a person's strokes; their mean where all are known: else it jumps where one ends."""
     wide = part.pivot(index="phase_s", columns="stroke", values=name)
-    each = axis.plot(wide.index, wide, color=colour, linewidth=0.5, alpha=0.6)
+    each = axis.plot(wide.index, wide, **look, linewidth=0.5, alpha=0.6)
     each[0].set_label(f"{person}: each stroke")
     n_strokes = wide.shape[1]
     if n_strokes < 2:
         return
     middle = wide.mean(axis=1, skipna=False)
     if middle.notna().any():
-        axis.plot(wide.index, middle, color=colour, linewidth=1.6, label=f"{person}: mean of all")
+        axis.plot(wide.index, middle, **look, linewidth=1.6, label=f"{person}: mean of all")
     if n_strokes >= FEWEST:
         reach = WITHIN_90 * wide.std(axis=1, skipna=False)
         low, high = middle - reach, middle + reach
-        axis.fill_between(wide.index, low, high, color=colour, alpha=0.15, lw=0)
+        axis.fill_between(wide.index, low, high, color=look["color"], alpha=0.15, lw=0)

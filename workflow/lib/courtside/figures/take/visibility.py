@@ -49,9 +49,10 @@ def draw(rows: pd.DataFrame, skeleton: Skeleton) -> Figure:
     upper, lower = drawing.subplots(2, 1, sharex=True, height_ratios=[1, 0.07 * len(joints) + 0.6])
     limbs = rows[rows.joint.isin(skeleton.groups["limbs"])]
     names = [name for name in rows.columns if name.startswith("score_")]
-    for name, colour in zip(names, np.resize(style.CYCLE, len(names)), strict=True):
+    for at, name in enumerate(names):
         mean = limbs.groupby("time_s")[name].mean()
-        upper.plot(mean.index, mean, color=colour, linewidth=1, label=name.removeprefix("score_"))
+        label = name.removeprefix("score_")
+        upper.plot(mean.index, mean, **style.line_look(at), linewidth=1, label=label)
     upper.set(ylabel="mean score", ylim=(0, 1.02))
     upper.set_title("Confidence of the network, mean over the 12 limb joints")
     drawing.legend(loc="outside upper right", ncols=min(len(names), A_ROW))
