@@ -28,6 +28,12 @@ def test_wildcards_name_session_take_camera_device_and_network(job, study):
     assert other.device.kind == "inertial"
 
 
+def test_the_device_of_a_file_of_all_takes_is_one_of_any_take(job):
+    assert job(session="single-view-tiny", device="d415").device.kind == "rgbd"
+    with pytest.raises(InputError, match=r"expected a device of .*d415.*, found 'suit'"):
+        assert job(session="single-view-tiny", device="suit").device
+
+
 def test_a_step_has_the_overrides_of_the_session(job):
     assert job(session="plain-tiny").step("extract_features")["first_octave"] == -1
     assert job(session="players-tiny").some("extract_features", ["first_octave"]) == {

@@ -48,8 +48,10 @@ class Job:
 
     @property
     def device(self) -> Device:
-        """Its device."""
-        return self.named(self.take.devices, "device")
+        """Its device; of a file of all takes, the last take's of this name."""
+        takes = [self.take] if "take" in self.wildcards else self.session.takes.values()
+        there = {name: device for take in takes for name, device in take.devices.items()}
+        return self.named(there, "device")
 
     def named(self, known: Mapping[str, Named], what: str) -> Named:
         """Return the record of a wildcard; an error where a file of another one is asked for."""
