@@ -49,6 +49,23 @@ def test_spectators_whom_one_camera_sees_do_not_make_it_lost():
     assert resection.lost(BASE, joined([SEEN, alone]), LIMITS) == [2]
 
 
+def test_agreement_with_one_camera_does_not_hide_that_two_others_contradict():
+    """Nobody has its views of the walker; with one other camera it places somebody else."""
+    blind = SEEN.score.copy()
+    blind[2] = np.nan
+    walker = replace(SEEN, score=blind)
+    other = walkers.seen(BASE, walkers.joints(40, way_m=0.7))
+    pair = replace(other, score=np.where(np.arange(4)[:, None, None] < 2, np.nan, other.score))
+    assert resection.lost(BASE, pair, LIMITS) == [0, 1]
+    assert resection.lost(BASE, joined([walker, pair]), LIMITS) == [2]
+
+
+def test_a_camera_before_which_people_are_often_hidden_is_not_lost():
+    score = SEEN.score.copy()
+    score[2, : int(0.6 * score.shape[1])] = np.nan
+    assert resection.lost(TRUE, replace(SEEN, score=score), LIMITS) == []
+
+
 def test_people_are_expected_where_the_camera_looks():
     assert resection.expected(TRUE[2], WALK)
     assert not resection.expected(moved(TRUE[2], degrees=90.0, metres=0.0), WALK)

@@ -50,6 +50,10 @@ class Seen:
             found[rows] = count * number + np.arange(len(rows)) * count // len(rows)
         return found
 
+    def tracks(self) -> NDArray:
+        """Return the track (N,) of each of the N = T J points of `flat`."""
+        return np.repeat(self.track, self.score.shape[2])
+
     def flat(self) -> tuple[NDArray, NDArray, NDArray]:
         """Return joints (C, N, 2), scores (C, N) and heights (C, N) px of N = T J points."""
         n_joints = self.score.shape[2]
