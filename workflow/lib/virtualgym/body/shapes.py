@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from courtside.study.errors import InputError
-from virtualgym.body import makehuman, mesh
+from virtualgym.body import joint_centres, makehuman, mesh
 
 DENSITY_KG_M3 = 1000.0  # ASSUME: whole body with half-filled lungs
 SEXES = {"m": "male", "f": "female"}
@@ -113,7 +113,8 @@ def figure(folder: str | Path, shape: Shape) -> makehuman.Figure:
             f"body of {shape.height_m} m, sex {shape.sex}: expected {shape.mass_kg + lean:.0f} to "
             f"{shape.mass_kg + heavy:.0f} kg, found mass_kg {shape.mass_kg}; choose a mass between"
         )
-    return archive.figure(targets.points(brentq(excess_kg, 0.0, 1.0, xtol=1e-4)))
+    points = targets.points(brentq(excess_kg, 0.0, 1.0, xtol=1e-4))
+    return joint_centres.anatomical(archive.figure(points))
 
 
 class _Targets:
