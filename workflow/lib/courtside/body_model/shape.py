@@ -21,7 +21,7 @@ SYSTEMATIC = 0.04
 # Share of body height, men and women together (Winter 2009, fig. 4.1; hips, shoulders: ASSUME).
 OF_HEIGHT = {
     "thigh": 0.245, "shank": 0.246, "upper_arm": 0.186, "forearm": 0.146,
-    "hips": 0.12, "shoulders": 0.2, "trunk": 0.288,
+    "hips": 0.11, "shoulders": 0.2, "trunk": 0.288,
 }  # fmt: skip
 OF_HEIGHT_SIGMA = 0.06  # ASSUME: standard deviation of such a length, as a share of it
 HEIGHT_M, HEIGHT_SIGMA = 1.72, 0.06  # ASSUME: of an adult whose height is not stated; as a share

@@ -8,7 +8,7 @@ from courtside.records.keypoints import skeleton
 TABLE = "footage"
 # Takes shown beside real footage: the longest of those reported, and one of another layout.
 VIRTUAL = (("players-b", "footwork"), ("players-a", "shot"))
-CONVENTION = "true joint centres of the rig"
+CONVENTION = "true joint centres"
 PER_JOINT = ("median", "p95", "coverage")  # of `players.PER_STAGE`
 PER_VIEWS = {  # part: column, decimals, unit
     "median": ("median_mm", 0, "mm"),
