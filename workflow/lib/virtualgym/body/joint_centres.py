@@ -38,8 +38,9 @@ def anatomical(figure: Figure) -> Figure:
     heads = figure.heads.copy()
     for suffix, side in ((".L", 1), (".R", -1)):
         for above, at, below, radius_m in HINGES.values():
-            ends = [figure.head(bone + suffix) for bone in (above, at, below)]
-            heads[figure.bones.index(at + suffix)] = _epicondyles(figure, *ends, radius_m=radius_m)
+            first, joint, last = (figure.head(bone + suffix) for bone in (above, at, below))
+            found = _epicondyles(figure, first, joint, last, radius_m)
+            heads[figure.bones.index(at + suffix)] = found
         hip = figure.bones.index(HIP + suffix)
         heads[hip, 0] = side * (_trochanter_m(figure, heads[hip]) / 2 + TOO_FAR_M)
     return replace(figure, heads=heads)
