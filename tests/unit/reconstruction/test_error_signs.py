@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from courtside.geometry import triangulation
 from courtside.reconstruction import error_signs, fusion
 from courtside.records.devices.clocks import Clock
 from fixtures.cameras import scene
@@ -57,6 +58,14 @@ def test_a_view_within_the_limit_shows_in_residuals_and_without_it():
         rise = (found[name] - plain[name])[0]
         assert rise[FRAMES, WRIST].min() > 0.1
         assert np.abs(np.delete(rise, np.arange(50)[FRAMES], axis=0)).max() < 0.01
+
+
+def test_points_in_batches_have_the_signs_of_all_at_once(monkeypatch):
+    whole = signs(lambda views: moved(views, [0], 5.0))
+    monkeypatch.setattr(triangulation, "BATCH", 7)
+    parts = signs(lambda views: moved(views, [0], 5.0))
+    for name, sign in whole.items():
+        np.testing.assert_array_equal(parts[name], sign)
 
 
 def test_a_joint_that_jumps_off_changes_its_limb_and_its_path():

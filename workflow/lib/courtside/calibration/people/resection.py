@@ -31,18 +31,18 @@ def lost(cameras: Sequence[Camera], seen: Seen, limits: Limits) -> list[int]:
     """Return the cameras of whose views next to none agree with those of the others.
 
     Views of joints that no other camera sees are not counted, because they cannot agree: they may
-    show spectators. A camera with few other views counts as lost. So does one that agrees
-    with none of the people whom two others place in its picture: with one other alone, it may place
-    a person although its pose is wrong.
+    show spectators. A camera with few other views counts as lost. So does one that agrees with none
+    of the people whom two others place in its picture: with one other alone, it may place a person
+    although its pose is wrong.
     """
-    found = placed(cameras, seen, limits)
+    found, tracks = placed(cameras, seen, limits), seen.tracks()
     usable = np.nan_to_num(seen.flat()[1]) >= limits.score
     shared = usable & (usable.sum(axis=0) >= 2)
     share = found.accepted.sum(axis=1) / np.maximum(shared.sum(axis=1), 1)
     for at, camera in enumerate(cameras):
         sure = found.accepted.sum(axis=0) - found.accepted[at] >= 2
         inside = sure & in_picture(camera, project(camera, found.xyz))
-        of = [inside & (seen.tracks() == track) for track in np.unique(seen.track)]
+        of = [inside & (tracks == track) for track in np.unique(seen.track)]
         shares = [found.accepted[at, joints].mean() for joints in of if joints.sum() >= FEWEST]
         share[at] = min(share[at], max(shares, default=1.0))
     return [int(at) for at in np.flatnonzero(share < LOST)]
