@@ -222,9 +222,11 @@ def test_scripts_are_called_by_benchmarks_that_the_next_tests_run():
     assert calling == {"body_model", "device_angles", "long_take", "mapping_seeds", "real_footage"}
 
 
-def test_long_take_gives_each_script_what_it_takes(tmp_path):
+def test_long_take_gives_each_script_what_it_takes(tmp_path, monkeypatch):
+    found = SimpleNamespace(person_id=np.array(["person-1", "person-2"]))
+    monkeypatch.setattr(long_take.people, "read", lambda path: found)
     given = SimpleNamespace(
-        cameras=Path("file/cameras.toml"), covariance=None, persons=["p1"], model="blazepose-full",
+        cameras=Path("file/cameras.toml"), covariance=None, model="blazepose-full",
         skeleton="blazepose33",
     )  # fmt: skip
     steps = list(long_take.steps(tmp_path, given))
