@@ -39,8 +39,9 @@ def lost(cameras: Sequence[Camera], seen: Seen, limits: Limits) -> list[int]:
     usable = np.nan_to_num(seen.flat()[1]) >= limits.score
     shared = usable & (usable.sum(axis=0) >= 2)
     share = found.accepted.sum(axis=1) / np.maximum(shared.sum(axis=1), 1)
+    n_views = found.accepted.sum(axis=0)
     for at, camera in enumerate(cameras):
-        sure = found.accepted.sum(axis=0) - found.accepted[at] >= 2
+        sure = n_views - found.accepted[at] >= 2
         inside = sure & in_picture(camera, project(camera, found.xyz))
         of = [inside & (tracks == track) for track in np.unique(seen.track)]
         shares = [found.accepted[at, joints].mean() for joints in of if joints.sum() >= FEWEST]
