@@ -67,6 +67,19 @@ def test_the_page_opens_with_what_was_measured(study):
     assert Read(page).tags.count("h1") == Read(page).tags.count("nav") == 1
 
 
+def test_a_take_and_the_cameras_of_its_session_have_marks_of_their_own(study, tmp_path):
+    def marks():
+        page = report.build(study)
+        row = page[page.index("<tbody>", page.index("class='glance'")) :].partition("</tr>")[0]
+        return [cell.partition("</span> ")[2].partition("<")[0] for cell in row.split("<td>")[1:3]]
+
+    take, cameras = marks()
+    assert cameras == "Good"
+    bad = report_made.QUALITY | {"expected_volume_rms_cm": 6.0}
+    (tmp_path / "quality.json").write_text(json.dumps(bad))
+    assert marks() == [take, "Doubt"] and take != "Doubt"
+
+
 def test_text_of_users_is_escaped(tmp_path):
     made = report_made.study(tmp_path, name=report_made.ROGUE, description=report_made.ROGUE)
     page = report.build(made | {"title": report_made.ROGUE})

@@ -115,8 +115,9 @@ def test_frames_without_background_are_reported_as_unknown(unknown):
     ("change", "expected"),
     [
         ({}, []),
-        ({"left_out": {"p01": {"error_cm": 2.5}}}, [warned.LOOK]),
-        ({"expected_volume_rms_cm": 6.0}, [warned.DOUBT]),
+        ({"left_out": {"p01": {"error_cm": 2.5}}}, []),
+        ({"left_out": {"p01": {"error_cm": 2.5}}, "expected_volume_rms_cm": None}, [warned.LOOK]),
+        ({"left_out": {"p01": {"error_cm": 9.0}}, "expected_volume_rms_cm": 6.0}, [warned.DOUBT]),
         ({"tie_residual_px": 1.5}, [warned.LOOK]),
         ({"warnings": ["the lines' middles were clicked"]}, [warned.LOOK]),
         ({"left_out": "too few points", "expected_volume_rms_cm": 0.7}, [warned.LOOK]),

@@ -66,7 +66,7 @@ def _measured(known: list[dict], reported: list[dict], grouped: figures.Groups) 
             written.append(coach.take(take, facts, found, figures_id))
         sessions.append(session | {"written": written})
     glance = [
-        (session, take, max(warnings.worst(found), session["level"]), person, measures)
+        (session, take, warnings.worst(found), person, measures)
         for session in known
         for take, facts, found in session["takes"]
         for person, measures in facts["persons"].items()

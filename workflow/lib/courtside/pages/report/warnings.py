@@ -18,7 +18,7 @@ VAGUE_CLOCK = "the uncertainty of its clock is unknown"
 LIMITS = {
     "moved": (0.5, 1.0, "movement of a fixed camera, as a share of the configured limit"),
     "clock_ms": (8, 20, "90 % error of a clock, ms"),
-    "left_out_cm": (2, 5, "median error of court points, each left out in turn, cm"),
+    "left_out_cm": (2, 5, "median error of left-out court points, cm (no expected error known)"),
     "expected_cm": (2, 5, "expected error of the calibration over the playing volume, cm"),
     "tie_px": (1, 2, "residual of the tie points between pictures of the walk, px"),
     "unregistered": (0.1, 0.3, "share of the pictures that were not registered in the model"),
@@ -161,13 +161,21 @@ def no_tpose(row: dict) -> Warned | None:
 
 
 def calibration(name: str, quality: dict) -> list[Warned]:
-    """Return the warnings of a calibration; `quality` is the content of its quality.json."""
+    """Return the warnings of a calibration; `quality` is the content of its quality.json.
+
+    Points left out contain the errors of their own clicks, which the cameras average: the error
+    expected of the cameras says more, where it is known.
+    """
     found = said("Calibration", quality)
     error, expected = left_out_cm(quality), quality.get("expected_volume_rms_cm")
     ties = quality.get("tie_residual_px")
     for quantity, value, words in (
-        ("left_out_cm", error, "the median error of court points left out in turn is {:.1f} cm"),
         ("expected_cm", expected, "the expected error over the playing volume is {:.1f} cm"),
+        (
+            "left_out_cm",
+            error if expected is None else None,
+            "the median error of court points left out in turn is {:.1f} cm",
+        ),
         ("tie_px", ties, "the residual of tie points between pictures of the walk is {:.1f} px"),
     ):
         if value is not None and _level_of(quantity, value):
