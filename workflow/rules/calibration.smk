@@ -18,6 +18,8 @@ build_clicking_page; export_cameras (for EasyMocap and COLMAP, by request).
 rule import_cameras:
     input:
         calibration_path=lambda w: session_of(w).calibration_file,
+        covariance_npz=of_job(calibration.file_covariance),
+        court_yaml=of_job(calibration.court_of_file),
     output:
         cameras_toml=paths.part(paths.CAMERAS, calibration="file"),
         quality_json=paths.part(paths.CALIBRATION_QUALITY, calibration="file"),

@@ -54,7 +54,7 @@ rule draw_growth:
 rule draw_error_map:
     input:
         cameras_toml=paths.CAMERAS,
-        covariance_npz=paths.CAMERA_COVARIANCE,
+        covariance_npz=of_job(calibration.covariance),
         court_yaml=of_job(Job.court_file),
         base_toml=of_job(calibration.of_base, paths.CAMERAS),
         base_npz=of_job(calibration.base_covariance),

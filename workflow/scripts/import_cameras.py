@@ -1,14 +1,26 @@
 """Import a calibration made elsewhere: its file -> the session's cameras, as their videos show."""
 
 from courtside.calibration import file_formats
+from courtside.calibration.court import court, quality
 from courtside.calibration.file_check import stated
+from courtside.calibration.records import covariance as camera_covariance
 from courtside.geometry import camera
 from courtside.study.execution.files import write_json
 from courtside.study.execution.script import run
 
 
 def main(
-    calibration_path, cameras_toml, quality_json, *, names, crops_px, scales, override, unit=None
+    calibration_path,
+    cameras_toml,
+    quality_json,
+    *,
+    names,
+    crops_px,
+    scales,
+    override,
+    covariance_npz="",
+    court_yaml="",
+    unit=None,
 ):
     in_file = file_formats.read(calibration_path, unit)
     theirs = file_formats.rename(calibration_path, in_file, names)
@@ -22,15 +34,18 @@ def main(
     cropped = [camera.crop(c, crops_px[c.name]) if c.name in crops_px else c for c in found]
     cropped = [camera.scaled(c, scales[c.name]) if c.name in scales else c for c in cropped]
     camera.write_toml(cameras_toml, cropped, source=source)
-    quality = {
+    report = {
         "source": str(calibration_path),
         "cameras": {c.name: {"size_px": list(map(int, c.size))} for c in cropped},
-        "covariance": "unknown: the file gives none",
+        "covariance": covariance_npz or "unknown: the file gives none",
     }
+    if covariance_npz and court_yaml:
+        known = camera_covariance.read(covariance_npz)
+        report |= quality.expected_volume(court.read(court_yaml), cropped, known)
     if points_px:
         replaced = {c.name: c.K[:2, 2].tolist() for c in theirs if c.name in points_px}
-        quality["override"] = {**override, "principal_point_px_in_file": replaced}
-    write_json(quality_json, quality)
+        report["override"] = {**override, "principal_point_px_in_file": replaced}
+    write_json(quality_json, report)
 
 
 if __name__ == "__main__":

@@ -2,8 +2,10 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from courtside.calibration.records import covariance
 from courtside.geometry import camera as geometry
 from courtside.validation import calibrated
 
@@ -37,6 +39,22 @@ def test_a_wrong_size_names_the_key_that_mends_it(hall, size, key):
 def test_another_calibration_is_not_read_where_the_session_does_not_use_it(hall):
     hall.content["calibration"]["file"] = str(hall.root / "none.toml")
     assert faults(hall, left={"left.mp4": (640, 360)}) == []
+
+
+def test_a_covariance_of_other_cameras_is_told(hall):
+    hall.around()
+    path = hall.root / "covariance.npz"
+    covariance.write(path, covariance.CameraCovariance(["left", "rear"], np.eye(28)))
+    (line,) = faults(hall)
+    assert line.startswith(
+        f"{path}: expected the covariance of cameras right, back, found that of left, rear; "
+        f"it lies beside {hall.root / 'cameras.toml'}"
+    )
+    covariance.write(path, covariance.CameraCovariance(["right", "back", "left"], np.eye(42)))
+    assert faults(hall) == []
+    path.write_bytes(b"no archive")
+    (line,) = faults(hall)
+    assert line.startswith(f"{path}: expected")
 
 
 def test_one_pose_of_two_cameras_is_told_with_their_names(hall):

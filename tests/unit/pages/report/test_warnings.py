@@ -139,6 +139,15 @@ def test_without_a_court_only_cameras_without_a_covariance_are_of_unknown_accura
     assert not unknown or "the error bars do not include its error" in found[0].text
 
 
+def test_cameras_of_a_file_with_a_covariance_are_judged_by_their_expected_error():
+    known = {"covariance": "data/hall/covariance.npz"}
+    assert warned.calibration("file", known) == []
+    (found,) = warned.calibration("file", known | {"expected_volume_rms_cm": 2.5})
+    assert found.level == warned.LOOK and "2.5 cm" in found.text
+    (found,) = warned.calibration("file", {"covariance": "unknown: the file gives none"})
+    assert "the error bars do not include its error" in found.text
+
+
 def test_the_median_of_points_that_were_left_out():
     errors = dict(zip("abcd", (1.0, 9.0, 3.0, None), strict=True))
     quality = {"left_out": {name: {"error_cm": error} for name, error in errors.items()}}

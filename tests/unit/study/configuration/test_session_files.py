@@ -247,6 +247,31 @@ def test_a_session_replaces_numbers_of_its_calibration_file():
     assert plain.known_lengths == ()
 
 
+def test_the_covariance_beside_a_calibration_file_is_that_of_its_cameras(tmp_path):
+    cameras, folder = {"a": {}, "b": {"crop_px": [1, 2, 3, 4]}}, tmp_path / "data" / "hall"
+
+    def known(file, **changes):
+        content = {"calibration": {"file": file}, "cameras": cameras, **changes}
+        return session_files.session("s", "s.yaml", CONTENT | content, {}, tmp_path).file_covariance
+
+    assert known("data/hall/cameras.toml") is None
+    folder.mkdir(parents=True)
+    (folder / "covariance.npz").touch()
+    assert known("data/hall/cameras.toml") == "data/hall/covariance.npz"
+    for other in ({"scale": 0.5}, {"name_in_calibration": "B"}):
+        assert known("data/hall/cameras.toml", cameras=cameras | {"b": other}) is None
+    replaced = {"file": "data/hall/cameras.toml", "principal_point_px": {"a": [1, 2]}}
+    assert known("", calibration=replaced | {"reason": "mirrored in the file"}) is None
+
+
+@pytest.mark.parametrize(("way", "has"), [("sfm-n40", True), ("known", True), ("file", False)])
+def test_a_calibration_that_the_study_makes_has_its_covariance_beside_it(way, has):
+    folder = f"results/hall/calibration/{way}"
+    content = CONTENT | {"calibration": {"file": f"{folder}/cameras.toml"}, "cameras": {"a": {}}}
+    found = session_files.session("s", "s.yaml", content, {}).file_covariance
+    assert found == (f"{folder}/covariance.npz" if has else None)
+
+
 def test_known_lengths_are_read():
     lengths = [{"points": ["left", "right"], "length_m": 6.1, "on_floor": True}]
     content = CONTENT | {"static_points": "p.csv", "known_lengths": lengths}

@@ -73,6 +73,17 @@ def test_only_adjusted_cameras_have_a_covariance(job):
         calibration.covariance(job(**PLAIN, calibration="wrong"))
 
 
+def test_cameras_of_a_file_have_the_covariance_that_lies_beside_it(job, study):
+    real = {"session": "walk-4cams-tiny", "calibration": "file"}
+    assert calibration.covariance(job(**real)) == calibration.court_of_file(job(**real)) == []
+    session = replace(study.sessions["walk-4cams-tiny"], file_covariance="hall/covariance.npz")
+    known = replace(study, sessions={"walk-4cams-tiny": session})
+    assert calibration.covariance(job(known, **real)) == "hall/covariance.npz"
+    refined = job(known, **real | {"calibration": "file-people"})
+    assert calibration.base_covariance(refined) == "hall/covariance.npz"
+    assert calibration.covariance(refined) == refined.fill(paths.CAMERA_COVARIANCE)
+
+
 def test_pictures_of_a_chessboard_are_simulated_or_files(job, study, tmp_path):
     one = job(**PLAIN, camera="side")
     assert calibration.boards(one) == "results/virtual/plain-tiny/boards"

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from courtside.calibration import file_formats
 from courtside.calibration.file_check import stated, verdict
+from courtside.calibration.records import covariance
 from courtside.geometry import camera as geometry
 from courtside.geometry import camera_fields, picture_size
 from courtside.geometry.camera import Camera
@@ -37,6 +38,7 @@ def faults(session: Session, sizes: Sizes) -> Iterator[str]:
     except InputError as error:
         yield from error.lines
         return
+    yield from _other_covariance(session)
     names = session.calibration_camera_names()
     missing = [
         ours if ours == theirs else f"{theirs!r} (camera {ours})"
@@ -62,6 +64,24 @@ def faults(session: Session, sizes: Sizes) -> Iterator[str]:
         return
     if not mixed:
         yield from _wrong_sizes(there, shown, sizes)
+
+
+def _other_covariance(session: Session) -> Iterator[str]:
+    """Yield a fault if the covariance beside a calibration file is not of the session's cameras."""
+    path = session.file_covariance
+    if path is None or not Path(path).exists():  # the study makes it
+        return
+    try:
+        known = covariance.read(path).cameras
+    except InputError as error:
+        yield from error.lines
+        return
+    if missing := [name for name in session.cameras if name not in known]:
+        yield (
+            f"{path}: expected the covariance of cameras {', '.join(missing)}, found that of "
+            f"{', '.join(known)}; it lies beside {session.calibration_file}, whose errors it "
+            "states: put that of the same calibration there, or remove it"
+        )
 
 
 def _named(session: Session, known: Mapping[str, Camera]) -> dict[str, Camera]:

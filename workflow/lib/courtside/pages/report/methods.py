@@ -141,7 +141,8 @@ def _is_uncertain(session: dict) -> bool:
     """Return whether skeletons of a session rest on cameras whose error is not known."""
     way = session["calibration"]
     measured = any(take["files"].get("pose3d") for take in session["takes"])
-    return bool(way and measured) and not Calibration.parse(way).has_covariance
+    known = way and session.get("has_covariance", Calibration.parse(way).has_covariance)
+    return bool(way and measured) and not known
 
 
 def _fused(name: str) -> str:

@@ -79,7 +79,7 @@ def _used(name: str | None, known: dict[str, dict]) -> dict | None:
     words = methods.calibrated(way.kind, clicked({name: content}))
     found: dict = {"name": name, "words": words, "base": way.base}
     found["expected_cm"] = content.get("expected_volume_rms_cm")
-    found["unknown"] = NO_VOLUME if way.has_covariance else NO_COVARIANCE
+    found["unknown"] = NO_VOLUME if warned.has_covariance(name, content) else NO_COVARIANCE
     if way.base:
         line, wrong = content["line"], content["wrong"]
         found |= {"line": line, "wrong": wrong, "before_cm": content.get("expected_before_cm")}

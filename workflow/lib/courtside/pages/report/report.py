@@ -81,11 +81,15 @@ def _methods(study: dict, known: list[dict]) -> Markup:
         for session in known
         for take, facts, _ in session["takes"]
     }
-    told = [
-        session["configured"] | {"clicked": quality.clicked(session["facts"]["quality"])}
-        for session in known
-    ]
+    told = [session["configured"] | _told(session) for session in known]
     return methods.paragraphs(study["parameters"], told, used_hz)
+
+
+def _told(session: dict) -> dict[str, bool]:
+    """Return what the methods need of the quality of a session's calibrations."""
+    qualities, used = session["facts"]["quality"], session["configured"]["calibration"]
+    known = used in qualities and warnings.has_covariance(used, qualities[used])
+    return {"clicked": quality.clicked(qualities), "has_covariance": known}
 
 
 def _figures(grouped: figures.Groups) -> tuple[Markup, dict[str, tuple[bytes, str]]]:

@@ -183,11 +183,20 @@ def calibration(name: str, quality: dict) -> list[Warned]:
             found.append(Warned(_level_of(quantity, value), text))
     if isinstance(quality.get("left_out"), str):
         found.append(Warned(LOOK, f"Calibration {name}: {quality['left_out']}."))
-    if not Calibration.parse(name).has_covariance and error is None and expected is None:
+    if not has_covariance(name, quality) and error is None and expected is None:
         made = "made elsewhere" if name == "file" else name
         text = "its accuracy is unknown, so that the error bars do not include its error"
         found.append(Warned(LOOK, f"Calibration {made}: {text}."))
     return found
+
+
+def has_covariance(name: str, quality: dict) -> bool:
+    """Return whether the errors of a calibration's cameras are known, by its quality.json.
+
+    A calibration file tells under `covariance` where they come from, or that they are unknown.
+    """
+    of_file = not quality.get("covariance", "unknown").startswith("unknown")
+    return of_file or Calibration.parse(name).has_covariance
 
 
 def said(what: str, content: dict) -> list[Warned]:

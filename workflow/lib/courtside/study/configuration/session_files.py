@@ -1,7 +1,7 @@
 """Building sessions from their files, and variations of virtual ones from a condition."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
@@ -12,6 +12,7 @@ from courtside.study.configuration import consent, schemas
 from courtside.study.configuration.sessions import Device, FixedCamera, Session, Subject, Take
 from courtside.study.configuration.yaml_files import Content
 from courtside.study.errors import LONGEST, InputError, StrPath
+from courtside.study.methods import Calibration
 
 KINDS = {  # of devices, by the ending of their recording; a folder is one of a depth camera
     ".bvh": "inertial",
@@ -26,6 +27,7 @@ AS_STATED = ("synchronised", "steady", "virtual", "clocks", "pose2d", "pose3d", 
 
 MAY_BE_EMPTY = ("subjects", "cameras", "walks", "takes")  # of which a session names some
 FOR_ALL_TAKES = ("synchronised",)  # of a session, where its takes do not say it themselves
+MADE = re.compile(r"results/[^/]+/calibration/([^/]+)/cameras\.toml")  # by a session of the study
 OVERRIDDEN = ("principal_point_px", "reason")  # of a calibration file, as its session states them
 
 
@@ -114,7 +116,7 @@ def session(
         cameras=cameras,
         takes=agreed,
         withheld=withheld,
-        **_calibration(content, config),
+        **_calibration(content, config, cameras, Path(root)),
         people=of_configuration(content.get("people"), config),
         walks=recordings.get("walks") or {k: w.get("video") or w["images"] for k, w in walks},
         court_points=recordings.get("court_points") or clicked,
@@ -140,7 +142,9 @@ def _point_sets(court_yaml: Path) -> frozenset[int] | None:
     return frozenset(map(len, [court["points"], *court["sets"].values()]))
 
 
-def _calibration(content: Content, config: Path) -> dict[str, Any]:
+def _calibration(
+    content: Content, config: Path, cameras: Mapping[str, FixedCamera], root: Path
+) -> dict[str, Any]:
     """Return a session's fields of how its cameras are calibrated, but for court points."""
     given = content.get("calibration", {})
     return {
@@ -152,7 +156,23 @@ def _calibration(content: Content, config: Path) -> dict[str, Any]:
         "calibration_file": given.get("file"),
         "calibration_override": {key: given[key] for key in OVERRIDDEN if key in given},
         "calibration_unit": given.get("unit"),
+        "file_covariance": _file_covariance(given, cameras, root) if given else None,
     }
+
+
+def _file_covariance(given: Content, cameras: Mapping[str, FixedCamera], root: Path) -> str | None:
+    """Return the covariance that lies beside a calibration file, as this study writes them.
+
+    None without one, and if the session does not use the cameras as they are in the file: if it
+    renames or scales them, or replaces their numbers.
+    """
+    file = Path(given["file"])
+    beside = file.with_name(Path(paths.CAMERA_COVARIANCE).name)
+    changed = any(key in given for key in OVERRIDDEN)
+    changed |= any(one.name_in_calibration or one.scale != 1 for one in cameras.values())
+    made = MADE.fullmatch(file.as_posix())
+    known = Calibration.parse(made[1]).has_covariance if made else is_there(root / beside)
+    return beside.as_posix() if known and not changed else None
 
 
 def _clicks(content: Content, root: StrPath) -> tuple[str | None, str | None]:

@@ -142,6 +142,7 @@ class Session:
     board: dict[str, Any] | None = None  # what several cameras see, and where they do
     wand: dict[str, Any] | None = None  # the same of a wand
     calibration_unit: str | None = None  # of the lengths in that file, where it states none
+    file_covariance: str | None = None  # of the cameras in that file, where it is known
     static_points: str | None = None  # points at rest, clicked in several cameras
     # Known lengths between two of them: `points`, `length_m`, perhaps `on_floor`
     known_lengths: tuple[dict[str, Any], ...] = ()
@@ -189,6 +190,10 @@ class Session:
 
         ways = map(Calibration.parse, self.parameters["calibrations"])
         return [way.name for way in ways if allowed(way)]
+
+    def has_covariance(self, way: Calibration) -> bool:
+        """Return whether the covariance of the cameras of a calibration is known."""
+        return way.has_covariance or (way.kind == "file" and self.file_covariance is not None)
 
     def has_scale(self) -> bool:
         """Say whether people alone give lengths in metres.

@@ -188,8 +188,19 @@ def line_search(job: Job) -> dict[str, Any]:
 
 def covariance(job: Job) -> str | list:
     """Return the covariance of cameras where their calibration has one."""
-    known = job["calibration"] != IMPORTED and _way(job).has_covariance
-    return job.fill(paths.CAMERA_COVARIANCE) if known else []
+    if job["calibration"] == IMPORTED or not job.session.has_covariance(_way(job)):
+        return []
+    return file_covariance(job) if _way(job).kind == "file" else job.fill(paths.CAMERA_COVARIANCE)
+
+
+def file_covariance(job: Job) -> str | list:
+    """Return the covariance of the cameras in a calibration file, where it is known."""
+    return job.session.file_covariance or []
+
+
+def court_of_file(job: Job) -> Path | list:
+    """Return the court over which errors are expected of these cameras, where they are known."""
+    return job.court_file() if file_covariance(job) else []
 
 
 def cameras_of_covariance(job: Job) -> str | list:

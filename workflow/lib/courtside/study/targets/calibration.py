@@ -87,7 +87,7 @@ def every_study_figure(study: Study) -> list[str]:
     for session in study.sessions.values():
         if session.court:
             ways = map(Calibration.parse, session.calibrations())
-            names = [f"error_map.{way.name}" for way in ways if way.has_covariance]
+            names = [f"error_map.{way.name}" for way in ways if session.has_covariance(way)]
             stems += paths.each(paths.SESSION_FIGURE, session=session.name, figure=names)
     if racket_sessions(study):
         stems.append(paths.STUDY_FIGURE.format(figure="badminton_fig12"))
