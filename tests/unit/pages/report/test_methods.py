@@ -86,6 +86,19 @@ def test_no_clicks_are_told_where_none_were_used(study):
     assert "In the adjustment, a tie point has a standard deviation of 2.0 robust" in html
 
 
+def test_lines_and_calibrations_used_again_are_named_in_the_methods(study):
+    study["sessions"].append({**study["sessions"][0], "name": "later", "calibration": "file"})
+    study["sessions"][0]["calibration"] = "sfm-n40-lines"
+    study["sessions"][1]["has_covariance"] = True
+    html = re.sub(r"\s+", " ", methods_text(study))
+    assert "of the clicked court points and of the court&#39;s painted lines (<code>" in html
+    assert "of later were taken from an earlier calibration, with its covariance" in html
+    assert "not in later" not in html
+    study["sessions"][1]["has_covariance"] = False
+    html = methods_text(study)
+    assert "made elsewhere" in html and "not in later, where the error" in html
+
+
 def test_features_are_not_said_to_be_at_most_so_many(study):
     """A point with several orientations is several features."""
     html = re.sub(r"\s+", " ", methods_text(study))

@@ -48,6 +48,11 @@ UNCLICKED = (  # of the kind `sfm`
     "calibrated by one bundle adjustment of structure from motion over the pictures of a walk "
     "alone, without a court: scale and axes are arbitrary"
 )
+WITH_LINES = (  # of the kind `sfm`
+    "calibrated by one bundle adjustment of structure from motion over the pictures of a walk, of "
+    "the clicked court points and of the court's painted lines"
+)
+AGAIN = "taken from an earlier calibration, with its covariance"  # of a file
 FUSED = {  # by the rule of a fusion
     "robust": "views are weighted, and those that contradict the others lose their weight",
     "dlt": "all views have the same weight (DLT)",
@@ -65,7 +70,8 @@ def paragraphs(
 
     `parameters` are the study's steps as configured: `match_images`, `adjust_network` ... Each of
     `sessions` has `name`, `calibration` (of its takes), `clicked` (whether court points were used
-    there; true if left out), `mapper`, `n_images`, `fusion`, `model`,
+    there; true if left out), `has_covariance` (of this calibration; if left out, as its name says),
+    `mapper`, `n_images`, `fusion`, `model`,
     `imported` (whether another program found the joints), `virtual`, `overrides` ({step: {key:
     value}}), `takes`. `used_hz` are the cut-offs of the filter by session and take, as used.
     """
@@ -85,7 +91,7 @@ def paragraphs(
         simulated=[session["name"] for session in sessions if session["virtual"]],
         calibrations=_calibrations(sessions),
         mapped=mapped,
-        clicked=any(session["mapper"] and _clicked(session) for session in sessions),
+        clicked=any(session["mapper"] and session.get("clicked", True) for session in sessions),
         networks=networks,
         imported=[
             (name, _users(imported, "model", name)) for name in _different(imported, "model")
@@ -114,9 +120,13 @@ def _different(sessions: Iterable[dict], key: str) -> list[str]:
     return list(dict.fromkeys(session[key] for session in sessions if session[key]))
 
 
-def calibrated(kind: str, clicked: bool) -> str:
-    """Return in words what a kind of calibration is, of court points that were clicked or not."""
-    return UNCLICKED if kind == "sfm" and not clicked else CALIBRATED[kind]
+def calibrated(way: Calibration, *, clicked: bool, has_covariance: bool) -> str:
+    """Return in words how cameras were calibrated; `clicked`: whether court points were."""
+    if way.kind == "file" and has_covariance:
+        return AGAIN
+    if way.kind == "sfm" and not clicked:
+        return UNCLICKED
+    return WITH_LINES if way.lines else CALIBRATED[way.kind]
 
 
 def _calibrations(sessions: Iterable[dict]) -> list[tuple[str, str, list[str]]]:
@@ -124,13 +134,10 @@ def _calibrations(sessions: Iterable[dict]) -> list[tuple[str, str, list[str]]]:
     found: dict[tuple[str, str], list[str]] = {}
     for session in sessions:
         if name := session["calibration"]:
-            words = calibrated(Calibration.parse(name).kind, _clicked(session))
+            way, clicked = Calibration.parse(name), session.get("clicked", True)
+            words = calibrated(way, clicked=clicked, has_covariance=_has_covariance(session))
             found.setdefault((name, words), []).append(session["name"])
     return [(*one, users) for one, users in found.items()]
-
-
-def _clicked(session: dict) -> bool:
-    return session.get("clicked", True)
 
 
 def _users(sessions: Iterable[dict], key: str, value: str) -> list[str]:
@@ -141,8 +148,12 @@ def _is_uncertain(session: dict) -> bool:
     """Return whether skeletons of a session rest on cameras whose error is not known."""
     way = session["calibration"]
     measured = any(take["files"].get("pose3d") for take in session["takes"])
-    known = way and session.get("has_covariance", Calibration.parse(way).has_covariance)
-    return bool(way and measured) and not known
+    return bool(way and measured) and not _has_covariance(session)
+
+
+def _has_covariance(session: dict) -> bool:
+    """Return whether the covariance of a session's cameras is known: by default, by their name."""
+    return session.get("has_covariance", Calibration.parse(session["calibration"]).has_covariance)
 
 
 def _fused(name: str) -> str:

@@ -76,8 +76,7 @@ def _used(name: str | None, known: dict[str, dict]) -> dict | None:
     if not name or name not in known:
         return None
     content, way = known[name], Calibration.parse(name)
-    words = methods.calibrated(way.kind, clicked({name: content}))
-    found: dict = {"name": name, "words": words, "base": way.base}
+    found: dict = {"name": name, "words": _words(name, known), "base": way.base}
     found["expected_cm"] = content.get("expected_volume_rms_cm")
     found["unknown"] = NO_VOLUME if warned.has_covariance(name, content) else NO_COVARIANCE
     if way.base:
@@ -85,9 +84,15 @@ def _used(name: str | None, known: dict[str, dict]) -> dict | None:
         found |= {"line": line, "wrong": wrong, "before_cm": content.get("expected_before_cm")}
         told = [*content["warnings"], *content["remarks"]]
         found["others"] = [one for one in told if not one.endswith((line, *wrong))]
-        base = {key: value for key, value in known.items() if key == way.base}
-        found |= {"of_base": methods.calibrated(Calibration.parse(way.base).kind, clicked(base))}
+        found |= {"of_base": _words(way.base, known)}
     return found
+
+
+def _words(name: str, known: dict[str, dict]) -> str:
+    """Return in words how the cameras of a calibration were found, by the files of the quality."""
+    own = {key: value for key, value in known.items() if key == name}
+    stated = warned.has_covariance(name, own.get(name, {}))
+    return methods.calibrated(Calibration.parse(name), clicked=clicked(own), has_covariance=stated)
 
 
 def clicked(qualities: dict[str, dict]) -> bool:
