@@ -148,6 +148,12 @@ def test_cameras_of_a_file_with_a_covariance_are_judged_by_their_expected_error(
     assert "the error bars do not include its error" in found.text
 
 
+def test_cameras_judged_by_points_alone_are_not_in_the_error_bars():
+    (found,) = warned.calibration("known18", {"left_out": {"p01": {"error_cm": 0.5}}})
+    assert found.level == warned.GOOD
+    assert found.text == "Calibration known18: the error bars do not include its error."
+
+
 def test_the_median_of_points_that_were_left_out():
     errors = dict(zip("abcd", (1.0, 9.0, 3.0, None), strict=True))
     quality = {"left_out": {name: {"error_cm": error} for name, error in errors.items()}}

@@ -183,10 +183,11 @@ def calibration(name: str, quality: dict) -> list[Warned]:
             found.append(Warned(_level_of(quantity, value), text))
     if isinstance(quality.get("left_out"), str):
         found.append(Warned(LOOK, f"Calibration {name}: {quality['left_out']}."))
-    if not has_covariance(name, quality) and error is None and expected is None:
+    if not has_covariance(name, quality) and expected is None:
         made = "made elsewhere" if name == "file" else name
-        text = "its accuracy is unknown, so that the error bars do not include its error"
-        found.append(Warned(LOOK, f"Calibration {made}: {text}."))
+        text = "its accuracy is unknown, so that " if error is None else ""
+        text += "the error bars do not include its error"
+        found.append(Warned(LOOK if error is None else GOOD, f"Calibration {made}: {text}."))
     return found
 
 
