@@ -184,6 +184,26 @@ def test_a_depth_camera_needs_a_network_even_beside_imported_keypoints(folder):
     load(folder, session | {"override": {"models": ["cpm-mobile-14", "body25b"]}})
 
 
+def test_cameras_of_another_session_are_made_or_there(folder):
+    path = "results/players-b/calibration/sfm-n40/cameras.toml"
+    borrowed = changed("calibration", "file", value=path)
+    (line,) = faults(folder, borrowed)
+    assert line.endswith(
+        f"hall.yaml: calibration.file: expected cameras that the study makes or that are there, "
+        f"found {path}, and no such session; add players-b to `sessions`, or put the files there"
+    )
+    load(folder, borrowed, sessions=["hall", "players-b"])
+    other = changed("calibration", "file", value=path.replace("sfm-n40", "sfm-n12"))
+    (line,) = faults(folder, other, sessions=["hall", "players-b"])
+    assert "'known18'] of it; add sfm-n12 to its `calibrations`, or put" in line
+    made = (folder.parent / path).parent
+    made.mkdir(parents=True)
+    (made / "cameras.toml").touch()
+    assert len(faults(folder, borrowed)) == 1  # its covariance is missing
+    (made / "covariance.npz").touch()
+    load(folder, borrowed)
+
+
 def test_a_fault_in_one_file_hides_no_fault_in_another(folder):
     (folder / "external.yaml").write_text("a: {sha256: x, licence: MIT, members: {../b: y}}\n")
     (folder / "models.yaml").write_text("m: {decoder: heatmap}\n")

@@ -28,14 +28,12 @@ LEAST_M = 1e-6  # from the court's centre: a camera nearer than this is above it
 def table(
     cameras: list[Camera], covariance: CameraCovariance, court: Court, heights_m: Sequence[float]
 ) -> pd.DataFrame:
-    """Return the expected error over the court; `covariance` is of the same cameras, in order.
+    """Return the expected error over the court; `covariance` contains that of the cameras.
 
     The error is the root of the trace of a point's covariance from the cameras that show the point,
     NaN where fewer than two do.
     `ValueError` if the covariance is of other cameras.
     """
-    if list(covariance.cameras) != [camera.name for camera in cameras]:
-        raise ValueError(f"covariance of {covariance.cameras}, cameras {[c.name for c in cameras]}")
     xyz = quality.volume(court, heights_m, COLUMNS, ROWS)
     spread = quality.place_covariance(cameras, covariance, xyz)
     sigma = 100 * np.sqrt(np.trace(spread, axis1=1, axis2=2))

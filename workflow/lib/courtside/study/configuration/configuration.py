@@ -107,7 +107,7 @@ def _study(config: Content, config_file: str, folder: Path, root: StrPath) -> St
         folder=folder,
         file=config_file,
     )
-    faults = [*_take_faults(study), *_layout_faults(study, config_file)]
+    faults = [*_take_faults(study, Path(root)), *_layout_faults(study, config_file)]
     if faults := [*faults, *named_faults.find(config_file, study)]:
         raise InputError(*faults)
     return study
@@ -131,11 +131,33 @@ def _unknown_models(file: Path, content: Content, models: Content | None) -> lis
     return take_faults.unknown(f"{file}: override.models", wanted, there)
 
 
-def _take_faults(study: Study) -> Iterator[str]:
+def _take_faults(study: Study, root: Path) -> Iterator[str]:
     """Yield why takes cannot be measured as their sessions and the study together ask."""
     for session in study.sessions.values():
         yield from session_faults.unmeasured(study, session)
+    yield from _unmade_cameras(study, root)
     yield from _device_faults(study)
+
+
+def _unmade_cameras(study: Study, root: Path) -> Iterator[str]:
+    """Yield a fault for each session that uses cameras of another one that nothing makes."""
+    for session in study.sessions.values():
+        file = session.calibration_file or ""
+        made = session_files.MADE.fullmatch(file)
+        needed = filter(None, [file, session.file_covariance])
+        if made is None or all(session_files.is_there(root / path) for path in needed):
+            continue
+        base = study.sessions.get(made["session"])
+        ways = base.calibrations() if base else []
+        if made["calibration"] in ways:
+            continue
+        there = f"calibrations {ways} of it" if base else "no such session"
+        add = f"add {made['calibration']} to its `calibrations`"
+        advice = add if base else f"add {made['session']} to `sessions`"
+        yield (
+            f"{session.file}: calibration.file: expected cameras that the study makes or that are "
+            f"there, found {file}, and {there}; {advice}, or put the files there"
+        )
 
 
 def _device_faults(study: Study) -> Iterator[str]:

@@ -8,6 +8,7 @@ from pathlib import Path
 from courtside.study.configuration import consent, sighting_faults, take_faults
 from courtside.study.configuration.session_files import (
     FOR_ALL_TAKES,
+    MADE,
     has_places,
     is_there,
     of_configuration,
@@ -15,10 +16,8 @@ from courtside.study.configuration.session_files import (
 from courtside.study.configuration.sessions import FEWEST_ALONE, Session, Study
 from courtside.study.configuration.yaml_files import Content
 from courtside.study.execution.artefacts import Artefact
-from courtside.study.paths import CAMERAS, EXTERNAL, VIRTUAL
+from courtside.study.paths import EXTERNAL, VIRTUAL
 
-# Cameras that the workflow finds in another session.
-CALIBRATED = CAMERAS.replace(".", r"\.").format(session="[^/]+", calibration="[^/]+")
 SIMULATED = VIRTUAL.format(session="")
 ALL = "all"  # of cameras in fusions, of cameras and persons in tables
 UNSCALED = (
@@ -470,7 +469,7 @@ def conditions(config_file: str, config: Content, found: dict[str, tuple]) -> li
 def _path_faults(
     where: str, path: str, known: dict[str, Artefact] | None, root: Path, advice: str
 ) -> Iterator[str]:
-    if path.startswith(SIMULATED) or re.fullmatch(CALIBRATED, path):
+    if path.startswith(SIMULATED) or MADE.fullmatch(path):
         return
     if not path.startswith(EXTERNAL):
         if not is_there(root / path):

@@ -27,7 +27,11 @@ AS_STATED = ("synchronised", "steady", "virtual", "clocks", "pose2d", "pose3d", 
 
 MAY_BE_EMPTY = ("subjects", "cameras", "walks", "takes")  # of which a session names some
 FOR_ALL_TAKES = ("synchronised",)  # of a session, where its takes do not say it themselves
-MADE = re.compile(r"results/[^/]+/calibration/([^/]+)/cameras\.toml")  # by a session of the study
+MADE = re.compile(  # the cameras of a session of the study
+    paths.CAMERAS.replace(".", r"\.").format(
+        session="(?P<session>[^/]+)", calibration="(?P<calibration>[^/]+)"
+    )
+)
 OVERRIDDEN = ("principal_point_px", "reason")  # of a calibration file, as its session states them
 
 
@@ -171,7 +175,9 @@ def _file_covariance(given: Content, cameras: Mapping[str, FixedCamera], root: P
     changed = any(key in given for key in OVERRIDDEN)
     changed |= any(one.name_in_calibration or one.scale != 1 for one in cameras.values())
     made = MADE.fullmatch(file.as_posix())
-    known = Calibration.parse(made[1]).has_covariance if made else is_there(root / beside)
+    known = (
+        Calibration.parse(made["calibration"]).has_covariance if made else is_there(root / beside)
+    )
     return beside.as_posix() if known and not changed else None
 
 
