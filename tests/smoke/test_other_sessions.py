@@ -332,6 +332,19 @@ def test_another_court_is_a_file(gym):
     # processor's instructions, gave medians of 3.15 to 4.12 cm, mean 3.61, standard deviation 0.31.
     # The bound is mean and three standard deviations, rounded up: not what this one draw gives.
     assert most["volume_rms_cm"].median() <= 4.6
+    # A later session with the same cameras knows their errors, too.
+    del session["walks"]
+    session["virtual"]["walk_frames"] = 0
+    session["calibration"] = {"file": "results/tennis-hall/calibration/sfm-n12/cameras.toml"}
+    wanted = [f"calibration/file/{name}" for name in ("cameras.toml", "quality.json")]
+    wanted = [f"results/tennis-later/{name}" for name in (*wanted, "figures/error_map.file.csv")]
+    later = study(gym, "tennis-later", session, wanted, calibrations=["file"])
+    first, again = (
+        json.loads((folder / "quality.json").read_text())["expected_volume_rms_cm"]
+        for folder in (results / "calibration/sfm-n12", later / "calibration/file")
+    )
+    assert again == pytest.approx(first, rel=1e-3)
+    assert (later / "figures/error_map.file.csv").is_file()
 
 
 def test_without_a_court_cameras_are_right_but_for_scale_and_frame(gym, tiny_study):
