@@ -130,6 +130,24 @@ def test_warnings_of_a_check_join_those_of_the_calibration_file(tmp_path):
     }
 
 
+def test_a_check_without_a_fault_says_what_agrees(tmp_path):
+    (tmp_path / "quality.json").write_text(json.dumps({}))
+    check = {"warnings": [], "disagree_px": {"static": 1.68, "people": 4.91}}
+    (tmp_path / "check.json").write_text(json.dumps(check))
+    (tmp_path / "court.json").write_text(json.dumps({"warnings": [], "n_agreeing": 3}))
+    checks = [tmp_path / f"{name}.json" for name in ("check", "court")]
+    files = {"quality": {"file": tmp_path / "quality.json"}, "checks": checks}
+    found = "the check found no fault: "
+    assert report_facts.of_session(files)["quality"]["file"]["remarks"] == [
+        f"{found}views of points at rest disagree by 1.7 px per axis, "
+        "views of people disagree by 4.9 px per axis",
+        f"{found}3 cameras see the court's lines at the same place",
+    ]
+    (tmp_path / "check.json").write_text(json.dumps(check | {"warnings": ["x"]}))
+    (tmp_path / "court.json").write_text(json.dumps({"warnings": [], "n_agreeing": 1}))
+    assert report_facts.of_session(files)["quality"]["file"]["remarks"] == []
+
+
 def test_verdicts_are_those_of_the_way_that_is_reported(tmp_path):
     rows = report_facts.of_take(report_made.files_of_take(tmp_path))["quality"]
     assert {row["calibration"] for row in rows} == {"sfm-n40"} and len(rows) == 3

@@ -17,6 +17,7 @@ from courtside.study.execution import verdicts
 from courtside.study.execution.files import read_json
 
 SUMMARY = ("person", "measure", "value", "sigma", "sigma_camera", "unit", "n")
+OBSERVED = {"static": "points at rest", "people": "people"}  # by a check of a calibration file
 FRAMES = ("person", "time_s", "neck_reason")
 FOOTWORK = ("person", "measure", "value", "sigma", "unit", "n")
 
@@ -76,19 +77,34 @@ def of_session(files: dict) -> dict:
 
     `quality`: {calibration: content}; `model`: content, empty without a file; `static`: rows.
     `files` are paths by `quality`: {calibration: file}, `checks` (a list; what they warn of and
-    remark is of the calibration `file`), `model` (summary of the structure from motion), `static`
-    (a list); each may be left out.
+    remark, and what agrees, is of the calibration `file`), `model` (summary of the structure from
+    motion), `static` (a list); each may be left out.
     """
     quality = {name: read_json(path) for name, path in files.get("quality", {}).items()}
     checks = [read_json(path) for path in files.get("checks", ())]
-    for key in ("warnings", "remarks") if checks else ():
-        told = [line for check in checks for line in check.get(key, ())]
-        quality["file"] = {**quality["file"], key: told}
+    if checks:
+        keys = ("warnings", "remarks")
+        told = {key: [line for check in checks for line in check.get(key, ())] for key in keys}
+        told["remarks"] += filter(None, map(_agreement, checks))
+        quality["file"] = {**quality["file"], **told}
     return {
         "quality": quality,
         "model": read_json(files["model"]) if files.get("model") else {},
         "static": [_row(path) for path in files.get("static", ())],
     }
+
+
+def _agreement(check: dict) -> str:
+    """Return in words what agrees with a calibration file, by a check that found no fault."""
+    if check.get("warnings"):
+        return ""
+    told = [
+        f"views of {OBSERVED[what]} disagree by {px:.1f} px per axis"
+        for what, px in check.get("disagree_px", {}).items()
+    ]
+    if check.get("n_agreeing", 0) > 1:
+        told.append(f"{check['n_agreeing']} cameras see the court's lines at the same place")
+    return f"the check found no fault: {', '.join(told)}" if told else ""
 
 
 def of_skeleton(found: Keypoints3D) -> dict:
