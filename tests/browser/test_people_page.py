@@ -21,8 +21,8 @@ OTHER = ["run", "a", "c0", "1", "2", "3", "", ""]
 def opened(open_page, tmp_path):
     """Return `opened(named=..., rows=...)`: the page of two people whom two cameras see."""
 
-    def made(**given):
-        take = named_takes.take(2)
+    def made(n_people=2, n_cameras=2, **given):
+        take = named_takes.take(n_people, n_cameras=n_cameras)
         shots = [
             Shot(
                 k,
@@ -33,12 +33,12 @@ def opened(open_page, tmp_path):
                 120.0 + c,
                 PICTURE,
             )
-            for k in range(2)
+            for k in range(n_people)
             for column, at in enumerate(COLUMNS)
-            for c in range(2)
+            for c in range(n_cameras)
         ]
         words = {"session": "hall", "take": "walk", "subjects": ["a", "b"], "target": "data/p.csv"}
-        columns = {0: COLUMNS, 1: COLUMNS}
+        columns = dict.fromkeys(range(n_people), COLUMNS)
         built = people_page.build(words, take.found, take.seen, columns, shots, **given)
         pages.write(tmp_path / "people.html", built)
         return open_page(tmp_path / "people.html")
@@ -72,6 +72,27 @@ def test_a_name_is_saved_with_two_pixels_of_the_largest_view(opened, tmp_path):
     assert {one.xy for one in found} == {named_takes.place_px(1, 1)}
     assert page.inner_text("#missing") == "Not named yet: b."
     assert "data/p.csv" in page.inner_text("#message")
+
+
+def test_twelve_people_are_found_by_number_on_the_floor_and_in_the_largest_pictures(opened):
+    page = opened(n_people=12, n_cameras=8)
+    assert page.locator("#floor .label").all_text_contents() == [str(k + 1) for k in range(12)]
+    shown = "article[data-person=person-9] tbody th"
+    assert page.locator(shown).all_inner_texts() == ["c4", "c5", "c6", "c7"]  # the largest, above
+    page.check("#all")
+    assert page.locator(shown).all_inner_texts() == [f"c{k}" for k in range(8)]
+    page.locator("#floor .label").nth(8).click()
+    until(page, "Math.abs(document.getElementById('person-9').getBoundingClientRect().top) < 2")
+    name(page, "person-9", "a")
+    assert page.locator("#floor .label").all_text_contents()[8] == "a"
+    options = page.locator("article[data-person=person-1] option").all_inner_texts()
+    assert options == ["no subject", "a (also person-9)", "b"]
+
+
+def test_pictures_of_few_cameras_need_no_choice(opened):
+    page = opened(n_cameras=4)
+    assert page.locator("article img").count() == 2 * 6 * 4
+    assert not page.is_visible("#all")
 
 
 def test_a_split_saves_its_bounds_by_the_clock_of_the_camera(opened, tmp_path):

@@ -95,9 +95,21 @@ def test_covariance_holds_the_errors_it_promises():
     xy = scene.views(views, xyz) + np.random.default_rng(3).normal(0, 2, (4, 4000, 2))
     found = triangulation.triangulate_robust(views, xy, np.ones((4, 4000)), **LIMITS)
     error = found.xyz - xyz
-    squared = np.einsum("ni,nij,nj->n", error, np.linalg.inv(2**2 * found.covariance), error)
+    covariance = (2 / LIMITS["max_error_px"]) ** 2 * found.covariance
+    squared = np.einsum("ni,nij,nj->n", error, np.linalg.inv(covariance), error)
     # 90 % of a chi-squared variable with 3 degrees of freedom lie below 6.251.
     assert 0.87 <= np.mean(squared < 6.251) <= 0.92
+
+
+def test_covariance_holds_larger_errors_of_near_views():
+    views, xyz = scene.ring(4), scene.points(4000)
+    limit_px = np.broadcast_to(np.array([[120.0], [30], [30], [60]]), (4, 4000))
+    noise_px = np.random.default_rng(5).normal(0, 0.1, (4, 4000, 2)) * limit_px[..., None]
+    xy, limits = scene.views(views, xyz) + noise_px, {"max_error_px": limit_px, "fade_px": 1e4}
+    found = triangulation.triangulate_robust(views, xy, np.ones((4, 4000)), **limits)
+    error = found.xyz - xyz
+    squared = np.einsum("ni,nij,nj->n", error, np.linalg.inv(0.1**2 * found.covariance), error)
+    assert 0.88 <= np.mean(squared < 6.251) <= 0.92
 
 
 def test_missing_and_low_scores_are_not_used():

@@ -131,6 +131,31 @@ def test_a_take_is_doubtful_where_its_calibration_doubts_itself():
     assert take.sentence.endswith(" The calibration is in doubt: floor.")
 
 
+def crowded(hidden=(), others=37):
+    """Return the verdicts on a take whose camera c1 shows spectators beside the two players."""
+    cameras = judged.footage(hidden=hidden)
+    players = cameras[1].tracklets
+    rows = {
+        name: np.concatenate([getattr(players, name), np.tile(getattr(players, name)[:1], shape)])
+        for name, shape in (("xy", (others, 1, 1, 1)), ("score", (others, 1, 1)))
+    }
+    cameras[1] = replace(cameras[1], tracklets=replace(players, **rows))
+    return wholes(cameras)[0]
+
+
+def test_a_take_is_doubtful_where_more_people_are_found_than_can_be_followed():
+    rows = crowded()
+    take = rows.pop((ALL, ALL))
+    assert (take.verdict, take.cause) == (DOUBTFUL, causes.IDENTITY)
+    line = "camera c1: expected at most 38 people at once, found 39; only 40 are followed"
+    assert line in take.sentence and take.sentence.endswith("out of the pictures.")
+    assert {row.verdict for row in rows.values()} == {GOOD}
+    assert crowded(others=36)[ALL, ALL].verdict == GOOD
+    failed = crowded(hidden=dict.fromkeys((0, 2, 3), 1.0))[ALL, ALL]
+    assert (failed.verdict, failed.cause) == (FAILED, causes.DETECTION)
+    assert line in failed.sentence
+
+
 @pytest.mark.parametrize("n_cameras", [2, 4])
 def test_a_take_in_which_nobody_was_found_failed(n_cameras):
     rows, _ = wholes(judged.footage(n_cameras=n_cameras, hidden=dict.fromkeys(range(4), 1.0)))

@@ -150,6 +150,26 @@ def test_the_measured_noise_gives_honest_ellipsoids():
     assert (inside < 0.95).all()
 
 
+def test_noise_that_grows_with_the_person_in_the_picture_gives_honest_ellipsoids():
+    time_s = np.arange(900) / 60
+    made = np.stack([walker.body(900) * [0, 1, 1] + [x, 0, 0] for x in (-2.0, 0.5, 3.0)])
+    near, *far = scene.ring(4, radius_m=12)
+    cameras = [replace(near, cam_from_world=scene.look_at((-6, 0.5, 2), (0, 0, 1))), *far]
+    rng, views = np.random.default_rng(1), []
+    for camera in cameras:
+        xy = scene.opencv_projection(camera, made.reshape(-1, 3)).reshape(3, 900, -1, 2)
+        trunk = made.mean(axis=2) @ camera.cam_from_world[2, :3] + camera.cam_from_world[2, 3]
+        sigma_px = 0.012 * 1.7 * scene.FOCAL_PX / trunk  # 12 per mille of a height
+        xy += rng.normal(0, 1, xy.shape) * sigma_px[..., None, None]
+        views.append(keypoints_made.view(camera, walker.SKELETON.joints, time_s, xy))
+    options = OPTIONS | {"max_error_px": None, "fade_px": None, "fix_sides": False}
+    points = fusion.triangulate_take(cameras, views, walker.SKELETON, ["a", "b", "c"], **options)
+    error = points.xyz - made
+    squared = np.einsum("ptji,ptjik,ptjk->ptj", error, np.linalg.inv(points.covariance_2d), error)
+    inside = np.mean(squared < 6.251, axis=(1, 2))  # of each person, near the first camera or far
+    assert (inside > 0.88).all() and (inside < 0.95).all()
+
+
 CAMERAS = scene.ring(2, radius_m=8)
 N = len(camera_covariance.PARAMETERS)
 SIGMA = np.array([1e-3, 2e-3, 1e-3, 0.01, 0.02, 0.01, 4, 1e-4, 2, 2, 1e-4, 1e-4, 1e-5, 1e-5])

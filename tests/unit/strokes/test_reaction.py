@@ -85,11 +85,21 @@ def test_in_doubles_only_who_is_beyond_the_net_reacts():
     four.xyz[3] = np.nan  # of whom nobody knows the half
     names = four.person_id.tolist()
     feet = events(*((name, "split_step", 1.05, 1.2) for name in names))
-    for hitter, reacts in ((0, [2, 3]), (1, [2, 3]), (2, [0, 1, 3])):
+    for hitter, reacts in ((0, [2]), (1, [2]), (2, [0, 1]), (3, [])):
         rows = reaction.join(hits((names[hitter], 1.0, 0.03)), feet, four, 6.7)
         assert rows.person.tolist() == [names[at] for at in reacts]
     unnetted = reaction.join(hits((names[0], 1.0, 0.03)), feet, four, None)
     assert unnetted.person.tolist() == names[1:]
+
+
+def test_of_two_the_other_reacts_though_nobody_knows_the_half():
+    two = walker.points(n_frames=60, n_persons=2)
+    first, other = two.person_id.tolist()
+    feet = events((first, "split_step", 1.05, 1.2), (other, "split_step", 1.05, 1.2))
+    for y_m, reacts in ((9.0, [other]), (np.nan, [other]), (3.0, [])):
+        two.xyz[..., 1] = np.array([2.0, y_m])[:, None, None]
+        rows = reaction.join(hits((first, 1.0, 0.03)), feet, two, 6.7)
+        assert rows.person.tolist() == reacts
 
 
 def test_alone_nobody_reacts():

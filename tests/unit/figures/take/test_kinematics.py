@@ -49,6 +49,20 @@ def test_the_lines_show_the_tables_values(tables):
     assert f"{value:.2f}" in plan.get_title()
 
 
+def test_the_legend_leaves_a_path_at_the_far_end_free(tables):
+    frames, summary = tables
+    corner = {"neck_x_m": 6.0, "neck_y_m": 13.2}
+    shifts = {key: frames[key] - frames[key].max() + end for key, end in corner.items()}
+    drawing = speeds.draw(
+        frames.assign(**shifts), summary, court.read(CONFIG / "courts" / "badminton.yaml")
+    )
+    drawing.draw_without_rendering()
+    plan = drawing.subfigs[0].axes[0]
+    path_px = plan.transData.transform(np.column_stack(list(shifts.values())))
+    box = plan.get_legend().get_window_extent()
+    assert not [place for place in path_px if box.contains(*place)]
+
+
 def test_the_limits_of_the_distance_include_the_cameras_error(tables):
     frames, summary = tables
     known = {"value": 12.0, "sigma": 0.3, "sigma_camera": 0.4}

@@ -70,6 +70,23 @@ def test_frames_are_evenly_spread_without_the_ends():
     assert 0 < shown[0] < shown[-1] < len(record.time_s) - 1
 
 
+def test_pictures_of_eight_cameras_are_as_wide_as_those_of_four():
+    sizes = []
+    for count in (4, 5, 8):
+        cameras = scene.ring(count)
+        record = walker.points(n_cameras=count)
+        views = walker.views(record, cameras, (3.0, 4.0))
+        pairs = zip(cameras, views, strict=True)
+        footage = [Footage(camera, view, Clock(), "") for camera, view in pairs]
+        drawing = overlay.draw(record, footage, [6, 9], [[IMAGE] * count] * 2, walker.SKELETON)
+        drawing.draw_without_rendering()
+        titles = [axis.get_title() for axis in drawing.axes]
+        times = [f"{record.time_s[frame]:.2f} s" for frame in (6, 9)]
+        assert titles == [f"c{k}, {time}" for time in times for k in range(count)]
+        sizes.append([axis.get_window_extent().width for axis in drawing.axes])
+    assert min(sizes[1]) > 0.95 * max(sizes[0]) and min(sizes[2]) > 0.95 * max(sizes[0])
+
+
 def drawn(accepted=True):
     """Return the axis of a panel in which joints are detected 200 px beside the true ones."""
     record, footage = inputs(offset_px=(200.0, 0.0))

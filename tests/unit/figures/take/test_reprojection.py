@@ -1,11 +1,13 @@
 """The statistics drawn are numpy's."""
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from courtside.figures.take import reprojection
+from fixtures import drawings
 from fixtures.people import walker
 
 
@@ -28,6 +30,31 @@ def test_the_table_matches_numpys_percentiles():
 def test_every_camera_has_a_panel():
     drawing = reprojection.draw(reprojection.table(walker.points()))
     assert [axis.get_title().split(":")[0] for axis in drawing.axes] == ["c0", "c1", "c2"]
+
+
+def test_panels_of_eight_cameras_have_room_for_their_words():
+    record = walker.points(n_cameras=8)
+    record.reproj_error_px[...] *= np.geomspace(0.05, 1, record.reproj_error_px.shape[1])[
+        :, np.newaxis, np.newaxis
+    ]
+    drawing = reprojection.draw(reprojection.table(record))
+    assert not drawings.cut(drawing)
+    low, high = drawing.axes[0].get_xlim()
+    ticks = [axis.get_xticklabels(which="both") for axis in drawing.axes]
+    shown = [one for one in itertools.chain(*ticks) if low <= one.get_position()[0] <= high]
+    shown = [one for one in [*shown, *(axis.title for axis in drawing.axes)] if one.get_text()]
+    boxes = [one.get_window_extent() for one in shown if one.get_visible()]
+    assert len(boxes) > 8
+    assert not [pair for pair in itertools.combinations(boxes, 2) if pair[0].overlaps(pair[1])]
+
+
+def test_every_bottom_panel_has_numbers_where_the_last_row_is_not_full():
+    drawing = reprojection.draw(reprojection.table(walker.points(n_cameras=5)))
+    drawing.draw_without_rendering()
+    assert len(drawing.axes) == 5
+    named = [bool(axis.get_xlabel()) for axis in drawing.axes]
+    numbers = [any(one.get_visible() for one in axis.get_xticklabels()) for axis in drawing.axes]
+    assert named == numbers == [False, False, True, True, True]
 
 
 @pytest.mark.parametrize("scale", [1.0, 0.01])

@@ -52,6 +52,16 @@ def test_labels_of_the_panels_do_not_overlap():
     assert middle_px + label.get_window_extent().width / 2 < above.get_tightbbox().x0
 
 
+@pytest.mark.parametrize("long_m", [4.0, 18.0, 28.0])
+def test_the_floor_in_perspective_has_room_for_its_numbers(long_m):
+    record = walker.points(n_persons=2)
+    record.xyz[1, ..., 1] += long_m
+    axis = skeletons.draw(record, scene.ring(3), walker.SKELETON).axes[0]
+    low, high = axis.get_ylim()
+    numbers = [one for one in axis.yaxis.get_majorticklocs() if low <= one <= high]
+    assert 3 <= len(numbers) <= 11
+
+
 @pytest.mark.parametrize("radius_m", [6.0, 120.0])
 def test_the_direction_of_a_camera_is_seen_in_a_hall_of_any_size(radius_m):
     cameras = scene.ring(4, radius_m)

@@ -72,6 +72,22 @@ def test_without_a_page_each_person_comes_with_the_entry_that_names_it():
         assert (found.index["c1"] == person).all()
 
 
+def test_without_a_page_every_person_of_a_team_comes_with_an_entry():
+    names = [f"player{k}" for k in range(12)]
+    take = named_takes.take(14, n_cameras=8)
+    with pytest.raises(InputError) as fault:
+        name(take, subjects=names, words=naming.Wording("hall/walk", "", "hall.yaml"))
+    first, *others = fault.value.lines
+    assert first.startswith("hall/walk: expected a statement who is player0 and who is player1 ")
+    assert "found 14 persons, listed below in the log; say which" in first and first.endswith(
+        "in hall.yaml"
+    )
+    assert [line.split()[0] for line in others] == [f"person-{k + 1}" for k in range(14)]
+    for person, line in enumerate(others):
+        (entry,) = (yaml.safe_load(text) for text in re.findall(r"{.*?}", line))
+        assert entry == {"camera": "c0", "time_s": 3.0, "at_px": [*named_takes.place_px(person)]}
+
+
 def test_a_sighting_chooses_the_person_and_says_who_is_left():
     take = named_takes.take(3)
     named = name(take, [sighting("p1", 1)])

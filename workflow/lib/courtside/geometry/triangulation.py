@@ -36,7 +36,8 @@ class Triangulated:
     """Triangulated points."""
 
     xyz: NDArray  # (N, 3): NaN where too few views are usable or agree
-    # (N, 3, 3) m2: of keypoints with a sigma of 1 px per axis at score 1; NaN where missing
+    # (N, 3, 3) m2; NaN where missing: of keypoints with a standard deviation per axis, at score 1,
+    # of the limit `max_error_px`, or of 1 px without limits
     covariance: NDArray
     accepted: NDArray  # (C, N): views that the point rests on
     error_px: NDArray  # (C, N): from keypoint, accepted or not, to projection; NaN without either
@@ -173,16 +174,16 @@ def _solve(
 ) -> Triangulated:
     seen = np.isfinite(xy).all(axis=-1) & np.isfinite(score) & (score > 0)
     weight = np.where(seen & (score >= min_score), score, 0.0)
-    found = _weighted(cameras, xy, weight, min_views, limit_px, fade_px)
-    spread_m = _spread_m(found, limit_px)
+    found = _weighted(cameras, xy, weight, min_views, limit_px, fade_px, limit_px)
+    spread_m = _spread_m(found)
     weak = np.flatnonzero((spread_m > weak_m) & (seen.sum(axis=0) > 2))
     if not len(weak):
         return found
     root = np.sqrt(np.where(seen, score, 0.0)[:, weak])
     wider = np.clip(np.nan_to_num(score[:, weak]), LEAST_SCORE, 1.0) ** -WIDER
     limits_px = limit_px[:, weak] * wider, fade_px[:, weak] * wider
-    again = _weighted(cameras, xy[:, weak], root, min_views, *limits_px)
-    better = _spread_m(again, limit_px[:, weak]) < BETTER * spread_m[weak]
+    again = _weighted(cameras, xy[:, weak], root, min_views, *limits_px, limit_px[:, weak])
+    better = _spread_m(again) < BETTER * spread_m[weak]
     return _replaced(found, weak[better], again, better)
 
 
@@ -193,8 +194,12 @@ def _weighted(
     min_views: int,
     limit_px: NDArray,
     fade_px: NDArray,
+    sigma_px: NDArray,
 ) -> Triangulated:
-    """Triangulate with these weights (C, N), 0 for a view that is not used."""
+    """Triangulate with these weights (C, N), 0 for a view that is not used.
+
+    `sigma_px` (C, N) is the standard deviation of a keypoint of weight 1, for the covariance.
+    """
     views = Views(cameras, xy, weight)
     xyz = np.full((xy.shape[1], 3), np.nan)
     accepted = np.zeros(weight.shape, dtype=bool)
@@ -202,17 +207,16 @@ def _weighted(
     if len(at):
         found = _select_and_refine(views.of(at), limit_px[:, at], fade_px[:, at], min_views)
         xyz[at], accepted[:, at] = found
-    covariance = _noise_covariance(views, xyz, accepted)
+    covariance = _noise_covariance(views, xyz, accepted, sigma_px)
     return Triangulated(xyz, covariance, accepted, _reprojection_px(cameras, xy, xyz), weight)
 
 
-def _spread_m(found: Triangulated, limit_px: NDArray) -> NDArray:
+def _spread_m(found: Triangulated) -> NDArray:
     """Return the standard deviation (N,) m of points by keypoints of the usual error.
 
     NaN where missing; infinite where the views leave a direction open.
     """
-    usual = USUAL * np.median(limit_px, axis=0)
-    spread_m = np.sqrt(np.trace(found.covariance, axis1=1, axis2=2)) * usual
+    spread_m = USUAL * np.sqrt(np.trace(found.covariance, axis1=1, axis2=2))
     return np.where(np.isnan(spread_m) & np.isfinite(found.xyz[:, 0]), np.inf, spread_m)
 
 
@@ -270,14 +274,20 @@ def _faded(views: Views, xyz: NDArray, scale_px: NDArray, widest_px: NDArray | f
     return views.weight / (1 + (error / scale_px) ** 2) ** 2 * (error <= widest_px)
 
 
-def _noise_covariance(views: Views, xyz: NDArray, accepted: NDArray) -> NDArray:
-    """Return the covariance (N, 3, 3) m2 of points from 1 px of noise, with weight 1, per axis.
+def _noise_covariance(
+    views: Views, xyz: NDArray, accepted: NDArray, sigma_px: NDArray | float
+) -> NDArray:
+    """Return the covariance (N, 3, 3) m2 of points by the noise of their `accepted` views (C, N).
 
-    Only `accepted` views (C, N) count.
+    `sigma_px` is that of a keypoint of weight 1, per axis. It may differ between views: weights are
+    by score alone, and a point follows the near view with its larger errors.
     """
     _, in_cam = views.residuals(np.nan_to_num(xyz))
-    rows, weighted = views.jacobians(in_cam, views.weight * accepted)
-    return inverse_3x3(weighted @ rows)
+    weight = views.weight * accepted
+    rows, weighted = views.jacobians(in_cam, weight)
+    _, noisy = views.jacobians(in_cam, weight * np.square(sigma_px))
+    inverse = inverse_3x3(weighted @ rows)
+    return inverse @ (noisy @ rows) @ inverse
 
 
 def _reprojection_px(cameras: Sequence[Camera], xy: NDArray, xyz: NDArray) -> NDArray:
@@ -367,7 +377,7 @@ def triangulate_plain(
     xyz = triangulate(views.xy, views.weight, views.matrix)
     return Triangulated(
         xyz=xyz,
-        covariance=_noise_covariance(views, xyz, used),
+        covariance=_noise_covariance(views, xyz, used, 1.0),
         accepted=(views.weight > 0) & np.isfinite(xyz[:, 0]),
         error_px=_reprojection_px(cameras, xy, xyz),
         weight=views.weight,

@@ -9,6 +9,7 @@ import pandas as pd
 from courtside.quality import causes, measures
 from courtside.quality.calibration_doubts import Doubts
 from courtside.quality.seen import Seen, disagreement, shown, without
+from courtside.reconstruction.association import associate
 from courtside.study.execution.verdicts import ALL, COLUMNS, DOUBTFUL, FAILED, GOOD, ORDER, WHOLE
 
 AGREES = "it agrees with the other cameras"
@@ -90,12 +91,28 @@ def judge(seen: Seen, doubts: Doubts = NONE) -> pd.DataFrame:
     Columns `COLUMNS`. A row with the measure `WHOLE` has the verdict, the likelier cause where it
     is not good, and one sentence; that with `ALL` cameras and persons is the take's. A take failed
     if a person failed in it, or half of its cameras; another camera that is not good makes it
-    doubtful, and so do `doubts` about its calibration.
+    doubtful, and so do `doubts` about its calibration, and more people than can be followed.
     """
     by_camera = [_doubted(rows, doubts) for rows in _cameras(seen, doubts)]
     by_person = [_person(seen, at) for at in range(len(seen.points.person_id))]
     take = _take([rows[0] for rows in by_camera], [rows[0] for rows in by_person], doubts)
+    if crowd := _crowd(seen):
+        take = _crowded(take, crowd)
     return pd.DataFrame([take, *chain(*by_camera, *by_person)], columns=COLUMNS)
+
+
+def _crowd(seen: Seen) -> str:
+    at_once = [int(shown(rows).sum(axis=0).max(initial=0)) for rows in seen.rows]
+    names = [camera.name for camera in seen.cameras]
+    return associate.crowd(dict(zip(names, at_once, strict=True)))
+
+
+def _crowded(take: dict, crowd: str) -> dict:
+    """Return the row of a take in which more people were found than can be followed."""
+    good = take["verdict"] == GOOD
+    found = {"verdict": DOUBTFUL, "cause": causes.IDENTITY} if good else {}
+    sentence = f"{take['sentence']} More people than can be followed: {crowd}."
+    return {**take, **found, "sentence": sentence}
 
 
 def _doubted(rows: list[dict], doubts: Doubts) -> list[dict]:

@@ -53,8 +53,9 @@ def triangulate_take(
     everywhere, have precedence.
 
     The keypoints' standard deviation is measured per joint from the residuals of the accepted
-    views, three degrees of freedom less per point. It contains what the views disagree on, but not
-    an error that all views share, such as a network that places every hip too low.
+    views, three degrees of freedom less per point: in heights of the person in each picture, as the
+    limits are, or with "dlt" in px. It contains what the views disagree on, but not an error that
+    all views share, such as a network that places every hip too low.
     """
     clocks = clocks or [Clock()] * len(views)
     time_s = resampling.common_times(views, clocks) if time_s is None else time_s
@@ -74,9 +75,9 @@ def triangulate_take(
     found = solve(cameras, xy.reshape(len(cameras), -1, 2), flat, **options)
     points = _record(cameras, views[0], person_id, time_s, found, swapped)
     reason = why_missing(flat, found.xyz, min_score, min_views).reshape(points.xyz.shape[:-1])
-    variance = keypoint_variance(points, found.weight.reshape(score.shape))
-    covariance = points.covariance_2d * variance[:, None, None]
-    points = replace(points, reason=reason, covariance_2d=covariance)
+    weight = found.weight / np.square(options.get("max_error_px", 1.0))  # as of the covariance
+    variance = keypoint_variance(points, weight.reshape(score.shape))[:, None, None]
+    points = replace(points, reason=reason, covariance_2d=points.covariance_2d * variance)
     return _without_open(points) if rule == "robust" else points
 
 
@@ -157,10 +158,10 @@ def why_missing(score: NDArray, xyz: NDArray, min_score: float, min_views: int) 
 
 
 def keypoint_variance(points: Keypoints3D, weight: NDArray) -> NDArray:
-    """Measure each joint's keypoint variance (J,) for weight 1, px^2 per axis, from the residuals.
+    """Measure each joint's keypoint variance (J,) per axis, for weight 1, from the residuals.
 
-    `weight` is (C, P, T, J). Each point has 2 n residuals and uses 3 of them for its coordinates.
-    The result is NaN for a joint without a degree of freedom.
+    `weight` (C, P, T, J), px^-2, is that of a squared residual. Each point has 2 n residuals and
+    uses 3 of them for its coordinates. The result is NaN for a joint without a degree of freedom.
     """
     used = np.where(points.accepted, np.moveaxis(weight, 0, -1), 0.0)
     squares = (used * np.nan_to_num(points.reproj_error_px) ** 2).sum(axis=(0, 1, 3))

@@ -30,7 +30,7 @@ def join(
     """Return a row for each stroke and each other person who has events: `REACTION_COLUMNS`.
 
     With the skeletons `points` and the place of a net, partners of who hits have no row: those on
-    the same half of the court.
+    the same half of the court, and of more than two people those whose half is not known.
 
     `strokes` are of `courtside.strokes.detect.table`, `events` have the columns `person`, `event`,
     `start_s`, `start_sigma_s`, `stop_s`, `stop_sigma_s`. Intervals end when the split step lands
@@ -42,18 +42,18 @@ def join(
     for hit in strokes.itertuples():
         after = strokes.time_s[strokes.time_s > hit.time_s]
         stop_s = min([hit.time_s + LATEST_S, *after])
-        own_half = {str(hit.person), *_on_half(hit.person, hit.time_s, points, net_y_m)}
-        for person in sorted(set(events.person.astype(str)) - own_half):
+        partners = {str(hit.person), *_partners(hit.person, hit.time_s, points, net_y_m)}
+        for person in sorted(set(events.person.astype(str)) - partners):
             own = events[events.person.astype(str) == person]
             reacted = _reaction(hit.time_s, hit.sigma_s, own, stop_s)
             rows.append({"person": person, "opponent": hit.person, "hit_s": hit.time_s, **reacted})
     return pd.DataFrame(rows, columns=REACTION_COLUMNS)
 
 
-def _on_half(
+def _partners(
     person: Hashable, hit_s: float, points: Keypoints3D | None, net_y_m: float | None
 ) -> set[str]:
-    """Return who is on the half of the court of a person at a hit; nobody without a net."""
+    """Return who may be on the half of the court of a person at a hit; nobody without a net."""
     if points is None or net_y_m is None:
         return set()
     about = np.abs(points.time_s - hit_s) <= ABOUT_S
@@ -61,7 +61,10 @@ def _on_half(
     y_m = np.ma.masked_invalid(points.xyz[:, about][:, :, trunk, 1])
     beyond = np.sign(np.ma.median(y_m, axis=(1, 2)).filled(np.nan) - net_y_m)
     own = beyond[points.person_id == person]
-    return set(points.person_id[beyond == own].astype(str)) if len(own) else set()
+    if not len(own):
+        return set()
+    may_be = beyond != -own if len(points.person_id) > 2 else beyond == own
+    return set(points.person_id[may_be].astype(str))
 
 
 def _reaction(hit_s: float, sigma_s: float, own: pd.DataFrame, stop_s: float) -> dict[str, float]:

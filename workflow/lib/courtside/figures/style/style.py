@@ -19,6 +19,7 @@ MM_PER_INCH = 25.4
 # Okabe & Ito 2008: told apart with any colour vision.
 CYCLE = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
 LINES = ("-", "--", "-.", ":")
+A_ROW = 4  # panels of cameras: more are too narrow for their words and for people
 LEFT, RIGHT, MIDDLE = "#0072B2", "#D55E00", "#666666"
 DETECTED_BGR, REPROJECTED_BGR, REJECTED_BGR = (0, 255, 255), (255, 120, 0), (0, 0, 255)
 SETTINGS = {
@@ -70,6 +71,12 @@ def legend_below(axis: Axes, below_mm: float, **look: Any) -> None:
     inches = axis.get_figure(root=True).dpi_scale_trans
     below = axis.transAxes + ScaledTranslation(0, -below_mm / MM_PER_INCH, inches)
     axis.legend(loc="upper center", bbox_to_anchor=(0.5, 0), bbox_transform=below, **look)
+
+
+def wrapped(count: int) -> tuple[int, int]:
+    """Return rows and columns of so many panels: at most four in a row, about as many in each."""
+    rows = -(-count // A_ROW)
+    return rows, -(-count // rows)
 
 
 def line_look(at: int) -> dict[str, str]:

@@ -85,7 +85,7 @@ def _draw_path(
             max(np.max(y[known]), court.size_m[1] / 2) + ROOM_M,
         )
     if known.size:
-        axis.legend(loc="upper right", fontsize=7, frameon=True, edgecolor="none")
+        axis.legend(loc="best", fontsize=7, frameon=True, edgecolor="none")
     axis.set(xlabel="x (m)", ylabel="y (m)")
     axis.set_aspect("equal", adjustable="box" if court else "datalim")
 

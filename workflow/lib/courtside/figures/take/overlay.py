@@ -71,22 +71,26 @@ def draw(
     images: list[list[NDArray]],
     skeleton: Skeleton,
 ) -> Figure:
-    """Draw a row of pictures for each frame, a column for each camera; arguments as for `table`.
+    """Draw the pictures of all cameras for each frame in turn; arguments as for `table`.
 
     `images[row][column]` (H, W, 3) are BGR, with faces hidden if asked for.
     """
-    drawing = style.figure(18 + style.WIDTH_MM / len(footage) * len(shown))
-    axes = drawing.subplots(len(shown), len(footage), squeeze=False)
-    for (row, column), axis in np.ndenumerate(axes):
-        frame, one = shown[row], footage[column]
-        both, image = seen(points, one, frame, skeleton), images[row][column]
-        picture_crops.show(axis, image, picture_crops.box(both, image.shape[1::-1]))
-        line = LINE / np.sqrt(len(footage))
-        picture_crops.compare(axis, *both, skeleton.bone_indices(), line)
-        unused = ~points.accepted[:, frame, :, column]
-        for ends in np.stack(both, axis=2)[unused]:
-            axis.plot(*ends.T, color=picture_crops.MARKED, linewidth=1.0, zorder=4)
-        axis.set_title(f"{one.camera.name}, {points.time_s[frame]:.2f} s")
+    lines, columns = style.wrapped(len(footage))
+    drawing = style.figure(18 + style.WIDTH_MM / columns * len(shown) * lines)
+    axes = drawing.subplots(len(shown) * lines, columns, squeeze=False)
+    for row, frame in enumerate(shown):
+        panels = axes[row * lines : (row + 1) * lines].ravel()
+        for at, (axis, one) in enumerate(zip(panels, footage, strict=False)):
+            both, image = seen(points, one, frame, skeleton), images[row][at]
+            picture_crops.show(axis, image, picture_crops.box(both, image.shape[1::-1]))
+            line = LINE / np.sqrt(columns)
+            picture_crops.compare(axis, *both, skeleton.bone_indices(), line)
+            unused = ~points.accepted[:, frame, :, at]
+            for ends in np.stack(both, axis=2)[unused]:
+                axis.plot(*ends.T, color=picture_crops.MARKED, linewidth=1.0, zorder=4)
+            axis.set_title(f"{one.camera.name}, {points.time_s[frame]:.2f} s")
+        for axis in panels[len(footage) :]:
+            axis.remove()
     words = "Detected (yellow), 3D skeleton reprojected (blue), view not used (red)"
     drawing.suptitle(words, fontsize=8)
     return drawing

@@ -2,7 +2,9 @@
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
 from courtside.figures.style import bars, style
 from courtside.records.keypoints.keypoints import Keypoints3D
@@ -28,25 +30,34 @@ def table(points: Keypoints3D) -> pd.DataFrame:
 def draw(rows: pd.DataFrame) -> Figure:
     """Draw the table of `table`: medians with 5-95 % ranges, one panel per camera."""
     cameras, joints = list(dict.fromkeys(rows.camera)), list(dict.fromkeys(rows.joint))
-    drawing = style.figure(30 + 3.6 * len(joints))
-    axes = drawing.subplots(1, len(cameras), sharey=True, sharex=True, squeeze=False)[0]
-    for axis, camera in zip(axes, cameras, strict=True):
-        part = rows[rows.camera == camera].set_index("joint").loc[joints]
-        place = np.arange(len(joints))
-        share = part.n_accepted.sum() / max(part.n.sum(), 1)
-        look = {"color": "#999999", "linewidth": 1.2, "label": "5-95 % of all"}
-        axis.hlines(place, part.p05_px, part.p95_px, **look)
-        look = {"color": style.RIGHT, "markersize": 3, "label": "median of all"}
-        axis.plot(part.median_px, place, "o", **look)
-        look = {"color": style.LEFT, "markersize": 7, "label": "median of accepted"}
-        axis.plot(part.accepted_median_px, place, "|", **look)
-        axis.set_title(f"{camera}: {100 * share:.0f} % accepted")
+    lines, columns = style.wrapped(len(cameras))
+    drawing = style.figure(12 + (18 + 3.6 * len(joints)) * lines)
+    axes = drawing.subplots(lines, columns, sharey=True, sharex=True, squeeze=False).ravel()
+    for axis, camera in zip(axes, cameras, strict=False):
+        _draw_camera(axis, camera, rows[rows.camera == camera].set_index("joint").loc[joints])
+    for axis in axes[len(cameras) :]:
+        axis.remove()
+    for axis in axes[: len(cameras)][-columns:]:
+        axis.tick_params(labelbottom=True)
         axis.set_xlabel("reprojection error (px)")
-        axis.grid(axis="x")
     bars.name_rows(axes[0], joints)
-    axes[0].set_xscale("log")
+    bars.plain_log(axes[0], "x")
+    axes[0].xaxis.set_minor_formatter(NullFormatter())
     if rows.median_px.max() > SMALLEST_PX:
         axes[0].set_xlim(left=SMALLEST_PX)
     handles, labels = axes[0].get_legend_handles_labels()
     drawing.legend(handles, labels, loc="outside lower center", ncols=3)
     return drawing
+
+
+def _draw_camera(axis: Axes, camera: str, part: pd.DataFrame) -> None:
+    place = np.arange(len(part))
+    share = part.n_accepted.sum() / max(part.n.sum(), 1)
+    look = {"color": "#999999", "linewidth": 1.2, "label": "5-95 % of all"}
+    axis.hlines(place, part.p05_px, part.p95_px, **look)
+    look = {"color": style.RIGHT, "markersize": 3, "label": "median of all"}
+    axis.plot(part.median_px, place, "o", **look)
+    look = {"color": style.LEFT, "markersize": 7, "label": "median of accepted"}
+    axis.plot(part.accepted_median_px, place, "|", **look)
+    axis.set_title(f"{camera}: {100 * share:.0f} % accepted")
+    axis.grid(axis="x")

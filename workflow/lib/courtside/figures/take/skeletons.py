@@ -20,6 +20,7 @@ ARROW_POINTS, AWAY_POINTS = 18, 5  # of a camera's direction, and from its tip t
 NAME_POINTS = 9  # from a person's last place to the name
 BELOW_MM = 10.5  # from the panel to the legend, for the numbers and the label of the axis
 N_POSES = 5
+MOST_NUMBERS = 10  # along the longer side of the floor in perspective
 DEEP_M = 0.5  # the box of people on the floor begins so far below it; others are not on z = 0
 
 
@@ -83,7 +84,9 @@ def _draw_space(axis: Axes, points: Keypoints3D, skeleton: Skeleton) -> None:
     axis.text(high[0], high[1], high[2], "z (m)", ha="center", va="bottom")
     axis.set_box_aspect((high[0] - low[0], high[1] - low[1], high[2] - bottom), zoom=0.9)
     step_m = oblique_view.step_m(low, high)
-    for each in (axis.xaxis, axis.yaxis, axis.zaxis):
+    axis.zaxis.set_major_locator(MultipleLocator(step_m))
+    step_m *= np.ceil((high - low)[:2].max() / step_m / MOST_NUMBERS)
+    for each in (axis.xaxis, axis.yaxis):
         each.set_major_locator(MultipleLocator(step_m))
     axis.view_init(elev=18, azim=-60)
     axis.set_title("Skeletons and paths of wrists and ankles")

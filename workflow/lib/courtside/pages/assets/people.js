@@ -6,6 +6,7 @@
   const { byId, button, say } = courtside;
   const KEEP = `courtside people ${given.stamp}`;
   const COLOURS = ["#0b62b0", "#d1495b", "#1d7a3e", "#9a5400", "#7b4fb5", "#00838f", "#b0306a", "#5f6b00"];
+  const FEW = 4; // cameras whose pictures are shown of each person, unless all are wanted
   const colour = (person) => COLOURS[given.persons.indexOf(person) % COLOURS.length];
   const rounded = (value) => Math.round(value * 1000) / 1000;
 
@@ -27,6 +28,14 @@
     return column.views.reduce((best, view) => (!best || view.size_px > best.size_px ? view : best), null);
   }
 
+  /** Returns the cameras with the largest pictures of a person, in the session's order. */
+  function clearest(person) {
+    const size = {};
+    for (const view of person.columns.flatMap((column) => column.views)) size[view.camera] = (size[view.camera] || 0) + view.size_px;
+    const best = Object.keys(size).sort((a, b) => size[b] - size[a]).slice(0, FEW);
+    return Object.keys(given.clocks).filter((camera) => best.includes(camera));
+  }
+
   function rowsOf(person) {
     const own = parts[person.index], found = [];
     own.forEach((part, at) => {
@@ -40,6 +49,11 @@
       }
     });
     return found;
+  }
+
+  /** Returns the names of a person in all parts. */
+  function namesOf(person) {
+    return [...new Set(parts[person.index].map((part) => part.subject).filter(Boolean))];
   }
 
   function change(index, edit) {
@@ -67,6 +81,7 @@
   function render() {
     byId("persons").replaceChildren();
     for (const person of given.persons) renderPerson(person);
+    renderFloor();
     const named = new Set(Object.values(parts).flat().map((part) => part.subject));
     const open = given.subjects.filter((name) => !named.has(name));
     const alone = given.subjects.length === 1 && given.persons.length === 1;
@@ -79,7 +94,7 @@
   function renderPerson(person) {
     const card = element(byId("persons"), "article", { className: "person" });
     card.style.setProperty("--own", colour(person));
-    card.dataset.person = person.name;
+    card.dataset.person = card.id = person.name;
     element(card, "h2", { textContent: person.name });
     const doubts = person.doubts.map(([, stop, kept]) => ` May be somebody else after ${stop.toFixed(1)} s (${Math.round(kept * 100)} % that not).`);
     element(card, "p", {
@@ -96,7 +111,11 @@
     if (own.length > 1) renderBounds(row, person, part, at);
     const label = element(row, "label", { textContent: "is " });
     const choice = element(label, "select", { ariaLabel: `Name of ${person.name}${own.length > 1 ? ` from ${part.from.toFixed(1)} s` : ""}` });
-    for (const name of ["", ...given.subjects]) element(choice, "option", { value: name, textContent: name || "no subject" });
+    for (const name of ["", ...given.subjects]) {
+      const others = name ? given.persons.filter((one) => one !== person && namesOf(one).includes(name)) : [];
+      const words = `${name || "no subject"}${others.length ? ` (also ${others.map((one) => one.name).join(", ")})` : ""}`;
+      element(choice, "option", { value: name, textContent: words });
+    }
     choice.value = part.subject;
     choice.addEventListener("change", () => change(person.index, () => { part.subject = choice.value; }));
     const pictured = person.columns.filter(within(own, at)).some((column) => column.views.length);
@@ -129,7 +148,7 @@
       element(cell, "div", { textContent: `${column.time_s.toFixed(1)} s` });
       if (at && !cuts.includes(column)) button(cell, "Split here", () => split(person, column), { title: `Another name from about ${column.time_s.toFixed(1)} s on` });
     });
-    for (const camera of Object.keys(given.clocks)) {
+    for (const camera of byId("all").checked ? Object.keys(given.clocks) : clearest(person)) {
       const views = person.columns.map((column) => column.views.find((view) => view.camera === camera));
       if (!views.some(Boolean)) continue;
       const row = element(body, "tr");
@@ -145,13 +164,16 @@
     const svg = byId("floor"), points = given.persons.flatMap((person) => person.path.map(([, x, y]) => [x, y]));
     if (given.court) points.push([0, 0], given.court.size_m);
     const axis = (at) => points.map((point) => point[at]);
-    const low = [0, 1].map((at) => Math.min(...axis(at)) - 1), high = [0, 1].map((at) => Math.max(...axis(at)) + 1);
+    const margin = Math.max(1, ...[0, 1].map((at) => (Math.max(...axis(at)) - Math.min(...axis(at))) / 12)); // room for labels
+    const low = [0, 1].map((at) => Math.min(...axis(at)) - margin), high = [0, 1].map((at) => Math.max(...axis(at)) + margin);
+    svg.replaceChildren();
     if (!points.length) return;
     const size = [high[0] - low[0], high[1] - low[1]], wide = Math.max(...size) / 90;
     const draw = (kind, properties) => {
       const made = document.createElementNS("http://www.w3.org/2000/svg", kind);
       for (const [key, value] of Object.entries(properties)) made.setAttribute(key, String(value));
       svg.append(made);
+      return made;
     };
     svg.setAttribute("viewBox", `${low[0]} ${-high[1]} ${size[0]} ${size[1]}`);
     for (const [x0, y0, x1, y1] of given.court ? given.court.lines_m : []) {
@@ -162,6 +184,12 @@
       const places = person.path.map(([, x, y]) => `${x},${-y}`).join(" "), [, x, y] = person.path[0];
       draw("polyline", { class: "path", points: places, stroke: colour(person), "stroke-width": wide / 2 });
       draw("circle", { cx: x, cy: -y, r: wide, fill: colour(person) });
+    }
+    for (const person of given.persons.filter((one) => one.path.length)) {
+      const [, x, y] = person.path[0], words = namesOf(person).join(", ") || person.name.replace("person-", "");
+      const label = draw("text", { class: "label", x, y: -y - 1.6 * wide, "font-size": 4 * wide, "stroke-width": wide });
+      label.textContent = words;
+      label.addEventListener("click", () => byId(person.name).scrollIntoView());
     }
   }
 
@@ -176,6 +204,8 @@
   }
 
   byId("save").addEventListener("click", save);
+  byId("all").addEventListener("change", render);
+  byId("all-label").hidden = Object.keys(given.clocks).length <= FEW;
   byId("load").addEventListener("click", () => byId("chooser").click());
   byId("chooser").addEventListener("change", async (event) => {
     const [file] = event.target.files;
@@ -202,6 +232,5 @@
   byId("where").textContent = `The workflow reads ${given.target}, where the session's file says people: ${given.target}. `
     + `The file holds all takes: ${takes ? `the names of ${takes} other takes` : "no names of other takes"} were there when this page was made. If you named others since, load people.csv first.`;
   byId("left-out").textContent = given.left_out ? `${given.left_out} more, seen in less than 2 % of the take, are not shown.` : "";
-  renderFloor();
   render();
 })();

@@ -1,6 +1,6 @@
 """Association of tracklets across cameras; tracklets that mix people are cut into pieces first."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -128,20 +128,24 @@ def on_frames(index: NDArray, time_s: NDArray, frame_s: NDArray) -> NDArray:
     return np.where(inside, np.where((own < 0) & free, other, own), -1)
 
 
+def crowd(at_once: Mapping[str, int]) -> str:
+    """Return what is wrong with more people at once than can be followed, by camera; or empty."""
+    name = max(at_once, key=lambda one: at_once[one])
+    if at_once[name] + EXTRA <= MOST_PEOPLE:
+        return ""
+    return (
+        f"camera {name}: expected at most {MOST_PEOPLE - EXTRA} people at once, found "
+        f"{at_once[name]}; only {MOST_PEOPLE} are followed, who may be taken for others; leave "
+        "spectators out of the pictures"
+    )
+
+
 def _slots(cameras: Sequence[Camera], rows: Sequence[Rows]) -> int:
     """Return how many people may be in a take: as many as a camera shows at once, and some more."""
     shown = [int(r.present.sum(axis=0).max(initial=0)) for r in rows]
-    at_once = max(*shown, 1)
-    if at_once + EXTRA > MOST_PEOPLE:
-        log.logger.warning(
-            "camera %s: expected at most %d people at once, found %d; only %d are followed, who "
-            "may be taken for others; leave spectators out of the pictures",
-            cameras[int(np.argmax(shown))].name,
-            MOST_PEOPLE - EXTRA,
-            at_once,
-            MOST_PEOPLE,
-        )
-    return min(at_once + EXTRA, MOST_PEOPLE)
+    if line := crowd({camera.name: n for camera, n in zip(cameras, shown, strict=True)}):
+        log.logger.warning("%s", line)
+    return min(max(*shown, 1) + EXTRA, MOST_PEOPLE)
 
 
 def _unplaced(cameras, xy, time_s, instants, alone: bool) -> Association:

@@ -15,7 +15,7 @@ from courtside.reconstruction.association.marks import Mark
 from courtside.records.cameras.footage import Footage
 from courtside.records.keypoints.people import People
 from courtside.records.keypoints.sightings import Sighting
-from courtside.study.errors import InputError
+from courtside.study.errors import LONGEST, InputError
 
 # ASSUME: further beyond the court's lines for most of the take, somebody is no player on it.
 BESIDE_M = 2.0
@@ -53,7 +53,7 @@ def name(
     if open_ and not marks and len(subjects) == 1 and not free:
         free = [int(np.argmax(found.placed))]
     if len(open_) > 1 or (open_ and len(free) > 1):
-        raise InputError(_ambiguous(found, seen, [subjects[s] for s in open_], free, words))
+        raise InputError(*_ambiguous(found, seen, [subjects[s] for s in open_], free, words))
     for subject, person in zip(open_, free, strict=False):
         owner[person], used[subject] = subject, person
     return _named(found, seen, subjects, owner, used, marks)
@@ -113,8 +113,11 @@ def _beside(path: NDArray, court: Court | None) -> bool:
 
 def _ambiguous(
     found: People, seen: Sequence[Footage], open_: list[str], free: list[int], words: Wording
-) -> str:
-    """Return the error line that asks who the ambiguous subjects are."""
+) -> list[str]:
+    """Return the error line that asks who the ambiguous subjects are.
+
+    Without a page a team does not fit into it: then a line for each person follows.
+    """
     shares = found.shares()
     people = []
     for k in free:
@@ -126,11 +129,12 @@ def _ambiguous(
         )
     who = "which of them is" if len(free) != 1 else "whether this is"
     page = f"on the page {words.page} (people.csv), or " if words.page else ""
-    return (
-        f"{words.take}: expected a statement who is {' and who is '.join(open_)}, found "
-        f"{', '.join(people) or 'nobody'}; say {who} {' or '.join(open_)} {page}by `seen` in "
-        f"{words.file}"
-    )
+    wanted = f"{words.take}: expected a statement who is {' and who is '.join(open_)}, found "
+    what_to_do = f"; say {who} {' or '.join(open_)} {page}by `seen` in {words.file}"
+    line = f"{wanted}{', '.join(people) or 'nobody'}{what_to_do}"
+    if words.page or len(line) <= LONGEST:
+        return [line]
+    return [f"{wanted}{len(people)} persons, listed below in the log{what_to_do}", *people]
 
 
 def _sighting(found: People, seen: Sequence[Footage], person: int) -> str:
