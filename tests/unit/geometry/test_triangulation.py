@@ -205,6 +205,25 @@ def test_batches_do_not_change_the_result(batch, monkeypatch):
     np.testing.assert_allclose(parts.xyz, whole.xyz, atol=1e-9)
 
 
+@pytest.mark.parametrize("batch", [7, 1000])
+def test_limits_broadcast_over_joints_are_those_of_each_joint(batch, monkeypatch):
+    monkeypatch.setattr(triangulation, "BATCH", batch)
+    views, xyz, rng = scene.ring(4), scene.points(60), np.random.default_rng(4)
+    xy = scene.views(views, xyz) + rng.normal(0, 8, (4, 60, 2))
+    limit_px = rng.uniform(5, 30, (4, 15))  # of each frame; 4 joints
+    for_joints = np.broadcast_to(limit_px[..., None], (4, 15, 4))
+    repeated = np.repeat(limit_px, 4, axis=1)
+    found, expected = (
+        triangulation.triangulate_robust(
+            views, xy, np.ones((4, 60)), max_error_px=limit, fade_px=1.2 * limit
+        )
+        for limit in (for_joints, repeated)
+    )
+    for name, values in vars(expected).items():
+        np.testing.assert_array_equal(getattr(found, name), values)
+    assert not expected.accepted.all() and expected.accepted.any()
+
+
 def test_contradicting_shapes_and_too_few_views_are_refused():
     for n_views, n_scores in ((3, 3), (2, 1)):
         xy, score = np.zeros((n_views, 1, 2)), np.ones((n_scores, 1))

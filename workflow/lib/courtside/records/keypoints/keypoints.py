@@ -1,6 +1,6 @@
 """The two tables of keypoints that rules exchange: 2D of one camera, 3D of one take."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated
 
@@ -13,6 +13,7 @@ from courtside.study.errors import StrPath
 
 FORM_2D = "courtside keypoints2d 2"
 FORM_3D = "courtside keypoints3d 3"
+BLOCK = 4096  # frames at a time: what is computed of each frame by itself then needs little memory
 
 
 @dataclass(frozen=True)
@@ -120,6 +121,11 @@ class Keypoints3D:
         per_joint = [key for key, (_, shape) in spec.items() if shape[:3] == ("P", "T", "J")]
         cut = {key: getattr(self, key)[:, :, list(at)] for key in per_joint}
         return replace(self, joints=self.joints[list(at)], **cut)
+
+
+def blocks(n_frames: int) -> Iterator[slice]:
+    """Yield the frames of a take in order, at most `BLOCK` of them at a time."""
+    return (slice(at, at + BLOCK) for at in range(0, max(n_frames, 1), BLOCK))
 
 
 def unknown_errors(xyz: NDArray) -> dict[str, NDArray]:
