@@ -1,6 +1,6 @@
 """The two tables of keypoints that rules exchange: 2D of one camera, 3D of one take."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated
 
@@ -158,6 +158,10 @@ def write_3d(path: StrPath, keypoints: Keypoints3D) -> None:
     npz.write_record(path, FORM_3D, keypoints)
 
 
-def read_3d(path: StrPath) -> Keypoints3D:
-    """Read a `Keypoints3D` from an npz file; raise `InputError` if it is not one."""
-    return npz.read_record(path, FORM_3D, Keypoints3D)
+def read_3d(path: StrPath, left_out: Collection[str] = ()) -> Keypoints3D:
+    """Read a `Keypoints3D` from an npz file; raise `InputError` if it is not one.
+
+    Errors that are `left_out` are unknown in the result: the three covariances are two thirds of a
+    record's memory, and few steps need all.
+    """
+    return npz.read_record(path, FORM_3D, Keypoints3D, left_out)
