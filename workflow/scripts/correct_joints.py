@@ -6,14 +6,19 @@ from courtside.reconstruction import joint_correction
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution.script import run
 
+UNUSED = ("covariance_network", "offset", "outlier")  # errors of raw keypoints, for the memory
+
 
 def main(paths, corrected_npz, *, max_gap_s, sex_of):
-    raw = skeleton_filter.prepare(keypoints.read_3d(paths.raw), max_gap_s)
-    filtered, table = keypoints.read_3d(paths.filtered), joint_correction.read(paths.offsets)
-    chosen, order = cutoffs.read(paths.cutoffs)
-    per_joint = skeleton.read(paths.skeleton).by_group(chosen)
+    table, (chosen, order) = joint_correction.read(paths.offsets), cutoffs.read(paths.cutoffs)
     corrected = joint_correction.correct_then_filter(
-        raw, filtered, table, sex_of, per_joint, order, camera.read_toml(paths.cameras)
+        skeleton_filter.prepare(keypoints.read_3d(paths.raw, left_out=UNUSED), max_gap_s),
+        keypoints.read_3d(paths.filtered),
+        table,
+        sex_of,
+        skeleton.read(paths.skeleton).by_group(chosen),
+        order,
+        camera.read_toml(paths.cameras),
     )
     keypoints.write_3d(corrected_npz, corrected)
 

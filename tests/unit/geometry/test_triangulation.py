@@ -1,5 +1,6 @@
 """Triangulation against exact truth, OpenCV, NumPy, statistics, and a board of known size."""
 
+import tracemalloc
 from dataclasses import replace
 
 import cv2
@@ -208,13 +209,49 @@ def test_points_behind_the_cameras_are_refused():
 
 
 @pytest.mark.parametrize("batch", [1, 7, 1000])
-def test_batches_do_not_change_the_result(batch, monkeypatch):
+@pytest.mark.parametrize(
+    ("solve", "options"),
+    [(triangulation.triangulate_robust, LIMITS), (triangulation.triangulate_plain, {})],
+)
+def test_batches_do_not_change_the_result(batch, solve, options, monkeypatch):
     views, xyz = scene.ring(4), scene.points(50)
     xy = scene.views(views, xyz) + np.random.default_rng(4).normal(0, 8, (4, 50, 2))
-    whole = triangulation.triangulate_robust(views, xy, np.ones((4, 50)), **LIMITS)
+    whole = solve(views, xy, np.ones((4, 50)), **options)
     monkeypatch.setattr(triangulation, "BATCH", batch)
-    parts = triangulation.triangulate_robust(views, xy, np.ones((4, 50)), **LIMITS)
+    parts = solve(views, xy, np.ones((4, 50)), **options)
     np.testing.assert_allclose(parts.xyz, whole.xyz, atol=1e-9)
+
+
+def test_views_without_weights_need_little_memory(monkeypatch):
+    """The equations of all points at once are ten times as large as their keypoints."""
+    monkeypatch.setattr(triangulation, "BATCH", 2000)
+    views, xyz = scene.ring(4), scene.points(50_000)
+    xy, score = scene.views(views, xyz), np.ones((4, 50_000))
+    tracemalloc.start()
+    found = triangulation.triangulate_plain(views, xy, score)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    results = sum(values.nbytes for values in vars(found).values())
+    assert peak < results + 5 * xy.nbytes
+
+
+@pytest.mark.parametrize("batch", [7, 1000])
+def test_limits_broadcast_over_joints_are_those_of_each_joint(batch, monkeypatch):
+    monkeypatch.setattr(triangulation, "BATCH", batch)
+    views, xyz, rng = scene.ring(4), scene.points(60), np.random.default_rng(4)
+    xy = scene.views(views, xyz) + rng.normal(0, 8, (4, 60, 2))
+    limit_px = rng.uniform(5, 30, (4, 15))  # of each frame; 4 joints
+    for_joints = np.broadcast_to(limit_px[..., None], (4, 15, 4))
+    repeated = np.repeat(limit_px, 4, axis=1)
+    found, expected = (
+        triangulation.triangulate_robust(
+            views, xy, np.ones((4, 60)), max_error_px=limit, fade_px=1.2 * limit
+        )
+        for limit in (for_joints, repeated)
+    )
+    for name, values in vars(expected).items():
+        np.testing.assert_array_equal(getattr(found, name), values)
+    assert not expected.accepted.all() and expected.accepted.any()
 
 
 def test_contradicting_shapes_and_too_few_views_are_refused():

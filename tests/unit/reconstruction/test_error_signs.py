@@ -9,6 +9,7 @@ import pytest
 from courtside.geometry import triangulation
 from courtside.reconstruction import error_signs, fusion
 from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints import keypoints
 from fixtures.cameras import scene
 from fixtures.people import walker
 
@@ -60,9 +61,10 @@ def test_a_view_within_the_limit_shows_in_residuals_and_without_it():
         assert np.abs(np.delete(rise, np.arange(50)[FRAMES], axis=0)).max() < 0.01
 
 
-def test_points_in_batches_have_the_signs_of_all_at_once(monkeypatch):
+def test_points_and_frames_in_batches_have_the_signs_of_all_at_once(monkeypatch):
     whole = signs(lambda views: moved(views, [0], 5.0))
     monkeypatch.setattr(triangulation, "BATCH", 7)
+    monkeypatch.setattr(keypoints, "BLOCK", 8)
     parts = signs(lambda views: moved(views, [0], 5.0))
     for name, sign in whole.items():
         np.testing.assert_array_equal(parts[name], sign)

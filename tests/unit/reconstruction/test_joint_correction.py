@@ -1,5 +1,6 @@
 """Joint offsets: known shares of known vectors are found, and removed from other bodies."""
 
+import tracemalloc
 from dataclasses import replace
 from pathlib import Path
 
@@ -339,16 +340,40 @@ def test_the_turn_of_the_world_does_not_matter():
     )
 
 
-def test_corrected_skeletons_are_filtered_last():
+def player(seconds):
+    """Return the arguments of `correct_then_filter` for a player of virtual truth."""
     rate_hz, cutoff_hz = 30.0, np.full(33, 6.0)
     offsets = joint_correction.read(CONFIG / "joint_offsets" / "blazepose-full.csv")
-    time_s, neck = footwork.neck(rate_hz, 10, seed=3)
+    time_s, neck = footwork.neck(rate_hz, seconds, seed=3)
     xyz, _ = footwork.body(neck, time_s)
     raw = footwork.record(xyz, time_s, 0.02, 0.0, np.random.default_rng(0))
     filtered = skeleton_filter.smooth(raw, cutoff_hz, 4)
-    sex_of, (seen_by, _) = {"p1": "m"}, footwork.cameras(90)
+    return raw, filtered, offsets, {"p1": "m"}, cutoff_hz, 4, footwork.cameras(90)[0]
+
+
+def test_blocks_of_frames_have_no_borders(monkeypatch):
+    whole = joint_correction.correct_then_filter(*player(3))
+    monkeypatch.setattr(keypoints, "BLOCK", 7)
+    parts = joint_correction.correct_then_filter(*player(3))
+    for name, values in vars(whole).items():
+        np.testing.assert_array_equal(getattr(parts, name), values)
+
+
+def test_the_correction_of_a_long_take_needs_little_memory():
+    """Of all frames at once, vectors and corrected copies are half as large again as the record."""
+    given = player(600)
+    record = sum(values.nbytes for values in vars(given[1]).values() if np.ndim(values) > 2)
+    tracemalloc.start()
+    joint_correction.correct_then_filter(*given)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 1.2 * record
+
+
+def test_corrected_skeletons_are_filtered_last():
+    raw, filtered, offsets, sex_of, cutoff_hz, order, seen_by = player(10)
     done = joint_correction.correct_then_filter(
-        raw, filtered, offsets, sex_of, cutoff_hz, 4, cameras=seen_by
+        raw, filtered, offsets, sex_of, cutoff_hz, order, cameras=seen_by
     )
     before = joint_correction.keep(joint_correction.correct(filtered, offsets, sex_of, seen_by))
 
@@ -356,7 +381,7 @@ def test_corrected_skeletons_are_filtered_last():
         limbs = [list(points.joints).index(name) for name in JOINTS]
         change = np.diff(points.xyz[0][:, limbs], n=2, axis=0)[30:-30]
         spectrum = np.fft.rfft(change * np.hanning(len(change))[:, None, None], axis=0)
-        hz = np.fft.rfftfreq(len(change), 1 / rate_hz)
+        hz = np.fft.rfftfreq(len(change), 1 / raw.rate_hz)
         return np.mean(np.abs(spectrum[hz > 12]) ** 2)
 
     assert fast(done) < 0.2 * fast(before)

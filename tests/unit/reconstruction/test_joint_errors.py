@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 
 from courtside.reconstruction import error_signs, joint_errors
+from courtside.records.keypoints import keypoints
 from courtside.records.keypoints.skeleton import JOINTS
 from courtside.study.errors import InputError
 from fixtures.people import walker
@@ -59,7 +60,8 @@ def test_the_gradient_of_the_loss_is_its_slope():
     np.testing.assert_allclose(gradient, slopes, atol=1e-6)
 
 
-def test_limbs_joints_are_stated_and_others_stay_unknown():
+def test_limbs_joints_are_stated_and_others_stay_unknown(monkeypatch):
+    monkeypatch.setattr(keypoints, "BLOCK", 3)
     record, model = walker.points(n_frames=8), fitted(4000)
     rng = np.random.default_rng(4)
     shape = record.xyz.shape[:-1]

@@ -5,6 +5,7 @@ import pytest
 
 from courtside.reconstruction import resampling
 from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints import keypoints as record
 from fixtures.cameras import sync_takes
 from fixtures.people import performers
 from virtualgym.body import stance
@@ -118,6 +119,17 @@ def test_a_clock_that_is_ahead_and_fast_is_read_at_its_own_times():
     )  # the lines between frames; 10 ms off are ten times that
     wrong, _ = resampling.resample(view(own_s, clock), time_s, Clock(offset_s=1.2345 + 0.01))
     assert np.abs(wrong - truth).max() > 3.0
+
+
+def test_blocks_of_frames_have_no_borders(monkeypatch):
+    clock, time_s = Clock(offset_s=1.2345, drift_ppm=200.0), 2.0 + np.arange(50) / 30
+    seen = [view(np.arange(200) / 60, clock), view(np.arange(100) / 30)]
+    whole = resampling.resample_all(seen, [clock, Clock()], time_s)
+    monkeypatch.setattr(record, "BLOCK", 7)
+    for part, expected in zip(
+        resampling.resample_all(seen, [clock, Clock()], time_s), whole, strict=True
+    ):
+        np.testing.assert_array_equal(part, expected)
 
 
 def test_common_times_are_what_two_cameras_share():

@@ -92,6 +92,21 @@ def test_errors_that_are_not_known_need_no_memory(tmp_path):
         np.testing.assert_array_equal(getattr(found, name), values)
 
 
+def test_errors_that_are_left_out_are_unknown_and_need_no_memory(tmp_path):
+    record, path = walker.points(n_frames=3000), tmp_path / "long.npz"
+    keypoints.write_3d(path, record)
+    keypoints.read_3d(path)  # imports
+    tracemalloc.start()
+    found = keypoints.read_3d(path, left_out=("covariance_2d", "offset"))
+    kept = tracemalloc.get_traced_memory()[0]
+    tracemalloc.stop()
+    assert kept < 3 * record.xyz.nbytes  # this covariance alone has three times as much
+    assert np.isnan(found.covariance_2d).all() and np.isnan(found.offset).all()
+    assert np.isfinite(record.covariance_2d).any()
+    assert found.covariance_2d.shape == record.covariance_2d.shape
+    np.testing.assert_array_equal(found.xyz, record.xyz)
+
+
 def test_what_is_known_of_the_errors_of_some_points_is_read_and_left_out_with_them(tmp_path):
     record = walker.points()
     record.covariance_2d[0, 5:] = np.nan

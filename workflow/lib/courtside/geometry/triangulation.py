@@ -6,7 +6,7 @@ is (C, N), the detector's confidence 0 to 1. `xyz` is (N, 3) m in the world, NaN
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -116,38 +116,62 @@ def triangulate_robust(
     ----------
     score : (C, N) float; the weight of a view's squared error
     max_error_px : float or (C, N) float; the limit: a view is accepted if its keypoint lies this
-        close to the projected point
+        close to the projected point. The N values may have several axes, such as frames and joints:
+        broadcast over joints, they need no memory
     min_views : fewest accepted views of a point, at least 2
     min_score : keypoints below it are not used, except where `weak_m` needs them
-    fade_px : float or (C, N) float; a view with this reprojection error has a quarter of its
+    fade_px : as `max_error_px`; a view with this reprojection error has a quarter of its
         weight; 4/3 of the limit by default
     weak_m : metres, from keypoints with a standard deviation of 0.4 of the limit; None solves no
         point again
     """
     _check(cameras, xy, score, min_views)
-    limit_px = np.broadcast_to(np.asarray(max_error_px, dtype=float), score.shape)
-    fading_px = FADE * limit_px if fade_px is None else np.broadcast_to(fade_px, score.shape)
-    pieces = [slice(at, at + BATCH) for at in range(0, max(xy.shape[1], 1), BATCH)]
-    parts = [
-        _solve(
+    limit_px = _by_camera(max_error_px, score)
+    fading_px = None if fade_px is None else _by_camera(fade_px, score)
+
+    def solved(at: slice) -> Triangulated:
+        limit = _some(limit_px, at)
+        return _solve(
             cameras,
-            xy[:, piece],
-            score[:, piece],
+            xy[:, at],
+            score[:, at],
             min_views=min_views,
             min_score=min_score,
-            limit_px=limit_px[:, piece],
-            fade_px=fading_px[:, piece],
+            limit_px=limit,
+            fade_px=FADE * limit if fading_px is None else _some(fading_px, at),
             weak_m=np.inf if weak_m is None else weak_m,
         )
-        for piece in pieces
-    ]
-    return Triangulated(
-        xyz=np.concatenate([part.xyz for part in parts]),
-        covariance=np.concatenate([part.covariance for part in parts]),
-        accepted=np.concatenate([part.accepted for part in parts], axis=1),
-        error_px=np.concatenate([part.error_px for part in parts], axis=1),
-        weight=np.concatenate([part.weight for part in parts], axis=1),
+
+    return _in_batches(score.shape, solved)
+
+
+def _in_batches(shape: tuple[int, ...], solved: Callable[[slice], Triangulated]) -> Triangulated:
+    """Triangulate the points of scores of this `shape`, (C, N), some at a time."""
+    found = Triangulated(
+        xyz=np.empty((shape[1], 3)),
+        covariance=np.empty((shape[1], 3, 3)),
+        accepted=np.empty(shape, dtype=bool),
+        error_px=np.empty(shape),
+        weight=np.empty(shape),
     )
+    for start in range(0, shape[1], BATCH):
+        at = slice(start, start + BATCH)
+        part = solved(at)
+        found.xyz[at], found.covariance[at] = part.xyz, part.covariance
+        found.accepted[:, at], found.error_px[:, at] = part.accepted, part.error_px
+        found.weight[:, at] = part.weight
+    return found
+
+
+def _by_camera(px: ArrayLike, score: NDArray) -> NDArray:
+    """Return an array (C, ...) with a number for each point of scores (C, N)."""
+    px = np.asarray(px, dtype=float)
+    return px if px.ndim > 2 else np.broadcast_to(px, score.shape)
+
+
+def _some(px: NDArray, at: slice) -> NDArray:
+    """Return the numbers (C, n) of some points from those of all, (C, ...)."""
+    return np.stack([of_camera.flat[at] for of_camera in px])
 
 
 def _check(cameras: Sequence[Camera], xy: NDArray, score: NDArray, min_views: int) -> None:
@@ -371,6 +395,14 @@ def triangulate_plain(
     far.
     """
     _check(cameras, xy, score, min_views)
+    return _in_batches(
+        score.shape, lambda at: _plain(cameras, xy[:, at], score[:, at], min_views, min_score)
+    )
+
+
+def _plain(
+    cameras: Sequence[Camera], xy: NDArray, score: NDArray, min_views: int, min_score: float
+) -> Triangulated:
     used = np.isfinite(xy).all(axis=-1) & np.isfinite(score) & (score >= min_score) & (score > 0)
     used &= used.sum(axis=0) >= min_views
     views = Views(cameras, xy, used.astype(float))

@@ -6,7 +6,7 @@ lost_cameras: `recover`: cameras in which nobody is associated, found again by p
 self_calibration: `calibrate` (the entry), `tracks`, `guess`, `seen`: takes for a calibration from
     people alone
 person_height: `in_pictures`: the height of a person in each picture, for limits in shares of it
-left_right: `swapped_views`, `apply_swaps`: sides that a network confused
+left_right: `swapped_views`, `apply_swaps`, `exchange`: sides that a network confused
 fusion: `triangulate_take`, `merge`, `with_cameras`: half bodies, the cameras' covariance
 camera_shake: `steady`, `put_back`, `read_as_filmed`: shake removed from keypoints, and put back for
     pictures; `still`, `knocked`: tables of it; `find`, `say`: knocks described

@@ -15,6 +15,7 @@ from courtside.geometry import epipolar, triangulation
 from courtside.geometry.camera import Camera
 from courtside.reconstruction import left_right, resampling
 from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints import keypoints
 from courtside.records.keypoints import skeleton as limbs
 from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D
 from courtside.records.keypoints.skeleton import Skeleton
@@ -46,8 +47,8 @@ def keypoints_used(
     `views` and `clocks` are in the order of `points.cameras`; sides are exchanged where it says so.
     """
     xy, score = resampling.resample_all(views, clocks, points.time_s)
-    swapped, mirror = np.moveaxis(points.swapped, -1, 0), skeleton.mirror()
-    xy, score = (left_right.apply_swaps(each, swapped, mirror) for each in (xy, score))
+    for each in (xy, score):
+        left_right.exchange(each, np.moveaxis(points.swapped, -1, 0), skeleton.mirror())
     return xy, score
 
 
@@ -61,41 +62,48 @@ def of_points(
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # means and maxima of nothing
-        found = _of_views(cameras, points, score)
+        parts = [
+            _of_frames(cameras, points.frames(at), score[:, :, at], skeleton)
+            for at in keypoints.blocks(len(points.time_s))
+        ]
+        found = {key: np.concatenate([part[key] for part in parts], axis=1) for key in parts[0]}
+        del parts
         found["left_out"] = _log(_without_one(cameras, points, xy, score), LEFT_OUT_M)
         found["length"] = _log(_length_errors(points), LENGTH_M)
         found["jump"] = _log(_jumps(points), JUMP_M)
-        apart = np.linalg.norm(points.xyz - points.xyz[:, :, skeleton.mirror()], axis=-1)
-        apart = np.where(np.arange(len(points.joints)) == skeleton.mirror(), np.inf, apart)
-        found["sides"] = np.exp(-np.nan_to_num(apart, nan=np.inf, posinf=np.inf) / SIDES_M)
-        found["hidden"] = 2 - np.minimum(_clear_views(cameras, points), 4) / 2
         means = {"views": 4.0 - np.minimum(points.n_views, 4), **found}
         known = np.isfinite(points.xyz[..., 0])
         for name in NAMES:
             if name.endswith("_mean"):
                 one = np.nan_to_num(means[name.removesuffix("_mean")])
                 found[name] = _mean_over_time(one, known, points)
-    return {name: np.nan_to_num(found[name]) for name in NAMES}
+    return {name: np.nan_to_num(found[name], copy=False) for name in NAMES}
 
 
 def _log(length_m: NDArray, scale_m: float) -> NDArray:
     return np.log1p(np.minimum(np.nan_to_num(length_m), MOST_M) / scale_m)
 
 
-def _of_views(cameras: Sequence[Camera], points: Keypoints3D, score: NDArray) -> dict[str, NDArray]:
-    """Return the signs from number, scores and residuals of the views in single frames."""
+def _of_frames(
+    cameras: Sequence[Camera], points: Keypoints3D, score: NDArray, skeleton: Skeleton
+) -> dict[str, NDArray]:
+    """Return the signs from single frames: number, scores, residuals of views, places of joints."""
     used, seen = points.accepted, np.moveaxis(score, 0, -1)
     focal_px = np.array([epipolar.focal_px(camera) for camera in cameras])
     error_m = points.reproj_error_px / focal_px * _distances(cameras, points)
     rejected = (seen >= MIN_SCORE) & ~used
     sigma_m = np.sqrt(np.trace(points.covariance_2d, axis1=-2, axis2=-1) / 3)
     residual_m = np.sqrt(np.nanmean(np.where(used, error_m**2, np.nan), axis=-1))
+    apart = np.linalg.norm(points.xyz - points.xyz[:, :, skeleton.mirror()], axis=-1)
+    apart = np.where(np.arange(len(points.joints)) == skeleton.mirror(), np.inf, apart)
     return {
         "two": (points.n_views <= 2).astype(float),
         "rejected": _log(np.nanmax(np.where(rejected, error_m, 0.0), axis=-1), REJECTED_M),
         "residual": _log(residual_m, RESIDUAL_M),
         "doubt": 1 - np.nanmean(np.where(used, seen, np.nan), axis=-1),
         "spread": np.log(np.clip(np.nan_to_num(sigma_m, nan=REJECTED_M), *SIGMA_M) / LEFT_OUT_M),
+        "sides": np.exp(-np.nan_to_num(apart, nan=np.inf, posinf=np.inf) / SIDES_M),
+        "hidden": 2 - np.minimum(_clear_views(cameras, points), 4) / 2,
     }
 
 
@@ -116,15 +124,18 @@ def _without_one(
     """Return the largest shift (P, T, J) m of a joint without one of its views; 0 with two."""
     flat, n_cameras = points.xyz.reshape(-1, 3), len(cameras)
     used = np.moveaxis(points.accepted, -1, 0).reshape(n_cameras, -1)
-    weight = np.where(used, np.nan_to_num(score.reshape(n_cameras, -1)), 0.0)
+    weight = np.nan_to_num(score.reshape(n_cameras, -1))
+    weight[~used] = 0.0
+    n_used = (weight > 0).sum(axis=0)
     moved = np.zeros(len(flat))
     for left_out in range(n_cameras):
-        rest = np.where(np.arange(n_cameras)[:, None] == left_out, 0.0, weight)
-        enough = ((rest > 0).sum(axis=0) >= 2) & (weight[left_out] > 0)
+        enough = (n_used > 2) & (weight[left_out] > 0)
         there = np.flatnonzero(enough & np.isfinite(flat[:, 0]))
         for start in range(0, len(there), triangulation.BATCH):
             at = there[start : start + triangulation.BATCH]
-            views = triangulation.Views(cameras, xy.reshape(n_cameras, -1, 2)[:, at], rest[:, at])
+            rest = weight[:, at]
+            rest[left_out] = 0.0
+            views = triangulation.Views(cameras, xy.reshape(n_cameras, -1, 2)[:, at], rest)
             place = flat[at]
             for _ in range(STEPS):
                 place = views.stepped(place, views.weight)
@@ -159,12 +170,14 @@ def _jumps(points: Keypoints3D) -> NDArray:
     """Return the distance (P, T, J) m of joints from the median of their path."""
     reach = _frames(JUMP_S, points)
     found = np.empty(points.xyz.shape[:-1])
-    # All joints at once need much memory.
+    # All joints, or all frames, at once need much memory.
     for person, joint in np.ndindex(len(points.xyz), len(points.joints)):
         path = points.xyz[person, :, joint]
         padded = np.pad(path, ((reach, reach), (0, 0)), constant_values=np.nan)
         windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0)
-        found[person, :, joint] = np.linalg.norm(path - np.nanmedian(windows, axis=-1), axis=-1)
+        for at in keypoints.blocks(len(path)):
+            off = path[at] - np.nanmedian(windows[at], axis=-1)
+            found[person, at, joint] = np.linalg.norm(off, axis=-1)
     return found
 
 

@@ -70,14 +70,14 @@ def triangulate_take(
         limits = _limits(cameras, xy, score, skeleton.joints, **stated)
         options |= {key: _per_joint(px, score) for key, px in limits.items()}
         if fix_sides:
-            xy, score, swapped = _fix_sides(cameras, xy, score, skeleton, limits["max_error_px"])
+            swapped = _fix_sides(cameras, xy, score, skeleton, limits["max_error_px"])
     flat = score.reshape(len(cameras), -1)
     found = solve(cameras, xy.reshape(len(cameras), -1, 2), flat, **options)
     points = _record(cameras, views[0], person_id, time_s, found, swapped)
     reason = why_missing(flat, found.xyz, min_score, min_views).reshape(points.xyz.shape[:-1])
-    weight = found.weight / np.square(options.get("max_error_px", 1.0))  # as of the covariance
-    variance = keypoint_variance(points, weight.reshape(score.shape))[:, None, None]
-    points = replace(points, reason=reason, covariance_2d=points.covariance_2d * variance)
+    _scale_covariance(points, found.weight.reshape(score.shape), options.get("max_error_px", 1.0))
+    del xy, score, flat, found  # for the memory of what follows
+    points = replace(points, reason=reason)
     return _without_open(points) if rule == "robust" else points
 
 
@@ -96,11 +96,12 @@ def _limits(cameras, xy, score, joints, share, px) -> dict[str, NDArray]:
 
 
 def _per_joint(values: NDArray, score: NDArray) -> NDArray:
-    """Return values (C, P, T) for each joint of scores (C, P, T, J), flat: (C, P T J)."""
-    return np.repeat(values.reshape(len(values), -1), score.shape[3], axis=1)
+    """Return a view of values (C, P, T) for each joint of scores (C, P, T, J)."""
+    return np.broadcast_to(values[..., None], score.shape)
 
 
-def _fix_sides(cameras, xy, score, skeleton, limit_px) -> tuple[NDArray, NDArray, NDArray]:
+def _fix_sides(cameras, xy, score, skeleton, limit_px) -> NDArray:
+    """Exchange sides in `xy` and `score`; return where."""
     mirror = np.array(skeleton.mirror())
     groups = [[skeleton.index(j) for j in g] for g in skeleton.side_groups()]
     swapped = np.zeros(score.shape, dtype=bool)
@@ -109,8 +110,9 @@ def _fix_sides(cameras, xy, score, skeleton, limit_px) -> tuple[NDArray, NDArray
         swapped[:, person] = left_right.swapped_views(
             cameras, xy[:, person], score[:, person], mirror, groups, max_error_px=most_px
         )
-    xy, score = (left_right.apply_swaps(each, swapped, mirror) for each in (xy, score))
-    return xy, score, swapped
+    for each in (xy, score):
+        left_right.exchange(each, swapped, mirror)
+    return swapped
 
 
 def _record(cameras, view, person_id, time_s, found, swapped) -> Keypoints3D:
@@ -157,16 +159,31 @@ def why_missing(score: NDArray, xyz: NDArray, min_score: float, min_views: int) 
     return reason
 
 
+def _scale_covariance(points: Keypoints3D, weight: NDArray, sigma_px: NDArray | float) -> None:
+    """Multiply the covariance of points by the measured variance of keypoints.
+
+    `weight` (C, P, T, J) is overwritten; `sigma_px` is the standard deviation of a keypoint that
+    the covariance is of.
+    """
+    weight /= sigma_px
+    weight /= sigma_px
+    covariance = points.covariance_2d
+    covariance *= keypoint_variance(points, weight)[:, None, None]
+
+
 def keypoint_variance(points: Keypoints3D, weight: NDArray) -> NDArray:
     """Measure each joint's keypoint variance (J,) per axis, for weight 1, from the residuals.
 
     `weight` (C, P, T, J), px^-2, is that of a squared residual. Each point has 2 n residuals and
     uses 3 of them for its coordinates. The result is NaN for a joint without a degree of freedom.
     """
-    used = np.where(points.accepted, np.moveaxis(weight, 0, -1), 0.0)
-    squares = (used * np.nan_to_num(points.reproj_error_px) ** 2).sum(axis=(0, 1, 3))
+    squares = np.nan_to_num(points.reproj_error_px)
+    squares *= squares
+    squares *= np.moveaxis(weight, 0, -1)
+    squares[~points.accepted] = 0.0
+    summed = squares.sum(axis=(0, 1, 3))
     freedom = np.maximum(2 * points.n_views - 3, 0).sum(axis=(0, 1))
-    return np.where(freedom > 0, squares / np.maximum(freedom, 1), np.nan)
+    return np.where(freedom > 0, summed / np.maximum(freedom, 1), np.nan)
 
 
 SHARED = ("time_s", "joints", "person_id")  # fields that both halves must have in common

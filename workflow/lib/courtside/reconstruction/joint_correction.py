@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from courtside.geometry.camera import Camera
 from courtside.kinematics import skeleton_filter
 from courtside.reconstruction import offset_vectors
-from courtside.records.keypoints import skeleton
+from courtside.records.keypoints import keypoints, skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.errors import InputError, StrPath, reading
 
@@ -126,12 +126,12 @@ def offsets(
     sexes = [(sex_of or {}).get(str(person)) for person in points.person_id]
     by_view = table["vector"].str.startswith(offset_vectors.SEEN).any()
     used = _in_order(cameras, points.cameras) if by_view else []
-    for joint, rows in table.groupby("joint"):
+    for (joint, rows), at in product(table.groupby("joint"), keypoints.blocks(len(points.time_s))):
         for side, (person, sex) in product(SIDES, enumerate(sexes)):
-            xyz, accepted = points.xyz[person], points.accepted[person]
+            xyz, accepted = points.xyz[person, at], points.accepted[person, at]
             basis = offset_vectors.every(xyz, joints, side, joint, sex, used, accepted)
             offset = sum(basis[row.vector] * row.share for row in rows.itertuples())
-            found[person, :, joints.index(f"{side}_{joint}")] = offset
+            found[person, at, joints.index(f"{side}_{joint}")] = offset
     return found
 
 
@@ -168,8 +168,15 @@ def correct_then_filter(
     """
     slow_xyz = skeleton_filter.smooth_xyz(raw, np.minimum(cutoff_hz, VIEW_HZ), order)
     moved = _steady_offsets(filtered, replace(raw, xyz=slow_xyz), table, sex_of, cameras)
-    kept = keep(_corrected(raw, table, moved))
-    xyz = skeleton_filter.smooth_xyz(kept, cutoff_hz, order)
+    joints = raw.joints.tolist()
+    limbs_m = [lengths(one, joints) for one in raw.xyz - np.nan_to_num(moved)]
+    kept = [
+        keep(_corrected(raw.frames(at), table, moved[:, at]), limbs_m).xyz
+        for at in keypoints.blocks(len(raw.time_s))
+    ]
+    raw = replace(raw, xyz=np.concatenate(kept, axis=1))
+    xyz = skeleton_filter.smooth_xyz(raw, cutoff_hz, order)
+    del raw, kept  # for the memory of what follows
     return replace(_corrected(filtered, table, moved), xyz=xyz)
 
 
@@ -252,19 +259,22 @@ def lengths(xyz: NDArray, joints: Sequence[str]) -> dict[tuple[str, str], float]
     return found
 
 
-def keep(points: Keypoints3D) -> Keypoints3D:
+def keep(
+    points: Keypoints3D, limbs_m: Sequence[Mapping[tuple[str, str], float]] | None = None
+) -> Keypoints3D:
     """Move joints, as far as their uncertainty allows, so that limbs keep their length.
 
     `xyz` of shoulders, elbows, wrists, hips, knees and ankles changes; missing joints and limbs
-    without a length (`lengths`) stay. In each frame the result is the most probable position of a
-    chain's three joints given their measured positions, their covariance (of keypoints and cameras)
-    and the lengths: Gauss-Newton on the squared Mahalanobis distances and the squared relative
-    errors of length over `LENGTH_SIGMA`. The covariance stays as an upper bound: the lengths come
-    from the same joints, so wrong joints give wrong lengths.
+    without a length stay. `limbs_m` are the lengths of each person, by default `lengths` of these
+    points. In each frame the result is the most probable position of a chain's three joints given
+    their measured positions, their covariance (of keypoints and cameras) and the lengths:
+    Gauss-Newton on the squared Mahalanobis distances and the squared relative errors of length over
+    `LENGTH_SIGMA`. The covariance stays as an upper bound: the lengths come from the same joints,
+    so wrong joints give wrong lengths.
     """
     joints, xyz = list(points.joints), points.xyz.copy()
     covariance = points.covariance_2d + np.nan_to_num(points.covariance_camera)
-    known_m = [lengths(one, joints) for one in points.xyz]
+    known_m = limbs_m or [lengths(one, joints) for one in points.xyz]
     for person, (side, chain) in product(range(len(xyz)), product(SIDES, skeleton.CHAINS)):
         known = known_m[person]
         names = [f"{side}_{joint}" for joint in chain]

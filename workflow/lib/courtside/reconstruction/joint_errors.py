@@ -24,7 +24,7 @@ import scipy
 from numpy.typing import NDArray
 
 from courtside.reconstruction import error_signs
-from courtside.records.keypoints import skeleton
+from courtside.records.keypoints import keypoints, skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.errors import InputError, StrPath, reading
 
@@ -87,8 +87,13 @@ def state(
     `RECORDED_M` more variance. Errors of joints other than those of limbs stay unknown, because the
     fit has no truth for them.
     """
-    at = [points.joints.tolist().index(joint) for joint in skeleton.JOINTS]
-    good, share = model.of(design(signs, points.joints.tolist()))
+    joints = points.joints.tolist()
+    at = [joints.index(joint) for joint in skeleton.JOINTS]
+    parts = [
+        model.of(design({name: sign[:, part] for name, sign in signs.items()}, joints))
+        for part in keypoints.blocks(len(points.time_s))
+    ]
+    good, share = (np.concatenate(each, axis=1) for each in zip(*parts, strict=True))
     covariance = points.covariance_2d[:, :, at]
     more = recorded * np.array([RECORDED_M[joint.split("_")[1]] ** 2 for joint in skeleton.JOINTS])
     own = np.trace(covariance, axis1=-2, axis2=-1) / 3 + more

@@ -217,6 +217,12 @@ def apply_swaps(values: NDArray, swapped: NDArray, mirror: Sequence[int] | NDArr
     return np.where(shaped, np.take(values, mirror, axis=swapped.ndim - 1), values)
 
 
+def exchange(values: NDArray, swapped: NDArray, mirror: Sequence[int] | NDArray) -> None:
+    """Exchange left and right of values (C, ..., J, ...) in place, where `swapped` (C, ..., J)."""
+    for of_camera, where in zip(values, swapped, strict=True):
+        of_camera[:] = apply_swaps(of_camera, where, mirror)
+
+
 class _Views:
     """What all hypotheses share; `matrix` (C, 3, 4) projects to straight px."""
 

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from courtside.geometry import interpolation
 from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints import keypoints
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.video.glance import longest_step_s
 
@@ -54,7 +55,9 @@ def resample(view: Keypoints2D, time_s: NDArray, clock: Clock) -> tuple[NDArray,
     right = np.where(exact, left, right)
     unknown = (own < known[0]) | (own > known[-1]) | (span > longest_s)
     share = np.where(exact, 0.0, np.where(unknown, np.nan, share))
-    xy = _cubic(view.xy, known, left, right, share, longest_s)
+    xy = np.empty((len(view.xy), len(own), *view.xy.shape[2:]))
+    for at in keypoints.blocks(len(own)):
+        xy[:, at] = _cubic(view.xy, known, left[at], right[at], share[at], longest_s)
     score = np.minimum(view.score[:, left], view.score[:, right])
     return xy, np.where(np.isfinite(xy).all(axis=-1), score, np.nan)
 
@@ -63,9 +66,12 @@ def resample_all(
     views: Sequence[Keypoints2D], clocks: Sequence[Clock], time_s: NDArray
 ) -> tuple[NDArray, NDArray]:
     """Return all cameras' xy (C, P, T, J, 2) and score (C, P, T, J), each as by `resample`."""
-    each = [resample(view, time_s, clock) for view, clock in zip(views, clocks, strict=True)]
-    xy, score = (np.stack(part) for part in zip(*each, strict=True))
-    return xy, score
+    persons, joints = views[0].score.shape[::2]
+    xy, scores = np.empty((len(views), persons, len(time_s), joints, 2)), []
+    for of_camera, view, clock in zip(xy, views, clocks, strict=True):
+        of_camera[:], score = resample(view, time_s, clock)
+        scores.append(score)
+    return xy, np.stack(scores)
 
 
 def nearest(view: Keypoints2D, time_s: NDArray, clock: Clock) -> NDArray:

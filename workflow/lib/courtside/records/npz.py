@@ -37,19 +37,22 @@ def write(path: StrPath, form: str, spec: Spec, arrays: Mapping[str, ArrayLike])
 
 
 def read(
-    path: StrPath, form: str, spec: Spec | Callable[[Collection[str]], Spec]
+    path: StrPath,
+    form: str,
+    spec: Spec | Callable[[Collection[str]], Spec],
+    left_out: Collection[str] = (),
 ) -> dict[str, NDArray]:
     """Read arrays written by `write`: one for each key of `spec`.
 
     `spec` may be a function that returns it by the keys that the file has. An `InputError` if the
     file is not an npz of this form, or its arrays are not as stated. An array of NaN alone is not
-    writable (`unknown`).
+    writable (`unknown`), and those of the keys `left_out` are read as such.
     """
     with (
         reading(path, f"an npz file ({form})"),
         require_type(np.load(path, allow_pickle=False), np.lib.npyio.NpzFile) as stored,
     ):
-        found = {key: _lean(np.asarray(stored[key])) for key in stored.files}
+        found = {key: _lean(np.asarray(stored[key]), key in left_out) for key in stored.files}
     stated = str(found.pop("format", "no format"))
     if stated != form:
         raise InputError(f"{path}: expected format {form!r}, found {stated!r}; make it again")
@@ -67,10 +70,11 @@ def unknown(shape: tuple[int, ...]) -> NDArray:
     return np.broadcast_to(np.nan, shape)
 
 
-def _lean(array: NDArray) -> NDArray:
-    """Return an array, in the form of `unknown` if it is one of NaN alone."""
-    known = array.dtype != float or array.ndim == 0 or not np.isnan(array).all()
-    return array if known else unknown(array.shape)
+def _lean(array: NDArray, left_out: bool) -> NDArray:
+    """Return an array, in the form of `unknown` if it is one of NaN alone or left out."""
+    if array.dtype != float or array.ndim == 0:
+        return array
+    return unknown(array.shape) if left_out or np.isnan(array).all() else array
 
 
 def spec_of(record: type) -> Spec:
@@ -90,9 +94,11 @@ def write_record(path: StrPath, form: str, record: object) -> None:
     write(path, form, spec_of(type(record)), vars(record))
 
 
-def read_record(path: StrPath, form: str, kind: type[Record]) -> Record:
+def read_record(
+    path: StrPath, form: str, kind: type[Record], left_out: Collection[str] = ()
+) -> Record:
     """Read a dataclass that `write_record` wrote, as `read`."""
-    arrays = read(path, form, spec_of(kind))
+    arrays = read(path, form, spec_of(kind), left_out)
     return kind(**{key: value if value.ndim else value.item() for key, value in arrays.items()})
 
 

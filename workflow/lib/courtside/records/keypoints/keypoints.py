@@ -1,6 +1,6 @@
 """The two tables of keypoints that rules exchange: 2D of one camera, 3D of one take."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated
 
@@ -13,6 +13,7 @@ from courtside.study.errors import StrPath
 
 FORM_2D = "courtside keypoints2d 2"
 FORM_3D = "courtside keypoints3d 3"
+BLOCK = 4096  # frames at a time: what is computed of each frame by itself then needs little memory
 
 
 @dataclass(frozen=True)
@@ -122,6 +123,11 @@ class Keypoints3D:
         return replace(self, joints=self.joints[list(at)], **cut)
 
 
+def blocks(n_frames: int) -> Iterator[slice]:
+    """Yield the frames of a take in order, at most `BLOCK` of them at a time."""
+    return (slice(at, at + BLOCK) for at in range(0, max(n_frames, 1), BLOCK))
+
+
 def unknown_errors(xyz: NDArray) -> dict[str, NDArray]:
     """Return the fields of a `Keypoints3D` with points `xyz` whose errors nothing is known of.
 
@@ -152,6 +158,10 @@ def write_3d(path: StrPath, keypoints: Keypoints3D) -> None:
     npz.write_record(path, FORM_3D, keypoints)
 
 
-def read_3d(path: StrPath) -> Keypoints3D:
-    """Read a `Keypoints3D` from an npz file; raise `InputError` if it is not one."""
-    return npz.read_record(path, FORM_3D, Keypoints3D)
+def read_3d(path: StrPath, left_out: Collection[str] = ()) -> Keypoints3D:
+    """Read a `Keypoints3D` from an npz file; raise `InputError` if it is not one.
+
+    Errors that are `left_out` are unknown in the result: the three covariances are two thirds of a
+    record's memory, and few steps need all.
+    """
+    return npz.read_record(path, FORM_3D, Keypoints3D, left_out)
