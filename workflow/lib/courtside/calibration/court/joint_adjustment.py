@@ -322,23 +322,41 @@ def solve_by_edges(ties: Ties, clicks: ClickedPoints, court: Court, **options: A
     return solve(ties, clicks, court, **options, factors=factors)
 
 
-def solve_with_factors(ties: Ties, clicks: ClickedPoints, court: Court, **options: Any) -> Solution:
-    """Do as `solve_by_edges`, with weights and covariance from the residuals.
+def solve_by_scatter(
+    ties: Ties,
+    clicks: ClickedPoints,
+    court: Court,
+    *,
+    of_ties: bool = True,
+    rounds: int = FACTOR_ROUNDS,
+    **options: Any,
+) -> Solution:
+    """Do as `solve_by_edges`, with the weights of clicks, and `of_ties`, from their residuals.
 
-    The given sigmas of clicks and ties are priors (`variance_components`). A few clicks determine
-    their scatter poorly; the covariance is enlarged for this (`Factors.widening`). `**options` are
-    those of `solve`, without `factors`.
+    Their given sigmas are priors (`variance_components`). `**options` are those of `solve`, without
+    `factors`.
     """
     solved = solve_by_edges(ties, clicks, court, **options)
-    for _ in range(FACTOR_ROUNDS):
+    for _ in range(rounds):
         before = solved.factors
         knowledge = solver.scaled(ties.knowledge, 1 / before.ties)
         lines = options.get("lines")
         found = variance_components.estimate(solved.network, knowledge, before, lines)
+        if not of_ties:
+            found = replace(found, ties=1.0, ties_redundancy=0.0)
         solved = solve(ties, clicks, court, **options, factors=found, start=solved.network)
         change = np.append(found.clicks / before.clicks, found.ties / before.ties)
         if np.abs(np.log(change)).max() < FACTOR_TOLERANCE:
             break
+    return solved
+
+
+def solve_with_factors(ties: Ties, clicks: ClickedPoints, court: Court, **options: Any) -> Solution:
+    """Do as `solve_by_scatter`, with a larger covariance (`Factors.widening`).
+
+    A few clicks determine their scatter poorly.
+    """
+    solved = solve_by_scatter(ties, clicks, court, **options)
     return replace(solved, covariance=solved.covariance * solved.factors.widening)
 
 
