@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from courtside.calibration.boards import start
 from courtside.calibration.boards.board import Board
 from courtside.calibration.boards.corners import Corners
-from courtside.calibration.bundle import problem, selection
+from courtside.calibration.bundle import elimination, problem, selection
+from courtside.calibration.bundle.elimination import Normal
 from courtside.calibration.bundle.problem import IMAGE, POSE, Network
 from courtside.calibration.people import world_frame
 from courtside.geometry import camera as cameras
@@ -245,87 +246,39 @@ def _cost(state: _State, weight: NDArray, sigma_px: float) -> float:
     return float((weight[weight > 0] * (off**2).sum(axis=1)).sum() / sigma_px**2 + (prior**2).sum())
 
 
-@dataclass(frozen=True, eq=False)
-class _Normal:
-    """Normal equations of the cameras, boards eliminated, and what boards need to follow."""
-
-    information: NDArray  # (A, A): of the active columns, then of those added
-    gradient: NDArray  # (A,)
-    boards: dict[int, tuple[NDArray, NDArray, NDArray]]  # inverse (6, 6), gradient, coupling (A, 6)
-    scores: NDArray  # (P, A): part of each picture in the gradient
-
-
 def _normal(
     state: _State,
     fixed: _Problem,
     weight: NDArray,
     sigma_px: float,
     damping: float,
-    added: NDArray | None = None,
-) -> _Normal:
-    """Return the normal equations; `added` (M, 2, K) are derivatives by further unknowns."""
+    by_others: NDArray | None = None,
+) -> Normal:
+    """Return the normal equations; `by_others` (M, 2, E) are derivatives by further unknowns."""
     network = state.network
-    added = np.zeros((len(weight), 2, 0)) if added is None else added
+    by_others = np.zeros((len(weight), 2, 0)) if by_others is None else by_others
     off, by_camera, by_point = problem.linearised(network)
-    rows_of = np.sqrt(weight)[:, None] / sigma_px
-    off = np.where(weight[:, None] > 0, off, 0.0) * rows_of
-    by_camera = np.where(weight[:, None, None] > 0, by_camera, 0.0) * rows_of[:, :, None]
-    by_point = np.where(weight[:, None, None] > 0, by_point, 0.0) * rows_of[:, :, None]
     arm = network.xyz - state.boards[fixed.picture][:, :, 3]
     by_board = np.concatenate([np.cross(arm[:, None, :], by_point), by_point], axis=2)
-    sides, more = network.over_columns(by_camera), added * rows_of[:, :, None]
-    information, gradient = _prior(network, fixed.active, added.shape[2])
-    boards, scores = {}, np.zeros((len(state.boards), len(gradient)))
-    for picture in np.unique(fixed.picture):
-        rows = np.flatnonzero(fixed.picture == picture)
-        side = sides[rows].reshape(-1, network.n_columns)[:, fixed.active]
-        if more.shape[2]:
-            side = np.hstack([side, more[rows].reshape(len(side), -1)])
-        right = off[rows].ravel()
-        information = information + side.T @ side
-        score = side.T @ right
-        if picture != fixed.world:
-            own = by_board[rows].reshape(-1, 6)
-            square = own.T @ own
-            inverse = np.linalg.inv(square + np.diag(damping * np.diag(square) + 1e-9))
-            coupling = side.T @ own
-            boards[int(picture)] = inverse, own.T @ right, coupling
-            information = information - coupling @ inverse @ coupling.T
-            score = score - coupling @ inverse @ boards[int(picture)][1]
-        scores[picture] = score
-        gradient = gradient + score
-    return _Normal(information, gradient, boards, scores)
-
-
-def _prior(network: Network, active: NDArray, n_added: int) -> tuple[NDArray, NDArray]:
-    """Return information and gradient of what is known of the lenses.
-
-    Their columns are the active ones of the network, then `n_added` of which nothing is known.
-    """
-    first = IMAGE * len(network.cam_from_world)
-    inverse = (1 / network.lens_sigma**2).ravel()
-    information, gradient = np.zeros(network.n_columns), np.zeros(network.n_columns)
-    information[first:] = inverse
-    gradient[first:] = inverse * (network.lens - network.lens_mean).ravel()
-    nothing = np.zeros(n_added)
-    information = np.concatenate([information[active], nothing])
-    return np.diag(information), np.concatenate([gradient[active], nothing])
+    by_board[fixed.picture == fixed.world] = 0.0
+    root = np.sqrt(weight) / sigma_px
+    rows = elimination.Rows(off, by_camera, by_others, by_board, fixed.picture, root)
+    nothing, n_others = np.zeros((len(state.boards), len(POSE))), by_others.shape[2]
+    active = np.append(fixed.active, np.ones(n_others, dtype=bool))
+    known = (np.zeros(n_others),) * 2, (nothing, nothing)
+    return elimination.normal_equations(network, rows, active, *known, damping)
 
 
 def _moved(
     state: _State, fixed: _Problem, weight: NDArray, sigma_px: float, damping: float
 ) -> _State:
     """Return the state after a damped step of Gauss and Newton."""
-    normal = _normal(state, fixed, weight, sigma_px, damping)
-    damped = normal.information + damping * np.diag(np.diag(normal.information))
-    part = -np.linalg.solve(damped, normal.gradient)
+    part, own = _normal(state, fixed, weight, sigma_px, damping).step(damping)
     step = np.zeros(len(fixed.active))
     step[fixed.active] = part
     boards = state.boards.copy()
-    for picture, (inverse, gradient, coupling) in normal.boards.items():
-        own = -inverse @ (gradient + coupling.T @ part)
-        boards[picture, :, :3] = rotations.rotation_from_rodrigues(own[:3]) @ boards[picture, :, :3]
-        boards[picture, :, 3] += own[3:]
+    boards[:, :, :3] = rotations.rotation_from_rodrigues(own[:, :3]) @ boards[:, :, :3]
+    boards[:, :, 3] += own[:, 3:]
     network = state.network.moved(step, np.zeros_like(state.network.xyz))
     return _placed(_State(network, boards), fixed)
 

@@ -113,7 +113,7 @@ class _State:
 
 
 def _state(network: Network, quadratic: Quadratic | None) -> _State:
-    seen, (off, inverse) = problem.see(network), _prior(network)
+    seen, (off, inverse) = problem.see(network), prior(network)
     step = np.zeros(0) if quadratic is None else network.difference(quadratic.reference)
     scaled = seen.residual / network.axis_sigma_px
     if not np.isfinite(scaled).all():
@@ -212,7 +212,7 @@ def _active(network: Network) -> NDArray:
     return np.concatenate([images.ravel(), (network.lens_sigma > 0).ravel()])
 
 
-def _prior(network: Network) -> tuple[NDArray, NDArray]:
+def prior(network: Network) -> tuple[NDArray, NDArray]:
     """Return (value - mean) / sigma and 1 / sigma of images and lenses; 0 without a prior."""
     flex = np.concatenate(
         [np.full((len(network.flex), len(problem.POSE)), np.inf), network.flex_sigma], axis=1
@@ -241,7 +241,7 @@ def _camera_side(
     """Return information (K, K) and gradient (K,) of images and lenses before elimination."""
     size = state.network.n_columns
     information, gradient = np.zeros((size, size)), np.zeros(size)
-    for seen in _by_image(state.network):
+    for seen in by_image(state.network):
         own = columns[seen[0]]
         rows = by_camera[seen].reshape(-1, len(own))
         information[own[:, None], own] += rows.T @ rows
@@ -254,7 +254,7 @@ def _camera_side(
     return information, gradient
 
 
-def _by_image(network: Network) -> list[NDArray]:
+def by_image(network: Network) -> list[NDArray]:
     """Return the observations (M',) of each image that has some."""
     order = np.argsort(network.image_idx, kind="stable")
     _, first = np.unique(network.image_idx[order], return_index=True)
