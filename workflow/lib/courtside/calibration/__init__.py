@@ -8,6 +8,5 @@ file_formats: read, read_session, rename, check_apart, known_lenses, with_princi
 arrangement: `expected`: errors of how cameras stand to each other without a court
 chessboard: find, calibrate, pictures_of, same_size: a lens from pictures of a chessboard
 robust_poses: essential, relative, resected, placed: poses of cameras by RANSAC or by all points
-point_covariance: point_covariance, sensitivity, field, of_columns, pseudo_inverse,
-    centre_sigma
+point_covariance: point_covariance, sensitivity, field, centre_sigma
 """

@@ -9,7 +9,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from courtside.calibration.bundle import problem
+from courtside.calibration.bundle import inverses, problem
 from courtside.calibration.bundle.problem import Network
 
 DENSE_ELEMENTS = 10_000_000  # 80 MB: up to this size, a dense product is faster than a sparse one
@@ -59,6 +59,10 @@ class Normal:
     gradient: NDArray  # (A,)
     cost: float  # half the sum of squared, robustly weighted residuals
     back: Callable[[NDArray], NDArray]  # from a step of the active ones to that of points (N, 3)
+
+    def covariance(self) -> NDArray:
+        """Return the covariance (K, K) of all columns; 0 for those that are not active."""
+        return inverses.of_columns(self.information, self.active)
 
 
 def adjust(

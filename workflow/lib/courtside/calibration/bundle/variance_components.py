@@ -16,8 +16,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from courtside.calibration import point_covariance
-from courtside.calibration.bundle import problem, solver
+from courtside.calibration.bundle import inverses, problem, solver
 from courtside.calibration.bundle.problem import IMAGE, POSE, Network
 from courtside.statistics import normal_errors
 
@@ -143,11 +142,7 @@ def _covariance(network: Network, quadratic: solver.Quadratic, rows: NDArray) ->
     moves = np.concatenate([np.ones((len(network.flex), len(POSE))), network.flex_sigma], axis=1)
     free = np.diag(information) > 0
     free[: moves.size] &= moves.ravel() > 0
-    scale = 1 / np.sqrt(np.diag(information)[free])
-    inverse = np.linalg.inv(information[np.ix_(free, free)] * np.outer(scale, scale))
-    covariance = np.zeros_like(information)
-    covariance[np.ix_(free, free)] = inverse * np.outer(scale, scale)
-    return covariance
+    return inverses.of_columns(information[np.ix_(free, free)], free)
 
 
 def shift_columns(network: Network) -> NDArray:
@@ -175,7 +170,7 @@ def _of_ties(network, quadratic, covariance) -> tuple[float, float]:
     """Return the ties' squared distance from their own minimum, in sigmas, and their redundancy."""
     information = quadratic.information
     size = len(information)
-    own = point_covariance.pseudo_inverse(information, GAUGE)
+    own = inverses.pseudo_inverse(information, GAUGE)
     step = network.difference(quadratic.reference)
     slope = quadratic.gradient + information @ step
     known = np.count_nonzero(np.diag(information) > 0) - GAUGE

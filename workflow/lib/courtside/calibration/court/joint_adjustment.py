@@ -11,8 +11,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration import point_covariance as uncertainty
-from courtside.calibration.bundle import selection, solver, variance_components, walk_parts
+from courtside.calibration import point_covariance
+from courtside.calibration.bundle import (
+    inverses,
+    selection,
+    solver,
+    variance_components,
+    walk_parts,
+)
 from courtside.calibration.bundle.problem import FLEX, IMAGE, POSE, Network
 from courtside.calibration.bundle.variance_components import Factors
 from courtside.calibration.bundle.walk_parts import Part
@@ -74,7 +80,7 @@ class Solution:
 
     def point_covariance(self, xyz: NDArray) -> NDArray:
         """Return the covariance (N, 3, 3) m2 of points (N, 3) triangulated from exact pixels."""
-        return uncertainty.point_covariance(self.network, self.covariance, xyz)
+        return point_covariance.point_covariance(self.network, self.covariance, xyz)
 
 
 def condense(
@@ -221,7 +227,7 @@ def free(ties: Ties) -> Solution:
     """Return the `Solution` of `condense_free`; its covariance leaves out frame and scale."""
     network = ties.knowledge.reference
     cameras = selection.cameras(network, ties.cameras, ties.sizes)
-    covariance = uncertainty.pseudo_inverse(ties.knowledge.information)
+    covariance = inverses.pseudo_inverse(ties.knowledge.information)
     return Solution(cameras, network, covariance, variance_components.none(len(cameras)))
 
 
@@ -295,7 +301,7 @@ def solve(
     )
     _check_placed(ties, normal)
     cameras = selection.cameras(network, ties.cameras, ties.sizes)
-    covariance = uncertainty.of_columns(normal)
+    covariance = normal.covariance()
     shifts = variance_components.shift_columns(network)
     covariance[shifts], covariance[:, shifts] = 0.0, 0.0  # of the clicks, not of the cameras
     return Solution(cameras, network, covariance, factors)

@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration import point_covariance
 from courtside.calibration.bundle import problem, selection, solver
 from courtside.calibration.bundle.problem import POSE, Network
 from courtside.calibration.court import joint_adjustment, line_edges
@@ -132,7 +131,7 @@ def refine(
         replace(one, dist=np.append(one.dist[:4], base.dist[4]))
         for one, base in zip(found, cameras, strict=True)
     ]
-    return Refined(found, point_covariance.of_columns(normal), sigma_share, alike)
+    return Refined(found, normal.covariance(), sigma_share, alike)
 
 
 def _without_k3(camera: Camera) -> Camera:

@@ -12,8 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration import point_covariance
-from courtside.calibration.bundle import elimination, problem
+from courtside.calibration.bundle import elimination, inverses, problem
 from courtside.calibration.bundle.elimination import Normal
 from courtside.calibration.bundle.problem import Network
 from courtside.geometry import rotations
@@ -219,7 +218,7 @@ def _moved(state: State, columns: NDArray, damping: float) -> State:
 def _inverse(state: State, normal: Normal) -> NDArray:
     """Return the covariance (A, A) of the active columns."""
     free = 0 if np.isfinite(state.bodies.sigma_m).any() else RIGID
-    return point_covariance.pseudo_inverse(normal.information, n_free=free)
+    return inverses.pseudo_inverse(normal.information, n_free=free)
 
 
 def _factor_of_blocks(state: State, columns: NDArray) -> float:
