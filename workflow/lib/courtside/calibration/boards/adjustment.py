@@ -13,13 +13,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.calibration import vertical
 from courtside.calibration.boards import start
 from courtside.calibration.boards.board import Board
 from courtside.calibration.boards.corners import Corners
 from courtside.calibration.bundle import elimination, problem, selection
 from courtside.calibration.bundle.elimination import Normal
 from courtside.calibration.bundle.problem import IMAGE, POSE, Network
-from courtside.calibration.people import world_frame
 from courtside.geometry import camera as cameras
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
@@ -61,7 +61,7 @@ class Found:
         """Covariance of the world frame, as `CameraCovariance.frame` has it."""
         if self.stated:
             return np.zeros((3, 3))
-        return world_frame.error_of_pictures(self.cameras)
+        return vertical.error_of_pictures(self.cameras)
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,9 +131,8 @@ def calibrate(
 
 def _upright(solved: Sequence[Camera]) -> list[Camera]:
     """Turn the world about its origin: z up as in the pictures; the covariance stays as it is."""
-    along = solved[1].centre_in_world - solved[0].centre_in_world
-    turn = world_frame.axes(world_frame.up_in_pictures(solved), along)
-    return [Sim3(1.0, turn, np.zeros(3)).camera(camera) for camera in solved]
+    turned = Sim3(1.0, vertical.upright(solved), np.zeros(3))
+    return [turned.camera(camera) for camera in solved]
 
 
 def _check_rigid(seen: Corners, error_px: NDArray) -> None:

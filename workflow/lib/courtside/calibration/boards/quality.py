@@ -5,12 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from courtside.calibration import point_covariance
+from courtside.calibration import point_covariance, vertical
 from courtside.calibration.boards.adjustment import Found
 from courtside.calibration.boards.board import Board
 from courtside.calibration.boards.corners import Corners
 from courtside.calibration.bundle.problem import IMAGE, LENS, POSE
-from courtside.calibration.people import world_frame
 from courtside.geometry import triangulation
 
 # ASSUME: one camera is told whose corners fit worse by this factor, and by more than a pixel.
@@ -42,7 +41,7 @@ def summary(found: Found, seen: Corners, board: Board, *, known: bool) -> dict[s
     report: dict[str, Any] = {"warnings": _warnings(found, seen, rms_px, known)}
     report |= {"remarks": [], "world_of_picture": found.world}
     if not found.stated:
-        vertical_deg = world_frame.vertical_sigma_deg(found.frame)
+        vertical_deg = vertical.sigma_deg(found.frame)
         report["vertical_sigma_deg"] = vertical_deg
         report["remarks"].append(
             f"board: z is up as in the pictures, within {vertical_deg:.0f} degrees (standard "

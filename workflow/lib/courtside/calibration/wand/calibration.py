@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.calibration import vertical
 from courtside.calibration.bundle import problem, selection
 from courtside.calibration.bundle.problem import FLEX, IMAGE, LENS
 from courtside.calibration.court import points_alone
@@ -45,7 +46,7 @@ class Found:
     @property
     def frame(self) -> NDArray:
         """Covariance of the world frame, as `CameraCovariance.frame` has it."""
-        return np.zeros((3, 3)) if self.stated else world_frame.error_of_pictures(self.cameras)
+        return np.zeros((3, 3)) if self.stated else vertical.error_of_pictures(self.cameras)
 
 
 @dataclass(frozen=True, eq=False)

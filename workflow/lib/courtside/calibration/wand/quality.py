@@ -5,10 +5,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration import point_covariance
+from courtside.calibration import point_covariance, vertical
 from courtside.calibration.bundle.problem import IMAGE, LENS, POSE
 from courtside.calibration.court import place_checks
-from courtside.calibration.people import world_frame
 from courtside.calibration.wand import timing, world
 from courtside.calibration.wand.adjustment import WRONG_SIGMAS
 from courtside.calibration.wand.calibration import Found
@@ -62,7 +61,7 @@ def summary(found: Found, wand: Wand, seen: Seen, known: set[str]) -> dict[str, 
     report["warnings"] = _warnings(found, wand) + _of_cameras(found, seen, known, late, late_sigma)
     report["remarks"] = [] if found.stated else [_world(found)]
     if not found.stated:
-        report["vertical_sigma_deg"] = world_frame.vertical_sigma_deg(found.frame)
+        report["vertical_sigma_deg"] = vertical.sigma_deg(found.frame)
     return report
 
 
@@ -89,7 +88,7 @@ def _length_mm(found: Found, wand: Wand) -> dict[str, float | int]:
 
 
 def _world(found: Found) -> str:
-    vertical_deg = world_frame.vertical_sigma_deg(found.frame)
+    vertical_deg = vertical.sigma_deg(found.frame)
     return (
         "wand: the origin is the middle of the wand's path, z is up as in the pictures, within "
         f"{vertical_deg:.0f} degrees (standard deviation), and x runs from camera "
