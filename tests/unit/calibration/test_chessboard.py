@@ -113,11 +113,11 @@ def test_the_lens_is_that_of_the_boards_that_are_left(find, monkeypatch):
     boards, solved = find(), []
     many = replace(boards, paths=boards.paths * 5, xy=np.concatenate([boards.xy] * 5))
 
-    def solve(xy, _):
+    def solve(places, xy, size):
         solved.append(len(xy))
         return 0.1, K, DIST, 1.0, np.array([9.0] + [0.1] * (len(xy) - 1))
 
-    monkeypatch.setattr(chessboard, "_solve", solve)
+    monkeypatch.setattr(chessboard, "solve", solve)
     lens = chessboard.calibrate(many)
     assert len(solved) == chessboard.MAX_ROUNDS + 1
     assert lens.n_used == solved[-1] == 30 - chessboard.MAX_ROUNDS
