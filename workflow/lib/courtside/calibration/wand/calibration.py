@@ -289,35 +289,29 @@ def _in_front(state: State) -> State:
 def _with_clicks(state: State, cameras, lenses, clicks: Clicks) -> State:
     """Return a state with clicked points as additional bodies, with their own sigma and loss."""
     bodies, network = state.bodies, state.network
-    xy = _straight(cameras, lenses, clicks.xy)
-    image, point = np.nonzero(np.isfinite(xy[..., 0]))
-    used, at = np.unique(point, return_inverse=True)
-    alone_px = clicks.alone_px()
-    sigma_px = np.sqrt((alone_px**2).mean(axis=2))  # one for both axes
-    loss = clicks.loss_scale * float((clicks.sigma_px / alone_px).mean())
-    first, blocks = len(bodies.origin), bodies.block.max() + 1
-    bodies = Bodies(
-        np.concatenate([bodies.origin, clicks.xyz[used]]),
-        np.concatenate([bodies.direction, np.tile([1.0, 0.0, 0.0], (len(used), 1))]),
-        np.concatenate([bodies.known, clicks.xyz[used]]),
-        np.concatenate([bodies.sigma_m, clicks.sigma_m[used]]),
-        np.concatenate([bodies.body, first + np.arange(len(used))]),
-        np.concatenate([bodies.along_m, np.zeros(len(used))]),
-        np.concatenate([bodies.block, blocks + np.arange(len(used))]),
-    )
-    both = problem.with_points(
+    xy, alone_px = _straight(cameras, lenses, clicks.xy), clicks.alone_px()
+    both = selection.add_control_points(
         network,
-        np.concatenate([network.xyz, clicks.xyz[used]]),
-        np.concatenate([network.image_idx, image]),
-        np.concatenate([network.point_idx, len(network.xyz) + at]),
-        np.concatenate([network.xy, xy[image, point]]),
+        clicks.xyz,
+        clicks.sigma_m,
+        dict(enumerate(xy)),
+        sigma_px=dict.fromkeys(range(len(cameras)), 1.0),
+        loss_scale=clicks.loss_scale * float((clicks.sigma_px / alone_px).mean()),
     )
-    network = replace(
-        both,
-        sigma_px=np.concatenate([network.sigma_px, sigma_px[image, point]]),
-        loss_scale=np.concatenate([network.loss_scale, np.full(len(image), loss)]),
+    sigma_px = np.sqrt((alone_px**2).mean(axis=2))[np.isfinite(xy).all(axis=2)]  # of both axes
+    both = replace(both, sigma_px=np.append(network.sigma_px, sigma_px))
+    xyz, sigma_m = both.xyz[len(network.xyz) :], both.xyz_sigma[len(network.xyz) :]
+    first, blocks, number = len(bodies.origin), bodies.block.max() + 1, np.arange(len(xyz))
+    bodies = Bodies(
+        np.concatenate([bodies.origin, xyz]),
+        np.concatenate([bodies.direction, np.tile([1.0, 0.0, 0.0], (len(xyz), 1))]),
+        np.concatenate([bodies.known, xyz]),
+        np.concatenate([bodies.sigma_m, sigma_m]),
+        np.concatenate([bodies.body, first + number]),
+        np.concatenate([bodies.along_m, np.zeros(len(xyz))]),
+        np.concatenate([bodies.block, blocks + number]),
     )
-    return _in_front(replace(state, bodies=bodies, network=network))
+    return _in_front(replace(state, bodies=bodies, network=both))
 
 
 def _adjust(state: State, cameras: Sequence[Camera], lenses: Mapping[str, Camera]) -> Adjusted:
