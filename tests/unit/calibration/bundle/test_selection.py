@@ -137,7 +137,7 @@ def test_control_points_come_behind_the_ties():
     np.testing.assert_array_equal(found.xyz_mean[10:], found.xyz[10:])
     np.testing.assert_allclose(found.xyz_sigma[10:], [0, 0.01, 0.02, 0.03, 0.05])
     np.testing.assert_array_equal(found.image_idx[50:], [0] * 4 + [1] * 5)
-    np.testing.assert_array_equal(found.sigma_px[50:], [0.5] * 4 + [2.0] * 5)
+    np.testing.assert_array_equal(found.sigma_px[50:], [[0.5] * 2] * 4 + [[2.0] * 2] * 5)
     np.testing.assert_array_equal(found.loss_scale[50:], 3.0)
     assert np.abs(networks.residuals(found)[50:]).max() < 1e-8
     np.testing.assert_array_equal(found.xy[:50], made.xy)
@@ -153,7 +153,7 @@ def test_a_camera_without_clicks_adds_nothing():
 
 def test_weights_are_set():
     found = selection.weigh(networks_made.make(3, 10), sigma_px=1.4, loss_scale=2)
-    assert set(found.sigma_px) == {1.4} and set(found.loss_scale) == {2.0}
+    assert set(found.sigma_px.ravel()) == {1.4} and set(found.loss_scale) == {2.0}
 
 
 @pytest.mark.parametrize(

@@ -134,11 +134,8 @@ def add_control_points(
     ]
     image_idx, point = np.array(clicked, dtype=int).reshape(-1, 2).T
     used, point_idx = np.unique(point, return_inverse=True)
-    sigma, others = np.array([sigma_px[v] for v in image_idx]), network.sigma_px
-    if any(np.ndim(each) for each in sigma_px.values()):
-        by_point = {v: np.broadcast_to(each, (len(xyz), 2)) for v, each in sigma_px.items()}
-        sigma = np.array([by_point[v][p] for v, p in clicked]).reshape(-1, 2)
-        others = network.axis_sigma_px
+    by_point = {v: np.broadcast_to(each, (len(xyz), 2)) for v, each in sigma_px.items()}
+    sigma = np.array([by_point[v][p] for v, p in clicked]).reshape(-1, 2)
     xyz, xyz_sigma = np.asarray(xyz)[used], np.asarray(xyz_sigma)[used]
     places = np.array([clicks[v][p] for v, p in clicked]).reshape(-1, 2)
     return replace(
@@ -149,7 +146,7 @@ def add_control_points(
         image_idx=np.concatenate([network.image_idx, image_idx]),
         point_idx=np.concatenate([network.point_idx, point_idx + len(network.xyz)]),
         xy=np.concatenate([network.xy, places]),
-        sigma_px=np.concatenate([others, sigma]) if len(sigma) else others,
+        sigma_px=np.concatenate([network.sigma_px, sigma]),
         loss_scale=np.concatenate([network.loss_scale, np.full(len(places), float(loss_scale))]),
     )
 

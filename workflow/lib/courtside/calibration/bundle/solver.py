@@ -119,7 +119,7 @@ class _State:
 def _state(network: Network, quadratic: Quadratic | None) -> _State:
     seen, (off, inverse) = problem.see(network), prior(network)
     step = np.zeros(0) if quadratic is None else network.difference(quadratic.reference)
-    scaled = seen.residual / network.axis_sigma_px
+    scaled = seen.residual / network.sigma_px
     if not np.isfinite(scaled).all():
         return _State(network, seen, off, inverse, step, np.inf)
     square = (scaled**2).sum(axis=1)
@@ -203,7 +203,7 @@ def _along(values: NDArray, terms: NDArray) -> NDArray:
 
 def _weight(network: Network, residual: NDArray) -> NDArray:
     """Return the root of each axis's weight (M, 2); 0 where its point is behind its image."""
-    sigma = network.axis_sigma_px
+    sigma = network.sigma_px
     square = ((residual / sigma) ** 2).sum(axis=1)
     robust = 1 / np.sqrt(1 + square / network.loss_scale**2)
     return np.where(np.isfinite(square), robust, 0.0)[:, None] / sigma

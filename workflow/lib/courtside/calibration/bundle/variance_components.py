@@ -85,7 +85,7 @@ def estimate(
     `factors` are those already contained in the network's sigmas and in the quadratic; `lines` is
     additional information, whose weight stays.
     """
-    sigma = network.axis_sigma_px
+    sigma = network.sigma_px
     residual, rows = _rows(network)
     known = [quadratic] if lines is None else [quadratic, lines]
     covariance = _covariance(network, solver.total(known), rows)
@@ -127,7 +127,7 @@ def _rows(network: Network) -> tuple[NDArray, NDArray]:
     rows[:, :, :size] = network.over_columns(by_camera)
     places = size + 3 * network.point_idx[:, None, None] + np.arange(3)
     np.put_along_axis(rows, places.repeat(2, axis=1), by_point, axis=2)
-    return residual, rows / network.axis_sigma_px[:, :, None]
+    return residual, rows / network.sigma_px[:, :, None]
 
 
 def _covariance(network: Network, quadratic: solver.Quadratic, rows: NDArray) -> NDArray:

@@ -191,7 +191,7 @@ def _alike(network: Network, cells: NDArray) -> float:
     At least 1. A camera that sees a knee 1 cm too low sees it so for a whole stride: its views are
     not independent, and a covariance that takes them so is too small.
     """
-    scaled = problem.residuals(network) / network.axis_sigma_px
+    scaled = problem.residuals(network) / network.sigma_px
     weight = 1 / (1 + (scaled**2).sum(axis=1) / LOSS**2)
     scaled *= weight[:, None]
     _, cell = np.unique(cells, return_inverse=True)

@@ -122,7 +122,7 @@ def _sigma(state: State, of_wand: NDArray, redundancy: float) -> float:
 
 def _weighted(state: State, of_wand: NDArray, sigma_px: float, loss: NDArray) -> State:
     """Return the state with this sigma of markers, and these Cauchy scales (M,) of all views."""
-    sigma = np.where(of_wand, sigma_px, state.network.sigma_px)
+    sigma = np.where(of_wand[:, None], sigma_px, state.network.sigma_px)
     network = replace(state.network, sigma_px=sigma, loss_scale=loss)
     return replace(state, network=network)
 
@@ -147,7 +147,7 @@ def _minimised(state: State, columns: NDArray) -> State:
 
 def _scaled(state: State) -> tuple[NDArray, NDArray]:
     """Return squared residuals (M,) in sigmas, NaN behind a camera, and robust weights (M,)."""
-    off = problem.residuals(state.network) / state.network.sigma_px[:, None]
+    off = problem.residuals(state.network) / state.network.sigma_px
     square = (off**2).sum(axis=1)
     return square, np.nan_to_num(1 / (1 + square / state.network.loss_scale**2))
 
@@ -181,7 +181,7 @@ def _normal(state: State, columns: NDArray, damping: float) -> Normal:
     by_turn = reach * by_point @ _perpendicular(bodies.direction)[body]
     by_length = reach * by_point @ bodies.direction[body][:, :, None]
     by_body = np.concatenate([by_point, by_turn], axis=2)
-    root = np.sqrt(_scaled(state)[1]) / network.sigma_px
+    root = np.sqrt(_scaled(state)[1]) / network.sigma_px[:, 0]  # of both axes
     rows = elimination.Rows(off, by_camera, by_length, by_body, body, root)
     length, of_length = _in_sigmas(np.array([state.length]), np.array([state.length_sigma]))
     place, inverse = _in_sigmas(bodies.origin - bodies.known, bodies.sigma_m[:, None])

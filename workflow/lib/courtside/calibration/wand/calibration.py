@@ -299,7 +299,7 @@ def _with_clicks(state: State, cameras, lenses, clicks: Clicks) -> State:
         loss_scale=clicks.loss_scale * float((clicks.sigma_px / alone_px).mean()),
     )
     sigma_px = np.sqrt((alone_px**2).mean(axis=2))[np.isfinite(xy).all(axis=2)]  # of both axes
-    both = replace(both, sigma_px=np.append(network.sigma_px, sigma_px))
+    both = replace(both, sigma_px=np.append(network.sigma_px[:, 0], sigma_px))
     xyz, sigma_m = both.xyz[len(network.xyz) :], both.xyz_sigma[len(network.xyz) :]
     first, blocks, number = len(bodies.origin), bodies.block.max() + 1, np.arange(len(xyz))
     bodies = Bodies(
