@@ -7,7 +7,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration import chessboard, robust_poses
+from courtside.calibration import robust_poses
+from courtside.calibration.boards import chessboard
 from courtside.calibration.boards.board import Board
 from courtside.calibration.boards.corners import Corners
 from courtside.geometry import rotations

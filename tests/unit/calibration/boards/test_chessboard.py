@@ -8,7 +8,8 @@ import cv2
 import numpy as np
 import pytest
 
-from courtside.calibration import chessboard, file_formats
+from courtside.calibration import file_formats
+from courtside.calibration.boards import chessboard
 from courtside.geometry import rotations
 from courtside.study.errors import InputError
 from fixtures.recordings.real_data import REAL, needs_real
