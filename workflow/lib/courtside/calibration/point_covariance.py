@@ -7,7 +7,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from courtside.calibration.bundle import problem
 from courtside.calibration.bundle.problem import Network
-from courtside.geometry.camera import Camera
 
 PLACES = 4096  # at once, for the memory that their derivatives need
 
@@ -75,13 +74,3 @@ def field(network: Network, covariance: NDArray) -> Callable[[NDArray], NDArray]
 def _parts(xyz: NDArray) -> list[NDArray]:
     """Split places (N, 3) so that at most `PLACES` are worked on at once."""
     return np.array_split(xyz, len(xyz) // PLACES + 1)
-
-
-def centre_sigma(camera: Camera, covariance: NDArray) -> float:
-    """Return the standard deviation of a camera's centre, m, root of the sum over three axes.
-
-    `covariance` (6, 6) is that of its pose. Of the steps of a network only the shift moves the
-    centre, by the rotation's inverse.
-    """
-    by_shift = camera.cam_from_world[:, :3].T
-    return float(np.sqrt(np.trace(by_shift @ covariance[3:, 3:] @ by_shift.T)))

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from courtside.calibration import point_covariance, vertical
+from courtside.calibration import vertical
 from courtside.calibration.boards.adjustment import Found
 from courtside.calibration.boards.board import Board
 from courtside.calibration.boards.corners import Corners
-from courtside.calibration.bundle.problem import IMAGE, LENS, POSE
+from courtside.calibration.bundle.problem import IMAGE, LENS
 from courtside.geometry import triangulation
 
 # ASSUME: one camera is told whose corners fit worse by this factor, and by more than a pixel.
@@ -49,18 +49,17 @@ def summary(found: Found, seen: Corners, board: Board, *, known: bool) -> dict[s
             "name the picture in which it lies on the floor as `floor`"
         )
     report |= {"sigma_px": found.sigma_px, "covariance_factor": found.factor}
-    first = IMAGE * len(found.cameras)
+    first, variance = IMAGE * len(found.cameras), np.diag(found.covariance)
     for c, camera in enumerate(found.cameras):
-        at, lens = IMAGE * c + np.arange(len(POSE)), first + len(LENS) * c
+        shift, lens = IMAGE * c + 3, first + len(LENS) * c  # a centre is as uncertain as its shift
         used = own[c] & np.isfinite(found.error_px[:, 0])
         one = {
             "n_corners": int(used.sum()),
             "n_pictures": len(np.unique(seen.picture[used])),
             "rms_px": rms_px[c],
-            "place_sigma_mm": 1000
-            * point_covariance.centre_sigma(camera, found.covariance[np.ix_(at, at)]),
+            "place_sigma_mm": 1000 * float(np.sqrt(variance[shift : shift + 3].sum())),
             "f_px": float(camera.K[1, 1]),
-            "f_sigma_px": float(np.sqrt(found.covariance[lens, lens])),
+            "f_sigma_px": float(np.sqrt(variance[lens])),
         }
         if np.isfinite(found.late[c]):
             one["late_pictures"] = float(found.late[c])

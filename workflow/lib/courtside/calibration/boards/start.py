@@ -52,7 +52,7 @@ def flat(board: Board, seen: Corners) -> NDArray:
         _, inliers = cv2.findHomography(places, xy, cv2.RANSAC, limit_px)
         if inliers is not None:
             found[rows] = inliers.ravel().astype(bool)
-    share = float(found.mean()) if len(found) else 0.0
+    share = float(found.mean())
     if share < FLAT_SHARE:
         raise InputError(
             f"board: expected corners that lie on one plane, {FEWEST_CORNERS} or more in a "

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration import point_covariance, vertical
-from courtside.calibration.bundle.problem import IMAGE, LENS, POSE
+from courtside.calibration import vertical
+from courtside.calibration.bundle.problem import IMAGE, LENS
 from courtside.calibration.court import place_checks
 from courtside.calibration.wand import timing, world
 from courtside.calibration.wand.adjustment import WRONG_SIGMAS
@@ -41,16 +41,15 @@ def summary(found: Found, wand: Wand, seen: Seen, known: set[str]) -> dict[str, 
     report: dict[str, Any] = {"warnings": [], "world": found.world}
     report |= {"sigma_px": found.adjusted.sigma_px, "covariance_factor": found.adjusted.factor}
     report["length_mm"] = _length_mm(found, wand)
-    first = IMAGE * len(found.cameras)
+    first, variance = IMAGE * len(found.cameras), np.diag(found.covariance)
     for c, camera in enumerate(found.cameras):
-        pose, lens = IMAGE * c + np.arange(len(POSE)), first + len(LENS) * c
-        sigma = np.sqrt(np.diag(found.covariance)[lens : lens + len(LENS)])
+        shift, lens = IMAGE * c + 3, first + len(LENS) * c  # a centre is as uncertain as its shift
+        sigma = np.sqrt(variance[lens : lens + len(LENS)])
         one = {
             "n_frames": int(np.isfinite(seen.xy[c, ..., 0]).any(axis=1).sum()),
             "rms_px": float(np.sqrt(np.mean(off[c][fine[c]] ** 2))),
             "wrong_percent": 100 * float(wrong[c].sum() / max(int(shared[c].sum()), 1)),
-            "place_sigma_mm": 1000
-            * point_covariance.centre_sigma(camera, found.covariance[np.ix_(pose, pose)]),
+            "place_sigma_mm": 1000 * float(np.sqrt(variance[shift : shift + 3].sum())),
             "late_frames": float(late[c]),
         }
         if camera.name not in known:
