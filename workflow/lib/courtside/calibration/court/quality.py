@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration import point_covariance as propagation
+from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
 from courtside.calibration.court import click_checks, joint_adjustment
 from courtside.calibration.court.court import ClickedPoints, Court, to_line_centres
-from courtside.calibration.point_covariance import field
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records.covariance import CameraCovariance
 from courtside.calibration.records.support import Support
@@ -95,7 +94,7 @@ def adjust_and_check(
         click_sigma_px=sigma_px,
         inwards=_inwards(court, ties, clicks, solved.factors, **weights),
         adjust=adjust,
-        error_modes_m=field(solved.network, solved.covariance)(court.xyz),
+        error_modes_m=point_covariance.field(solved.network, solved.covariance)(court.xyz),
     )
     known = camera_covariance.of_network([c.name for c in solved.cameras], solved.covariance)
     quality |= expected_volume(court, solved.cameras, known)
@@ -207,7 +206,7 @@ def place_covariance(
     """
     spread = covariance.of([camera.name for camera in cameras]).of_columns()
     network, seen = selection.of_cameras(cameras), shown(cameras, xyz)
-    return propagation.point_covariance(network, spread, xyz, seen)
+    return point_covariance.point_covariance(network, spread, xyz, seen)
 
 
 def shown(cameras: Sequence[Camera], xyz: NDArray) -> NDArray:
