@@ -1,6 +1,6 @@
 """Checks of calibrated cameras without the truth, and the errors to expect of them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -33,27 +33,21 @@ def check_cameras(
     clicks: ClickedPoints,
     *,
     click_sigma_px: float,
-    inwards: tuple[float, float] | None = None,
-    adjust: Callable[[ClickedPoints], Sequence[Camera]] | None = None,
-    error_modes_m: NDArray | None = None,
     strict: bool = True,
+    **known: Any,
 ) -> dict[str, Any]:
     """Check cameras, in the court's frame, against the clicked court points, each left out in turn.
 
     The result, for a JSON file, holds `warnings`, and `left_out`, by point: how far it is from its
     place (cm) and from each click (px) in a similarity fitted to the other points. Raises
-    `InputError`, or if not `strict` warns, if the points cannot be this court.
-
-    Parameters
-    ----------
-    click_sigma_px : of a good click, in the largest picture
-    inwards, adjust, error_modes_m : as for `click_checks.check`
+    `InputError`, or if not `strict` warns, if the points cannot be this court. `click_sigma_px` is
+    that of a good click in the largest picture, `**known` what else `click_checks.check` takes.
     """
     table, each = leave_one_out_errors(court, cameras, clicks)
-    known: dict[str, Any] = {"sigma_px": click_sigma_px, "inwards": inwards, "table": table}
-    known |= {"adjust": adjust, "error_modes_m": error_modes_m}
     try:
-        warnings = click_checks.check(court, cameras, clicks, **known)
+        warnings = click_checks.check(
+            court, cameras, clicks, sigma_px=click_sigma_px, table=table, **known
+        )
     except InputError as error:
         if strict:
             raise
