@@ -239,17 +239,6 @@ def scaled(information):
     return information * np.outer(scale, scale)
 
 
-def test_images_become_cameras_with_the_same_view():
-    made = networks_made.make(3, 10)
-    made.lens[:, 1] = 1.002
-    found = selection.cameras(made, ["side", "back"], [networks_made.SIZE] * 2)
-    for v, camera in enumerate(found):
-        ours = opencv_projection(camera, made.xyz)
-        mine = made.image_idx == v
-        np.testing.assert_allclose(ours, (networks.residuals(made) + made.xy)[mine], atol=1e-8)
-    assert [c.name for c in found] == ["side", "back"] and found[0].size == networks_made.SIZE
-
-
 def test_the_free_frame_is_that_of_the_first_two_fixed_cameras():
     made = networks_made.in_random_frame(networks_made.make(6, 20))
     found = selection.transform(made, selection.free_frame(made, [0, 1]))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from courtside.calibration import point_covariance
-from courtside.calibration.bundle import selection
+from courtside.calibration.bundle import conversion
 from courtside.calibration.people import prior, world_frame
 from courtside.calibration.records import covariance
 from courtside.geometry import rotations
@@ -59,7 +59,7 @@ def test_the_covariance_is_of_the_shape_and_of_the_scale():
         TRUE, rotation_deg=5, position_m=1, focal_percent=1, principal_point_percent=1, k1=0.01
     )
     places = WALK[:, ::6].reshape(-1, 3)
-    network = selection.of_cameras(TRUE)
+    network = conversion.network_of(TRUE)
     whole = known.of_columns()
     by_column = point_covariance.sensitivity(network, places).reshape(places.size, -1)
     shape = world_frame.of_shape(TRUE, whole, places, 0.0)

@@ -17,7 +17,7 @@ from courtside.calibration import vertical
 from courtside.calibration.boards import start
 from courtside.calibration.boards.board import Board
 from courtside.calibration.boards.corners import Corners
-from courtside.calibration.bundle import elimination, problem, selection
+from courtside.calibration.bundle import conversion, elimination, problem, selection
 from courtside.calibration.bundle.elimination import Normal
 from courtside.calibration.bundle.problem import IMAGE, POSE, Network
 from courtside.geometry import camera as cameras
@@ -118,7 +118,7 @@ def calibrate(
     _check_rigid(seen, error_px)
     covariance, factor = _covariance(state, fixed, sigma_px)
     covariance = covariance + _of_size(board, state.network)
-    solved = selection.cameras(state.network, seen.cameras, [c.size for c in known])
+    solved = conversion.cameras_of(state.network, seen.cameras, [c.size for c in known])
     if lenses:
         both = zip(known, solved, strict=True)
         solved = [replace(lens, cam_from_world=one.cam_from_world) for lens, one in both]
@@ -171,7 +171,7 @@ def _started(
         replace(camera, cam_from_world=pose, dist=np.zeros(5) if ideal is not None else camera.dist)
         for camera, pose in zip(known, posed.cam_from_world, strict=True)
     ]
-    network = selection.of_cameras(placed)
+    network = conversion.network_of(placed)
     xy = seen.xy if ideal is None else _pinhole(known, seen, ideal)
     rows = np.flatnonzero(usable)
     network = problem.with_points(

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import (
+    conversion,
     inverses,
     selection,
     solver,
@@ -118,7 +119,7 @@ def condense(
     ties : the mean over the parts
     parts : with their chosen points after adjustment, in the court's frame
     """
-    cameras = selection.fixed_cameras(network, fixed, sizes)
+    cameras = conversion.fixed_cameras(network, fixed, sizes)
     sigma_px = [click_sigma(click_sigma_px, sizes[name]) for name in fixed]
 
     def adjusted(clicks: ClickedPoints, straightened: bool) -> Iterator[Part]:
@@ -144,7 +145,7 @@ def condense(
 
 
 def _fixed_cameras(network, names, at, sizes) -> list[Camera]:
-    return selection.fixed_cameras(network, dict(zip(names, map(int, at), strict=True)), sizes)
+    return conversion.fixed_cameras(network, dict(zip(names, map(int, at), strict=True)), sizes)
 
 
 def _alignment(court, cameras, clicks) -> Sim3:
@@ -226,7 +227,7 @@ def _in_free_frame(network: Network, fixed: Sequence[int]) -> Network:
 def free(ties: Ties) -> Solution:
     """Return the `Solution` of `condense_free`; its covariance leaves out frame and scale."""
     network = ties.knowledge.reference
-    cameras = selection.cameras(network, ties.cameras, ties.sizes)
+    cameras = conversion.cameras_of(network, ties.cameras, ties.sizes)
     covariance = inverses.pseudo_inverse(ties.knowledge.information)
     return Solution(cameras, network, covariance, variance_components.none(len(cameras)))
 
@@ -300,7 +301,7 @@ def solve(
         network, quadratic=known, max_iterations=max_iterations, tolerance=1e-7
     )
     _check_placed(ties, normal)
-    cameras = selection.cameras(network, ties.cameras, ties.sizes)
+    cameras = conversion.cameras_of(network, ties.cameras, ties.sizes)
     covariance = normal.covariance()
     shifts = variance_components.shift_columns(network)
     covariance[shifts], covariance[:, shifts] = 0.0, 0.0  # of the clicks, not of the cameras

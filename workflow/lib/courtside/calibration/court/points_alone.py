@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration.bundle import selection, solver
+from courtside.calibration.bundle import conversion, selection, solver
 from courtside.calibration.bundle.problem import IMAGE, LENS
 from courtside.calibration.court import (
     click_checks,
@@ -128,7 +128,7 @@ def summary(found: Found) -> dict[str, Any]:
 def _lenses(starts: Sequence[Camera]) -> Ties:
     """Return what is known of the lenses before any click, about cameras to start from."""
     sizes = [camera.size for camera in starts]
-    network = selection.of_cameras(starts)
+    network = conversion.network_of(starts)
     usual = selection.with_lens_priors(network, sizes, SPREAD, CENTRE_SHARE)
     information = np.zeros(network.n_columns)
     information[-network.lens.size :] = usual.lens_sigma.ravel() ** -2.0

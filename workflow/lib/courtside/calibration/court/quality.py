@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration import point_covariance
-from courtside.calibration.bundle import selection
+from courtside.calibration.bundle import conversion
 from courtside.calibration.court import click_checks, joint_adjustment
 from courtside.calibration.court.court import ClickedPoints, Court, to_line_centres
 from courtside.calibration.records import covariance as camera_covariance
@@ -199,7 +199,7 @@ def place_covariance(
     NaN where fewer than two do.
     """
     spread = covariance.of([camera.name for camera in cameras]).of_columns()
-    network, seen = selection.of_cameras(cameras), shown(cameras, xyz)
+    network, seen = conversion.network_of(cameras), shown(cameras, xyz)
     return point_covariance.point_covariance(network, spread, xyz, seen)
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration.bundle import problem, selection, solver
+from courtside.calibration.bundle import conversion, problem, selection, solver
 from courtside.calibration.bundle.problem import POSE, Network
 from courtside.calibration.court import joint_adjustment, line_edges
 from courtside.calibration.court.court import ClickedPoints, Court
@@ -124,7 +124,7 @@ def refine(
         network, normal = solver.adjust(
             network, quadratic=known, max_iterations=MAX_ITERATIONS, tolerance=TOLERANCE
         )
-        found = selection.cameras(network, names, sizes)
+        found = conversion.cameras_of(network, names, sizes)
         if clicks is not None and widened == 1.0:
             scatter = _scatter(network, n_views, clicks)
     found = [
@@ -164,7 +164,7 @@ def _network(
     image_idx, at = np.nonzero(points.accepted)
     used, point_idx = np.unique(at, return_inverse=True)
     network = problem.with_points(
-        selection.of_cameras(cameras), points.xyz[used], image_idx, point_idx, xy[image_idx, at]
+        conversion.network_of(cameras), points.xyz[used], image_idx, point_idx, xy[image_idx, at]
     )
     unit_px = height_px[image_idx, at] / np.sqrt(score[image_idx, at])
     sigma_share = _sigma_share(points, score, height_px, n_joints)

@@ -14,7 +14,7 @@ import scipy
 from numpy.typing import NDArray
 
 from courtside.calibration import point_covariance
-from courtside.calibration.bundle import selection
+from courtside.calibration.bundle import conversion
 from courtside.calibration.court.joint_adjustment import click_sigma
 from courtside.geometry.camera import Camera
 from courtside.geometry.triangulation import triangulate_all
@@ -237,7 +237,7 @@ def _share(
     by_column = np.zeros(0)
     if shape is not None:
         clicked = np.isfinite(known.xy).all(axis=-1).T
-        one, other = point_covariance.sensitivity(selection.of_cameras(cameras), ends, clicked)
+        one, other = point_covariance.sensitivity(conversion.network_of(cameras), ends, clicked)
         by_column = along / own**2 @ (other - one)
     return own, variance, by_bias, by_column
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration import point_covariance, vertical
-from courtside.calibration.bundle import selection
+from courtside.calibration.bundle import conversion
 from courtside.calibration.people import metric_scale
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
@@ -149,7 +149,7 @@ def of_shape(
     frame (an S-transformation, Baarda 1973). The error of the scale is then added: `scale_sigma`,
     a share, about the middle of the joints. With None, the scale and its error stay as they are.
     """
-    network, middle = selection.of_cameras(cameras), xyz.mean(axis=0)
+    network, middle = conversion.network_of(cameras), xyz.mean(axis=0)
     moved = [
         _about(middle, 1.0, rotations.rotation_from_rodrigues(e)) for e in TINY_STEP * np.eye(3)
     ]
@@ -157,7 +157,7 @@ def of_shape(
     if scale_sigma is not None:
         moved.append(_about(middle, 1 + TINY_STEP, np.eye(3)))
     of_cameras = np.stack([
-        selection.of_cameras([one.camera(camera) for camera in cameras]).difference(network)
+        conversion.network_of([one.camera(camera) for camera in cameras]).difference(network)
         for one in moved
     ], axis=1) / TINY_STEP  # fmt: skip
     of_points = np.stack([(one.points(xyz) - xyz).ravel() for one in moved], axis=1) / TINY_STEP

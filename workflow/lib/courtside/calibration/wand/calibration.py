@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration import vertical
-from courtside.calibration.bundle import problem, selection
+from courtside.calibration.bundle import conversion, problem, selection
 from courtside.calibration.bundle.problem import FLEX, IMAGE, LENS
 from courtside.calibration.court import points_alone
 from courtside.calibration.people import world_frame
@@ -240,7 +240,7 @@ def _state(
     known = np.isfinite(xyz[..., 0])
     xy = _straight(cameras, lenses, seen.xy[:, frames][:, known])
     image, point = np.nonzero(np.isfinite(xy[..., 0]))
-    network = selection.of_cameras(_without(cameras, lenses))
+    network = conversion.network_of(_without(cameras, lenses))
     network = problem.with_points(network, xyz[known], image, point, xy[image, point])
     sizes, spread = [camera.size for camera in cameras], points_alone.SPREAD
     network = selection.with_lens_priors(network, sizes, spread, points_alone.CENTRE_SHARE)
@@ -328,7 +328,7 @@ def _adjust(state: State, cameras: Sequence[Camera], lenses: Mapping[str, Camera
 def _cameras(found: Adjusted, cameras, lenses) -> list[Camera]:
     """Return the adjusted cameras, with their known lenses."""
     names, sizes = [c.name for c in cameras], [c.size for c in cameras]
-    solved = selection.cameras(found.state.network, names, sizes)
+    solved = conversion.cameras_of(found.state.network, names, sizes)
     return [
         replace(lenses[one.name], cam_from_world=one.cam_from_world) if one.name in lenses else one
         for one in solved
