@@ -92,7 +92,7 @@ def errors(found, real, markers):
         rigid = similarity.rigid(placed(found, real, markers), markers)
     xyz = placed(found, real, grid)
     network = conversion.network_of(found.cameras)
-    spread = point_covariance.point_covariance(network, found.covariance, xyz)
+    spread = point_covariance.point_covariance(network, found.covariance.of_columns(), xyz)
     off, spread = rigid.points(xyz) - grid, rigid.rotation @ spread @ rigid.rotation.T
     held = normal_errors.mahalanobis(off, spread) <= normal_errors.ellipsoid(0.9)
     shape = similarity.umeyama(xyz, grid).points(xyz) - grid

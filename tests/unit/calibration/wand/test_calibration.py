@@ -50,7 +50,7 @@ def errors(found, markers):
     rigid = similarity.rigid(placed, markers)
     there = triangulate_all(found.cameras, np.stack([cameras.project(c, PLACES) for c in RIG]))
     network = conversion.network_of(found.cameras)
-    spread = point_covariance.point_covariance(network, found.covariance, there)
+    spread = point_covariance.point_covariance(network, found.covariance.of_columns(), there)
     return rigid.points(there) - PLACES, rigid.rotation @ spread @ rigid.rotation.T
 
 
@@ -152,7 +152,7 @@ def test_clicked_points_give_the_world():
     )
     assert np.linalg.norm(placed - PLACES, axis=1).max() < 0.01
     network = conversion.network_of(found.cameras)
-    spread = point_covariance.point_covariance(network, found.covariance, placed)
+    spread = point_covariance.point_covariance(network, found.covariance.of_columns(), placed)
     square = normal_errors.mahalanobis(placed - PLACES, spread)
     assert np.mean(square < normal_errors.ellipsoid(0.9)) > 0.7
 

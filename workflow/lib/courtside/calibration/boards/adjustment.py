@@ -20,6 +20,8 @@ from courtside.calibration.boards.corners import Corners
 from courtside.calibration.bundle import conversion, elimination, problem, selection
 from courtside.calibration.bundle.elimination import Normal
 from courtside.calibration.bundle.problem import IMAGE, POSE, Network
+from courtside.calibration.records import covariance as camera_covariance
+from courtside.calibration.records.covariance import CameraCovariance
 from courtside.geometry import camera as cameras
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
@@ -45,7 +47,7 @@ class Found:
     """Cameras from boards."""
 
     cameras: list[Camera]
-    covariance: NDArray  # of the network's columns, as of `records.covariance.of_network`
+    covariance: CameraCovariance
     world: str  # the picture whose board is at the origin
     stated: bool  # whether this board lies on the floor; else z is up as in the pictures
     sigma_px: float  # of a corner, along each axis, by the bulk of the residuals
@@ -55,13 +57,6 @@ class Found:
     # and the standard deviation of that; NaN if pictures are in no order
     late: NDArray
     late_sigma: NDArray
-
-    @property
-    def frame(self) -> NDArray:
-        """Covariance of the world frame, as `CameraCovariance.frame` has it."""
-        if self.stated:
-            return np.zeros((3, 3))
-        return vertical.error_of_pictures(self.cameras)
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,27 +107,30 @@ def calibrate(
     unknown = fixed.active.sum() + len(POSE) * (len(np.unique(fixed.picture)) - 1)
     count = 2 * int(usable.sum())
     sigma_px *= float(np.sqrt(count / max(1, count - unknown)))
-    off = problem.residuals(state.network)
     error_px = np.full(seen.xy.shape, np.nan)
-    error_px[usable] = off
+    error_px[usable] = problem.residuals(state.network)
     _check_rigid(seen, error_px)
     covariance, factor = _covariance(state, fixed, sigma_px)
-    covariance = covariance + _of_size(board, state.network)
+    covariance += _of_size(board, state.network)
     solved = conversion.cameras_of(state.network, seen.cameras, [c.size for c in known])
     if lenses:
         both = zip(known, solved, strict=True)
         solved = [replace(lens, cam_from_world=one.cam_from_world) for lens, one in both]
-    if floor is None:
-        solved = _upright(solved)
+    solved, frame = _upright(solved) if floor is None else (solved, None)
+    named = camera_covariance.of_network(seen.cameras, covariance, frame)
     late = _delays(state, fixed, sigma_px, seen)
-    name, stated = seen.pictures[posed.world], floor is not None
-    return Found(solved, covariance, name, stated, sigma_px, factor, error_px, *late)
+    at = seen.pictures[posed.world], floor is not None
+    return Found(solved, named, *at, sigma_px, factor, error_px, *late)
 
 
-def _upright(solved: Sequence[Camera]) -> list[Camera]:
-    """Turn the world about its origin: z up as in the pictures; the covariance stays as it is."""
+def _upright(solved: Sequence[Camera]) -> tuple[list[Camera], NDArray]:
+    """Turn the world about its origin: z up as in the pictures; also return how uncertain that is.
+
+    The covariance of the cameras stays as it is.
+    """
     turned = Sim3(1.0, vertical.upright(solved), np.zeros(3))
-    return [turned.camera(camera) for camera in solved]
+    upright = [turned.camera(camera) for camera in solved]
+    return upright, vertical.error_of_pictures(upright)
 
 
 def _check_rigid(seen: Corners, error_px: NDArray) -> None:

@@ -9,7 +9,6 @@ from courtside.calibration import vertical
 from courtside.calibration.boards.adjustment import Found
 from courtside.calibration.boards.board import Board
 from courtside.calibration.boards.corners import Corners
-from courtside.calibration.bundle.problem import IMAGE, LENS
 from courtside.geometry import triangulation
 
 # ASSUME: one camera is told whose corners fit worse by this factor, and by more than a pixel.
@@ -41,7 +40,7 @@ def summary(found: Found, seen: Corners, board: Board, *, known: bool) -> dict[s
     report: dict[str, Any] = {"warnings": _warnings(found, seen, rms_px, known)}
     report |= {"remarks": [], "world_of_picture": found.world}
     if not found.stated:
-        vertical_deg = vertical.sigma_deg(found.frame)
+        vertical_deg = vertical.sigma_deg(found.covariance.frame)
         report["vertical_sigma_deg"] = vertical_deg
         report["remarks"].append(
             f"board: z is up as in the pictures, within {vertical_deg:.0f} degrees (standard "
@@ -49,17 +48,15 @@ def summary(found: Found, seen: Corners, board: Board, *, known: bool) -> dict[s
             "name the picture in which it lies on the floor as `floor`"
         )
     report |= {"sigma_px": found.sigma_px, "covariance_factor": found.factor}
-    first, variance = IMAGE * len(found.cameras), np.diag(found.covariance)
     for c, camera in enumerate(found.cameras):
-        shift, lens = IMAGE * c + 3, first + len(LENS) * c  # a centre is as uncertain as its shift
         used = own[c] & np.isfinite(found.error_px[:, 0])
         one = {
             "n_corners": int(used.sum()),
             "n_pictures": len(np.unique(seen.picture[used])),
             "rms_px": rms_px[c],
-            "place_sigma_mm": 1000 * float(np.sqrt(variance[shift : shift + 3].sum())),
+            "place_sigma_mm": 1000 * found.covariance.place_sigma_m(camera.name),
             "f_px": float(camera.K[1, 1]),
-            "f_sigma_px": float(np.sqrt(variance[lens])),
+            "f_sigma_px": found.covariance.sigma(camera.name, "f_px"),
         }
         if np.isfinite(found.late[c]):
             one["late_pictures"] = float(found.late[c])

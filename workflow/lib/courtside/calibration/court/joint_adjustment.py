@@ -25,6 +25,8 @@ from courtside.calibration.bundle.variance_components import Factors
 from courtside.calibration.bundle.walk_parts import Part
 from courtside.calibration.court import line_edges, sfm_alignment
 from courtside.calibration.court.court import ClickedPoints, Court
+from courtside.calibration.records import covariance as camera_covariance
+from courtside.calibration.records.covariance import CameraCovariance
 from courtside.geometry.camera import Camera
 from courtside.geometry.similarity import Sim3
 from courtside.study.errors import InputError
@@ -78,6 +80,11 @@ class Solution:
     network: Network
     covariance: NDArray
     factors: Factors
+
+    @property
+    def named(self) -> CameraCovariance:
+        """The covariance by camera, as files have it."""
+        return camera_covariance.of_network([c.name for c in self.cameras], self.covariance)
 
     def point_covariance(self, xyz: NDArray) -> NDArray:
         """Return the covariance (N, 3, 3) m2 of points (N, 3) triangulated from exact pixels."""

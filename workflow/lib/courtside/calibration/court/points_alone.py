@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration.bundle import conversion, selection, solver
-from courtside.calibration.bundle.problem import IMAGE, LENS
 from courtside.calibration.court import (
     click_checks,
     joint_adjustment,
@@ -107,17 +106,17 @@ def summary(found: Found) -> dict[str, Any]:
     By camera: `n_points`; `rms_px`, per axis; `f_px` and `k1` with their standard deviations.
     """
     report: dict[str, Any] = {"warnings": found.warnings}
-    cameras, spread = found.solution.cameras, np.sqrt(np.diag(found.solution.covariance))
-    lens_sigma = spread[IMAGE * len(cameras) :].reshape(len(cameras), len(LENS))
-    for camera, sigma in zip(cameras, lens_sigma, strict=True):
+    cameras = found.solution.cameras
+    spread = found.solution.named
+    for camera in cameras:
         error_px = found.error_px[camera.name]
         one = {
             "n_points": int(np.isfinite(error_px).sum()),
             "rms_px": _rms_px(error_px),
             "f_px": camera.K[1, 1],
-            "f_sigma_px": sigma[LENS.index("f_px")],
+            "f_sigma_px": spread.sigma(camera.name, "f_px"),
             "k1": camera.dist[0],
-            "k1_sigma": sigma[LENS.index("k1")],
+            "k1_sigma": spread.sigma(camera.name, "k1"),
         }
         for key, value in one.items():
             shown = value if isinstance(value, int) else round(float(value), 4)

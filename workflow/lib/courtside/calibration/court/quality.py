@@ -11,7 +11,6 @@ from courtside.calibration import point_covariance
 from courtside.calibration.bundle import conversion
 from courtside.calibration.court import click_checks, joint_adjustment
 from courtside.calibration.court.court import ClickedPoints, Court, to_line_centres
-from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records.covariance import CameraCovariance
 from courtside.calibration.records.support import Support
 from courtside.geometry.camera import Camera, in_picture, project
@@ -90,8 +89,7 @@ def adjust_and_check(
         adjust=adjust,
         error_modes_m=point_covariance.field(solved.network, solved.covariance)(court.xyz),
     )
-    known = camera_covariance.of_network([c.name for c in solved.cameras], solved.covariance)
-    quality |= expected_volume(court, solved.cameras, known)
+    quality |= expected_volume(court, solved.cameras, solved.named)
     return solved, quality | {"variance_factors": _variance_factors(solved)}
 
 

@@ -13,6 +13,8 @@ from courtside.calibration.bundle.problem import FLEX, IMAGE, LENS
 from courtside.calibration.court import points_alone
 from courtside.calibration.people import world_frame
 from courtside.calibration.people.adjustment import Clicks
+from courtside.calibration.records import covariance as camera_covariance
+from courtside.calibration.records.covariance import CameraCovariance
 from courtside.calibration.wand import adjustment, culprit, start, timing, world
 from courtside.calibration.wand.adjustment import Adjusted, Bodies, State
 from courtside.calibration.wand.points import Seen, Wand
@@ -36,17 +38,12 @@ class Found:
     """The result of a calibration with a wand."""
 
     cameras: list[Camera]
-    covariance: NDArray  # of the network's columns, as for `records.covariance.of_network`
+    covariance: CameraCovariance
     world: str  # description of the world frame
     stated: bool  # whether floor or points define it
     xyz: NDArray  # (F, M, 3) m: markers whose views agree, others NaN
     error_px: NDArray  # (C, F, M, 2): projected minus measured; NaN where either is missing
     adjusted: Adjusted
-
-    @property
-    def frame(self) -> NDArray:
-        """Covariance of the world frame, as `CameraCovariance.frame` has it."""
-        return np.zeros((3, 3)) if self.stated else vertical.error_of_pictures(self.cameras)
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +99,9 @@ def calibrate(
         covariance = world_frame.of_shape(cameras, found.covariance, moved.points(datum), None)
     error_px = np.stack([project(camera, xyz) for camera in cameras]) - seen.xy
     stated = clicks is not None or floor is not None
-    return Found(cameras, covariance, text, stated, xyz, error_px, found)
+    frame = None if stated else vertical.error_of_pictures(cameras)
+    named = camera_covariance.of_network(seen.cameras, covariance, frame)
+    return Found(cameras, named, text, stated, xyz, error_px, found)
 
 
 def _agreeing(
