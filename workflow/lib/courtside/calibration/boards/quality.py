@@ -115,14 +115,9 @@ def _late_line(found: Found, seen: Corners, c: int) -> str:
 
 def neighbours_mm(found: Found, seen: Corners, board: Board) -> tuple[float, float, int]:
     """Return by how much neighbouring corners are too far apart, mm: mean, deviation, number."""
-    shape = len(seen.pictures), len(board.corners)
-    xy = np.full((len(seen.cameras), *shape, 2), np.nan)
+    xy = np.full((len(seen.cameras), len(seen.pictures), len(board.corners), 2), np.nan)
     xy[seen.camera, seen.picture, seen.corner] = seen.xy
-    xyz = triangulation.triangulate_all(found.cameras, xy.reshape(len(xy), -1, 2)).reshape(
-        *shape, 3
-    )
-    pairs = board.neighbours
-    side = board.side_m
+    xyz, pairs = triangulation.triangulate_all(found.cameras, xy), board.neighbours
     apart = np.linalg.norm(xyz[:, pairs[:, 0]] - xyz[:, pairs[:, 1]], axis=-1)
-    off = 1000 * (apart[np.isfinite(apart)] - side)
+    off = 1000 * (apart[np.isfinite(apart)] - board.side_m)
     return (float(off.mean()), float(off.std()), len(off)) if len(off) else (np.nan, np.nan, 0)

@@ -62,8 +62,7 @@ def _bodies(cameras: Sequence[Camera], xy: NDArray) -> tuple[NDArray, NDArray]:
     seen = np.isfinite(joints).all(axis=-1).sum(axis=0) >= 2
     times = np.flatnonzero(seen[:, :4].all(axis=1))
     times = times[np.linspace(0, len(times) - 1, min(len(times), MOST)).astype(int)]
-    flat = joints[:, times].reshape(len(cameras), -1, 2)
-    xyz = triangulate_all(cameras, flat).reshape(len(times), len(names), 3)
+    xyz = triangulate_all(cameras, joints[:, times])
     place = {name: xyz[:, at] for at, name in enumerate(names)}
     head, hip, ankle = (metric_scale.middle(place, part) for part in ENDS)
     low = np.where(np.isfinite(ankle), ankle, hip)

@@ -149,8 +149,7 @@ def _some(takes: Sequence[Take], track: Track) -> NDArray:
 
 def _placed(cameras: Sequence[Camera], takes: Sequence[Take], track: Track) -> NDArray:
     """Return the joints (T, J, 3) of a track in some of its take's frames."""
-    xy = _some(takes, track)
-    return triangulate_all(cameras, xy.reshape(len(xy), -1, 2)).reshape(*xy.shape[1:3], 3)
+    return triangulate_all(cameras, _some(takes, track))
 
 
 def _explained(cameras, takes: Sequence[Take], tracks: Sequence[Track]) -> float:

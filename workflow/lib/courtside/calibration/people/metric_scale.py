@@ -223,8 +223,7 @@ def _share(
         )
     n_clicks = known.xy.size
     steps = np.eye(n_clicks).reshape(n_clicks, *known.xy.shape)  # 1 px each
-    moved = (known.xy + steps).transpose(1, 0, 2, 3).reshape(len(cameras), -1, 2)
-    moved_ends = triangulate_all(cameras, moved).reshape(n_clicks, 2, 3)
+    moved_ends = triangulate_all(cameras, (known.xy + steps).transpose(1, 0, 2, 3))
     by_click = np.linalg.norm(moved_ends[:, 1] - moved_ends[:, 0], axis=1) / own - 1
     by_click = np.nan_to_num(by_click.reshape(known.xy.shape))  # (C, 2, 2): camera, end, axis
     sizes = [camera.size for camera in cameras]
