@@ -92,9 +92,8 @@ def clocks_ms(cameras, seen):
     """Return each camera's offset, ms, and the change of its median residual by it, percent."""
     found, step_s = [], float(np.median(np.diff(np.unique(seen.time_s))))
     for at, camera in enumerate(cameras):
-        flat = seen.xy.reshape(len(cameras), -1, 2)
-        xyz = residuals.placed_by_others(cameras, flat, at)
-        off = seen.xy[at] - camera_models.project(camera, xyz).reshape(seen.xy[at].shape)
+        xyz = residuals.placed_by_others(cameras, seen.xy, at)
+        off = seen.xy[at] - camera_models.project(camera, xyz)
         speed = np.gradient(seen.xy[at], step_s, axis=0)
         size = np.linalg.norm(off, axis=-1)
         known = np.isfinite(size + speed.sum(axis=-1)) & (size < 5 * np.nanmedian(size))

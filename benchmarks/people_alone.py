@@ -29,7 +29,7 @@ from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration import point_covariance
-from courtside.calibration.bundle import selection
+from courtside.calibration.bundle import conversion
 from courtside.calibration.court import joint_adjustment
 from courtside.calibration.people import metric_scale, world_frame
 from courtside.calibration.records import covariance as camera_covariance
@@ -87,7 +87,7 @@ def errors(found, real, xyz):
     placed = triangulate_all(cameras, exact)
     best, rigid = similarity.umeyama(placed, xyz), similarity.rigid(placed, xyz)
     off = rigid.points(placed) - xyz
-    spread = point_covariance.point_covariance(selection.of_cameras(cameras), covariance, placed)
+    spread = point_covariance.point_covariance(conversion.network_of(cameras), covariance, placed)
     spread = best.rotation @ spread @ best.rotation.T
     inside = normal_errors.mahalanobis(off, spread) <= normal_errors.ellipsoid(0.9)
     shape = np.linalg.norm(best.points(placed) - xyz, axis=1)

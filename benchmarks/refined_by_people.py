@@ -23,7 +23,7 @@ from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration import point_covariance
-from courtside.calibration.bundle import selection
+from courtside.calibration.bundle import conversion
 from courtside.calibration.court import court as court_files
 from courtside.calibration.people import adjustment, prior, refinement
 from courtside.calibration.people.held_out import Points
@@ -54,7 +54,7 @@ def disturbed(cameras, sigma, rng):
 
 def errors(cameras, spread, real, court, marked):
     """Return the errors of cameras over the volume, cm, and their coverage by 90 % ellipsoids."""
-    columns, network = spread.of_columns(), selection.of_cameras(cameras)
+    columns, network = spread.of_columns(), conversion.network_of(cameras)
 
     def stated(xyz):
         return point_covariance.point_covariance(network, columns, xyz)

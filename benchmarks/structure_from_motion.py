@@ -30,7 +30,7 @@ import pycolmap
 from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
-from courtside.calibration.bundle import selection
+from courtside.calibration.bundle import conversion, selection
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court import joint_adjustment, sfm_alignment
 from courtside.evaluation import calibration
@@ -113,7 +113,7 @@ def errors(folder, real, court, marked, parameters):
         return len(images), np.nan, np.nan
     placed = {name: images.index(image) for name, image in fixed.items()}
     size_of = {name: sizes[network.lens_of_image[at]] for name, at in placed.items()}
-    sfm = selection.fixed_cameras(network, placed, size_of)
+    sfm = conversion.fixed_cameras(network, placed, size_of)
     world_from_sfm, _ = sfm_alignment.align(court, sfm_alignment.reconstruct(sfm, marked))
     bias_px = options.pop("click_bias_px")
     options["tie_sigma_px"] = options.pop("tie_sigma") * selection.residual_spread(network)

@@ -31,7 +31,7 @@ from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.calibration import point_covariance
-from courtside.calibration.bundle import selection
+from courtside.calibration.bundle import conversion
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court import quality
 from courtside.calibration.people.adjustment import court_clicks
@@ -91,8 +91,8 @@ def errors(found, real, markers):
     if markers is not None:
         rigid = similarity.rigid(placed(found, real, markers), markers)
     xyz = placed(found, real, grid)
-    network = selection.of_cameras(found.cameras)
-    spread = point_covariance.point_covariance(network, found.covariance, xyz)
+    network = conversion.network_of(found.cameras)
+    spread = point_covariance.point_covariance(network, found.covariance.of_columns(), xyz)
     off, spread = rigid.points(xyz) - grid, rigid.rotation @ spread @ rigid.rotation.T
     held = normal_errors.mahalanobis(off, spread) <= normal_errors.ellipsoid(0.9)
     shape = similarity.umeyama(xyz, grid).points(xyz) - grid

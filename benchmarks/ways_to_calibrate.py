@@ -165,10 +165,6 @@ class Calibrated:
     points: Points = field(default_factory=Points)
 
 
-def of_network(names, solved):
-    return solved.cameras, covariance.of_network(names, solved.covariance)
-
-
 def calibrate(one, way, seed, clicked, lines, ties):
     """Return the cameras of one way and draw."""
     if way == "walk":
@@ -183,7 +179,7 @@ def calibrate(one, way, seed, clicked, lines, ties):
         marked = adjustment.court_clicks(one.court, clicked, cameras, **WEIGHTS)
         points = Points(court=marked, fitted=True) if way == "file-clicks" else Points()
         return Calibrated(cameras, prior.stated(cameras, **STATED), points)
-    return Calibrated(*of_network(one.names, solved))
+    return Calibrated(solved.cameras, solved.named)
 
 
 def of_board(one, seed):
@@ -215,7 +211,7 @@ def of_board(one, seed):
     found = board_adjustment.calibrate(board, seen, one.sizes, floor=names[0])
     in_court = similarity.Sim3(1.0, floor[:, :3], floor[:, 3])
     cameras = [in_court.camera(camera) for camera in found.cameras]
-    return cameras, covariance.of_network(one.names, found.covariance)
+    return cameras, found.covariance
 
 
 def accepted(cameras, seen):

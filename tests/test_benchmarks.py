@@ -200,7 +200,7 @@ def test_both_models_of_structure_from_motion_are_scored_over_the_volume(tmp_pat
     with (
         mock.patch.object(benched.model, "read", lambda _: (network, names, [(1920, 1080)] * 2)),
         mock.patch.object(benched.registration, "outcome", lambda *_, **__: ""),
-        mock.patch.object(benched.selection, "fixed_cameras", lambda *_: sfm),
+        mock.patch.object(benched.conversion, "fixed_cameras", lambda *_: sfm),
         mock.patch.object(benched.selection, "residual_spread", lambda _: 0.3),
         mock.patch.object(benched.joint_adjustment, "condense", lambda *_, **__: (None, [])),
         mock.patch.object(

@@ -6,7 +6,7 @@ import shutil
 import cv2
 import numpy as np
 
-from courtside.calibration import chessboard
+from courtside.calibration.boards import chessboard
 from courtside.drafting import draft as session_advice
 from courtside.drafting import guess as session_guess
 from courtside.drafting import survey

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from courtside.calibration.bundle import selection, walk_parts
+from courtside.calibration.bundle import conversion, selection, walk_parts
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court import joint_adjustment
 from courtside.calibration.records import tie_points
@@ -35,7 +35,7 @@ def main(
     )
     placed = {c: images.index(image) for c, image in fixed.items() if image in images}
     size_of = {camera: sizes[network.lens_of_image[at]] for camera, at in placed.items()}
-    found = selection.fixed_cameras(network, placed, size_of)
+    found = conversion.fixed_cameras(network, placed, size_of)
     known, fault, residual_px = None, "", np.nan
     centres, points = selection.centres(network), network.xyz
     support = Support(**summary["explained"])

@@ -30,8 +30,7 @@ def main(paths, cameras_toml, covariance_npz, quality_json, *, given, names):
     for warning in report["warnings"]:
         log.logger.warning("%s", warning)
     cameras.write_toml(cameras_toml, found.cameras, source=f"board, {len(seen.pictures)} places")
-    covariance = camera_covariance.of_network(list(names), found.covariance, found.frame)
-    camera_covariance.write(covariance_npz, covariance)
+    camera_covariance.write(covariance_npz, found.covariance)
     write_json(quality_json, report)
 
 

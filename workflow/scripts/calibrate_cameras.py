@@ -44,8 +44,7 @@ def main(
     log.logger.info("warnings: %s", report["warnings"] or "none")
     unit = "m" if court_yaml else camera_fields.UNSCALED
     camera_models.write_toml(cameras_toml, found.cameras, source=calibration, unit=unit)
-    covariance = camera_covariance.of_network(names, found.covariance)
-    camera_covariance.write(covariance_npz, covariance)
+    camera_covariance.write(covariance_npz, found.named)
     write_json(quality_json, report)
 
 
@@ -68,8 +67,7 @@ def calibrate(record, clicks_csv, court_yaml, **options):
 def solve(record, clicks_csv, court_yaml, *, pictures, search=None, **options):
     if not court_yaml:
         found = joint_adjustment.free(record.ties)
-        covariance = camera_covariance.of_network(list(record.ties.cameras), found.covariance)
-        expected = arrangement.expected(found.cameras, covariance)
+        expected = arrangement.expected(found.cameras, found.named)
         return found, quality.check_maps(*record.n_maps) | expected
     court = court_files.read(court_yaml)
     marked = clicks.read(clicks_csv, list(record.ties.cameras), list(court.points))

@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from courtside.calibration import chessboard
+from courtside.calibration.boards import chessboard
 from courtside.geometry import camera as cameras
 from courtside.study.execution import log
 from courtside.study.execution.script import run

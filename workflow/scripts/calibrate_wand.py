@@ -42,11 +42,10 @@ def main(paths, cameras_toml, covariance_npz, quality_json, *, given, names, pla
             report["warnings"] += place_checks.check_cameras(court, found.cameras, marked)
     for warning in report["warnings"]:
         log.logger.warning("%s", warning)
-    covariance = camera_covariance.of_network(list(seen.cameras), found.covariance, found.frame)
     if court is not None:
-        report |= court_quality.expected_volume(court, found.cameras, covariance)
+        report |= court_quality.expected_volume(court, found.cameras, found.covariance)
     cameras.write_toml(cameras_toml, found.cameras, source=f"wand, {len(seen.frames)} frames")
-    camera_covariance.write(covariance_npz, covariance)
+    camera_covariance.write(covariance_npz, found.covariance)
     write_json(quality_json, report)
 
 

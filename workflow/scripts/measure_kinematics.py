@@ -7,7 +7,7 @@ the cameras; writes speeds, distances, accelerations and angles with uncertainty
 import numpy as np
 
 from courtside.calibration import point_covariance
-from courtside.calibration.bundle import selection
+from courtside.calibration.bundle import conversion
 from courtside.calibration.records import covariance
 from courtside.exports import measures
 from courtside.geometry import camera
@@ -34,7 +34,7 @@ def main(paths, frames_csv, summary_csv, *, max_gap_s, stage, sex_of):
 
 def field_of_cameras(paths, names):
     seen = {one.name: one for one in camera.read_toml(paths.cameras)}
-    network = selection.of_cameras([seen[name] for name in names])
+    network = conversion.network_of([seen[name] for name in names])
     known = covariance.read(paths.covariance).of(names)
     columns = known.of_columns()
     if not np.isfinite(columns).all():

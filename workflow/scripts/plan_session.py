@@ -6,7 +6,6 @@ Reads plan and court; writes the expected error against N, and over the court.
 from courtside.calibration.court import court as court_files
 from courtside.calibration.planning import cameras, tie_points
 from courtside.calibration.planning import prediction as planning
-from courtside.calibration.records import covariance as camera_covariance
 from courtside.figures.calibration import error_map, plan
 from courtside.figures.style import style
 from courtside.sfm import model
@@ -47,9 +46,7 @@ def main(
     drawing = plan.draw(rows, title, widest_deg=planning.WIDEST_DEG, **limits)
     style.save(drawing, rows, growth_pdf, growth_png, growth_csv)
     drawn = chosen or [prediction for prediction in found if prediction.solution][-1]
-    names = [camera.name for camera in fixed]
-    covariance = camera_covariance.of_network(names, drawn.solution.covariance)
-    rows = error_map.table(fixed, covariance, court, heights_m)
+    rows = error_map.table(fixed, drawn.solution.named, court, heights_m)
     walked = f"{drawn.n_images} bridging images" if drawn.n_images else "court points alone"
     title = f"{planned.description}, {walked}"
     drawing = error_map.draw(rows, fixed, court, title)

@@ -2,8 +2,6 @@
 
 from dataclasses import replace
 
-import numpy as np
-
 from courtside.calibration import file_formats
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court import quality
@@ -74,9 +72,8 @@ def expected_cm(court_yaml, cameras, covariance):
     """Return the error to expect over a court, cm, by covariances; None without a court."""
     if not court_yaml:
         return None
-    grid = quality.volume(court_files.read(court_yaml))
-    value, _ = quality.expected_cm(cameras, covariance, grid)
-    return round(value, 4) if np.isfinite(value) else None
+    expected = quality.expected_volume(court_files.read(court_yaml), cameras, covariance)
+    return expected["expected_volume_rms_cm"]
 
 
 def in_file(path, names, override, unit):

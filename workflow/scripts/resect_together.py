@@ -33,7 +33,7 @@ def main(
         found = points_alone.calibrate(court, marked, sizes, **step)
     for warning in found.warnings:
         log.logger.warning("%s", warning)
-    covariance = camera_covariance.of_network(cameras, found.solution.covariance)
+    covariance = found.solution.named
     report = {"calibration": calibration, **points_alone.summary(found)}
     report |= quality.expected_volume(court, found.solution.cameras, covariance)
     report["left_out"] = quality.leave_one_out_errors(court, found.solution.cameras, marked)[1]

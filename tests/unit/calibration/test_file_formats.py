@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 import tomli_w
 
-from courtside.calibration import chessboard, file_formats
+from courtside.calibration import file_formats
+from courtside.calibration.boards import chessboard
 from courtside.geometry import camera as cameras
 from courtside.study.errors import InputError
 from fixtures.recordings.real_data import REAL, needs_real

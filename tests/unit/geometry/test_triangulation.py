@@ -62,6 +62,14 @@ def test_a_point_needs_two_views_and_to_be_before_those_that_show_it():
     np.testing.assert_allclose(found[[1, 3]], [behind, xyz[3]], atol=1e-8)
 
 
+def test_points_stand_as_their_views_do():
+    """Two rows of four points: each is where it was put."""
+    views, xyz = scene.ring(3), scene.points(8)
+    xy = scene.views(views, xyz).reshape(3, 2, 4, 2)
+    found = triangulation.triangulate_all(views, xy)
+    np.testing.assert_allclose(found, xyz.reshape(2, 4, 3), atol=1e-8)
+
+
 def test_dlt_equals_the_null_vector_of_hartley_and_zisserman():
     views, xyz = scene.ring(4), scene.points(20)
     rng = np.random.default_rng(1)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from courtside.calibration.bundle import selection
+from courtside.calibration.bundle import conversion
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.reconstruction import fusion, resampling
 from courtside.records.devices.clocks import Clock
@@ -235,7 +235,7 @@ def test_some_of_the_cameras_have_their_own_part():
     assert np.diag(part.covariance).tolist() == [*range(2 * N, 3 * N), *range(N)]
     with pytest.raises(ValueError, match="expected a camera of"):
         three.of(["d"])
-    assert selection.of_cameras(CAMERAS).n_columns == len(part.of_columns())
+    assert conversion.network_of(CAMERAS).n_columns == len(part.of_columns())
 
 
 CAMERAS_HALFBODY = ["centre", "left", "right"]

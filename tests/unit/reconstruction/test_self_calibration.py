@@ -10,7 +10,7 @@ import pytest
 sys.path.append(str(Path(__file__).parents[3] / "benchmarks"))  # last: both have a `scene`
 import people_alone
 from courtside.calibration import point_covariance
-from courtside.calibration.bundle import selection
+from courtside.calibration.bundle import conversion
 from courtside.calibration.people import metric_scale
 from courtside.calibration.people.from_nothing import Guess
 from courtside.calibration.people.views import Limits
@@ -141,7 +141,7 @@ def test_another_unit_is_that_of_a_calibration_with_this_length(calibrated):
         np.testing.assert_allclose(one.centre_in_world, other.centre_in_world, atol=0.02)
     spread = [
         point_covariance.point_covariance(
-            selection.of_cameras(one.cameras), one.covariance.of_columns(), one.places[::20]
+            conversion.network_of(one.cameras), one.covariance.of_columns(), one.places[::20]
         )
         for one in (found, wanted)
     ]

@@ -50,16 +50,16 @@ def test_without_a_board_on_the_floor_z_is_up_as_in_the_pictures():
     lenses = {camera.name: camera for camera in RIG}
     found = adjustment.calibrate(BOARD, seen, SIZES, lenses=lenses)
     named = adjustment.calibrate(BOARD, seen, SIZES, lenses=lenses, floor=found.world)
-    assert (found.stated, named.stated, named.frame.any()) == (False, True, False)
+    assert (found.stated, named.stated, named.covariance.frame.any()) == (False, True, False)
     ours, theirs = (np.array([c.centre_in_world for c in one.cameras]) for one in (found, named))
     true = np.array([camera.centre_in_world for camera in RIG])
     rotation, _ = rigid(true, ours)
     tilt = np.arccos(rotation[2, 2])
-    assert tilt < 3 * np.sqrt(np.trace(found.frame)) < np.radians(15)
+    assert tilt < 3 * np.sqrt(np.trace(found.covariance.frame)) < np.radians(15)
     rotation, _ = rigid(true, theirs)
     assert rotation[2, 2] < 0.7  # of the board
     np.testing.assert_allclose(np.linalg.norm(ours, axis=1), np.linalg.norm(theirs, axis=1))
-    np.testing.assert_array_equal(found.covariance, named.covariance)
+    np.testing.assert_array_equal(found.covariance.covariance, named.covariance.covariance)
 
 
 def squares_in_sigmas(found, places):
@@ -69,7 +69,7 @@ def squares_in_sigmas(found, places):
         camera = found.cameras[k]
         at = IMAGE * k + 3 + np.arange(3)
         by_shift = camera.cam_from_world[:, :3].T
-        covariance = by_shift @ found.covariance[np.ix_(at, at)] @ by_shift.T
+        covariance = by_shift @ found.covariance.of_columns()[np.ix_(at, at)] @ by_shift.T
         error = camera.centre_in_world - true.centre_in_world
         off.append(error @ np.linalg.solve(covariance, error))
     return off
@@ -109,7 +109,8 @@ def test_the_error_of_the_boards_size_is_an_error_of_the_scale():
     found = adjustment.calibrate(unsure, seen, SIZES, floor="000", lenses=lenses)
     for k, camera in enumerate(found.cameras):
         at = IMAGE * k + 3 + np.arange(3)
-        more = (found.covariance - exact.covariance)[np.ix_(at, at)]
+        both = (one.covariance.of_columns()[np.ix_(at, at)] for one in (found, exact))
+        more = np.subtract(*both)
         away_m = np.linalg.norm(camera.centre_in_world)
         assert np.sqrt(np.trace(more)) == pytest.approx(0.01 * away_m, rel=1e-6)
 

@@ -49,7 +49,7 @@ def test_it_finds_what_scipy_finds(loss_scale):
 
     def terms(part):
         now = unpack(part)
-        seen = networks.residuals(now) / now.sigma_px[:, None]
+        seen = networks.residuals(now) / now.sigma_px
         square = (seen**2).sum(axis=1, keepdims=True)
         if np.isfinite(loss_scale):  # so long that half the sum of squares is Cauchy's loss
             seen = seen * np.sqrt(loss_scale**2 * np.log1p(square / loss_scale**2) / square)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from courtside.calibration.bundle import selection, solver
+from courtside.calibration.bundle import conversion, solver
 from courtside.calibration.court import joint_adjustment, line_edges
 from courtside.calibration.court.joint_adjustment import Ties
 from courtside.calibration.court_lines import edges, walk_and_lines
@@ -29,7 +29,7 @@ def ties(rng):
     step = np.where(np.isfinite(sigma), rng.standard_normal(len(sigma)), 0) / np.maximum(
         inverse, 1e-12
     )
-    network = selection.of_cameras(TRUE).moved(np.where(inverse > 0, step, 0), np.zeros((0, 3)))
+    network = conversion.network_of(TRUE).moved(np.where(inverse > 0, step, 0), np.zeros((0, 3)))
     known = solver.Quadratic(network, np.diag(inverse**2), np.zeros(len(sigma)))
     return Ties(NAMES, tuple(camera.size for camera in TRUE), known)
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from courtside.calibration import point_covariance
-from courtside.calibration.bundle import selection
+from courtside.calibration.bundle import conversion
 from courtside.calibration.court.court import read
 from courtside.calibration.people import adjustment, prior
 from courtside.calibration.people.adjustment import Clicks
@@ -52,7 +52,7 @@ def off(found):
 
 def spread(found):
     """Return the stated variance, m2, of a point in the middle of the room."""
-    network = selection.of_cameras(found.cameras)
+    network = conversion.network_of(found.cameras)
     middle = np.array([[0, 0, 1.0]])
     return np.trace(point_covariance.point_covariance(network, found.covariance, middle)[0])
 
@@ -62,7 +62,7 @@ def test_disturbed_cameras_agree_again_and_their_errors_are_as_stated():
     ratios, gains = [], []
     for seed in range(4):
         base, found = refined(seed)
-        step = selection.of_cameras(found.cameras).difference(selection.of_cameras(TRUE))[free]
+        step = conversion.network_of(found.cameras).difference(conversion.network_of(TRUE))[free]
         covariance = found.covariance[np.ix_(free, free)]
         ratios.append(step @ np.linalg.solve(covariance, step) / free.sum())
         gains.append(off(found.cameras)[1] / off(base)[1])

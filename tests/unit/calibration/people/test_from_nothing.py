@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from courtside.calibration import point_covariance
-from courtside.calibration.bundle import selection
+from courtside.calibration.bundle import conversion
 from courtside.calibration.people import from_nothing, metric_scale
 from courtside.calibration.people.held_out import Score
 from courtside.calibration.people.views import Limits, Seen
@@ -61,7 +61,7 @@ def test_cameras_with_unknown_lenses_are_found_from_two_persons_and_their_height
     off = rigid.points(placed) - xyz
     assert np.median(np.linalg.norm(off, axis=1)) < 0.02
     spread = point_covariance.point_covariance(
-        selection.of_cameras(found.cameras), found.covariance.of_columns(), placed
+        conversion.network_of(found.cameras), found.covariance.of_columns(), placed
     )
     spread = rigid.rotation @ spread @ rigid.rotation.T
     square = np.einsum("ni,nij,nj->n", off, np.linalg.inv(spread), off)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from courtside.calibration.bundle import selection
+from courtside.calibration.bundle import conversion
 from courtside.calibration.people import prior, world_frame
 from courtside.calibration.records import covariance
 from courtside.geometry.similarity import Sim3
@@ -50,9 +50,9 @@ def test_a_datum_that_does_not_vary_is_known():
     shape = world_frame.of_shape(CAMERAS, known.of_columns(), places, None)
     given = covariance.of_network(known.cameras, shape)
     quadratic = prior.knowledge(CAMERAS, given)
-    network = selection.of_cameras(CAMERAS)
+    network = conversion.network_of(CAMERAS)
     shift = Sim3(1.0, np.eye(3), np.array([0.03, 0.0, 0.0]))
-    moved = selection.of_cameras([shift.camera(camera) for camera in CAMERAS]).difference(network)
+    moved = conversion.network_of([shift.camera(camera) for camera in CAMERAS]).difference(network)
     sigmas = np.sqrt(moved @ quadratic.information @ moved)
     assert sigmas > 100
 

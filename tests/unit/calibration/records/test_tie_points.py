@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from courtside.calibration.bundle import conversion, selection, solver
 from courtside.calibration.bundle import problem as networks
-from courtside.calibration.bundle import selection, solver
 from courtside.calibration.court import joint_adjustment
 from courtside.calibration.records import covariance, tie_points
 from courtside.calibration.records.support import Support
@@ -105,7 +105,7 @@ def test_a_bare_network_holds_poses_and_lenses_only():
     found = networks.without_points(made.cam_from_world, made.lens, [height for _, height in SIZES])
     assert networks.residuals(found).size == 0
     np.testing.assert_array_equal(found.height_px, [720, 540])
-    rebuilt = selection.cameras(found, NAMES, SIZES)
+    rebuilt = conversion.cameras_of(found, NAMES, SIZES)
     for camera, known in zip(rebuilt, cameras(), strict=True):
         np.testing.assert_allclose(camera.K, known.K)
         np.testing.assert_allclose(camera.dist, known.dist)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from courtside.calibration import point_covariance
-from courtside.calibration.bundle import selection
+from courtside.calibration.bundle import conversion
 from courtside.calibration.court import place_checks
 from courtside.calibration.wand import adjustment, calibration, start
 from courtside.calibration.wand.calibration import Floor
@@ -49,8 +49,8 @@ def errors(found, markers):
     placed = triangulate_all(found.cameras, exact)
     rigid = similarity.rigid(placed, markers)
     there = triangulate_all(found.cameras, np.stack([cameras.project(c, PLACES) for c in RIG]))
-    network = selection.of_cameras(found.cameras)
-    spread = point_covariance.point_covariance(network, found.covariance, there)
+    network = conversion.network_of(found.cameras)
+    spread = point_covariance.point_covariance(network, found.covariance.of_columns(), there)
     return rigid.points(there) - PLACES, rigid.rotation @ spread @ rigid.rotation.T
 
 
@@ -151,8 +151,8 @@ def test_clicked_points_give_the_world():
         found.cameras, np.stack([cameras.project(camera, PLACES) for camera in RIG])
     )
     assert np.linalg.norm(placed - PLACES, axis=1).max() < 0.01
-    network = selection.of_cameras(found.cameras)
-    spread = point_covariance.point_covariance(network, found.covariance, placed)
+    network = conversion.network_of(found.cameras)
+    spread = point_covariance.point_covariance(network, found.covariance.of_columns(), placed)
     square = normal_errors.mahalanobis(placed - PLACES, spread)
     assert np.mean(square < normal_errors.ellipsoid(0.9)) > 0.7
 

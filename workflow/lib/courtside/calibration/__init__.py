@@ -6,8 +6,7 @@ people, records, wand.
 file_formats: read, read_session, rename, check_apart, known_lenses, with_principal_points:
     calibrations by other programs
 arrangement: `expected`: errors of how cameras stand to each other without a court
-chessboard: find, calibrate, pictures_of, same_size: a lens from pictures of a chessboard
 robust_poses: essential, relative, resected, placed: poses of cameras by RANSAC or by all points
-point_covariance: point_covariance, sensitivity, field, of_columns, pseudo_inverse,
-    centre_sigma
+point_covariance: point_covariance, sensitivity, field
+vertical: upright, axes, up_in_pictures, error_of_pictures, sigma_deg: z up as in the pictures
 """

@@ -7,8 +7,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from courtside.calibration.bundle import problem
 from courtside.calibration.bundle.problem import Network
-from courtside.calibration.bundle.solver import Normal
-from courtside.geometry.camera import Camera
 
 PLACES = 4096  # at once, for the memory that their derivatives need
 
@@ -76,38 +74,3 @@ def field(network: Network, covariance: NDArray) -> Callable[[NDArray], NDArray]
 def _parts(xyz: NDArray) -> list[NDArray]:
     """Split places (N, 3) so that at most `PLACES` are worked on at once."""
     return np.array_split(xyz, len(xyz) // PLACES + 1)
-
-
-def of_columns(normal: Normal) -> NDArray:
-    """Return the covariance (K, K) of all columns of a network; 0 for fixed ones."""
-    size = len(normal.active)
-    covariance = np.zeros((size, size))
-    scale = 1 / np.sqrt(np.diag(normal.information))
-    inverse = np.linalg.inv(normal.information * np.outer(scale, scale))
-    covariance[np.ix_(normal.active, normal.active)] = inverse * np.outer(scale, scale)
-    return covariance
-
-
-def pseudo_inverse(information: NDArray, n_free: int = 7) -> NDArray:
-    """Return the covariance (K, K) of a network whose frame and scale are free.
-
-    Of all such covariances, it has the least trace in parameters of unit information. The
-    information (K, K) is zero for fixed columns. Nothing is known of `n_free` directions: those
-    of least information are left out (7: rotation, translation and scale of the frame).
-    """
-    scale = np.where(np.diag(information) > 0, np.diag(information), np.inf) ** -0.5
-    extent, axes = np.linalg.eigh(information * np.outer(scale, scale))
-    n_known = np.count_nonzero(scale) - n_free
-    known = extent.argsort()[::-1][: max(n_known, 0)]
-    root = scale[:, None] * axes[:, known] / np.sqrt(np.maximum(extent[known], 1e-300))
-    return root @ root.T
-
-
-def centre_sigma(camera: Camera, covariance: NDArray) -> float:
-    """Return the standard deviation of a camera's centre, m, root of the sum over three axes.
-
-    `covariance` (6, 6) is that of its pose. Of the steps of a network only the shift moves the
-    centre, by the rotation's inverse.
-    """
-    by_shift = camera.cam_from_world[:, :3].T
-    return float(np.sqrt(np.trace(by_shift @ covariance[3:, 3:] @ by_shift.T)))

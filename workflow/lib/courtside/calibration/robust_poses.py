@@ -56,15 +56,19 @@ def resected(
     return (len(near), pose) if (depth > 0).mean() >= least_in_front else None
 
 
-def placed(xyz: NDArray, xy: NDArray, matrix: NDArray, dist: NDArray | None) -> list[NDArray]:
+def placed(
+    xyz: NDArray,
+    xy: NDArray,
+    matrix: NDArray,
+    dist: NDArray | None,
+    method: int = cv2.SOLVEPNP_SQPNP,
+) -> list[NDArray]:
     """Return the poses (3, 4) by all points (N, 3) and their views (N, 2), px of such a lens.
 
     Several fit points in one plane; none is found where any pose fits.
     """
     try:
-        count, turns, shifts, _ = cv2.solvePnPGeneric(
-            xyz, xy, matrix, dist, flags=cv2.SOLVEPNP_SQPNP
-        )
+        count, turns, shifts, _ = cv2.solvePnPGeneric(xyz, xy, matrix, dist, flags=method)
     except cv2.error:
         return []
     return [

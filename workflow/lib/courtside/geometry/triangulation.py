@@ -65,10 +65,11 @@ def triangulate(xy: NDArray, weight: NDArray, cam_from_world: NDArray) -> NDArra
 
 
 def triangulate_all(cameras: Sequence[Camera], xy: NDArray) -> NDArray:
-    """Triangulate points (N, 3) by least squares of the pixel errors in all views that show them.
+    """Triangulate points (..., 3) by least squares of the pixel errors in all views (C, ..., 2).
 
     NaN where fewer than two cameras see the point, or where it lies behind one that does.
     """
+    shape, xy = xy.shape[1:-1], xy.reshape(len(xy), -1, 2)
     views = Views(cameras, xy, np.isfinite(xy).all(axis=-1).astype(float))
     found = np.full((xy.shape[1], 3), np.nan)
     at = np.flatnonzero((views.weight > 0).sum(axis=0) >= 2)
@@ -79,7 +80,7 @@ def triangulate_all(cameras: Sequence[Camera], xy: NDArray) -> NDArray:
             xyz = views.stepped(xyz, views.weight)
         fine = views.in_front(xyz, views.weight > 0)
         found[at[fine]] = xyz[fine]
-    return found
+    return found.reshape(*shape, 3)
 
 
 def triangulate_robust(

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration import point_covariance
-from courtside.calibration.bundle import selection
+from courtside.calibration.bundle import conversion
 from courtside.geometry import triangulation
 from courtside.geometry.camera import Camera
 from courtside.reconstruction import left_right, person_height, resampling
@@ -258,7 +258,7 @@ def with_cameras(
     flat = middle.reshape(-1, 3)
     known = np.isfinite(flat).all(axis=1)
     found = np.full((len(flat), 3, 3), np.nan)
-    network = selection.of_cameras(cameras)
+    network = conversion.network_of(cameras)
     found[known] = point_covariance.point_covariance(network, covariance, flat[known])
     found = found.reshape(*middle.shape, 3)[:, :, None]
     there = placed.all(axis=-1)[..., None, None]

@@ -13,12 +13,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.calibration import vertical
 from courtside.calibration.boards import start
 from courtside.calibration.boards.board import Board
 from courtside.calibration.boards.corners import Corners
-from courtside.calibration.bundle import problem, selection
+from courtside.calibration.bundle import conversion, elimination, problem, selection
+from courtside.calibration.bundle.elimination import Normal
 from courtside.calibration.bundle.problem import IMAGE, POSE, Network
-from courtside.calibration.people import world_frame
+from courtside.calibration.records import covariance as camera_covariance
+from courtside.calibration.records.covariance import CameraCovariance
 from courtside.geometry import camera as cameras
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
@@ -44,7 +47,7 @@ class Found:
     """Cameras from boards."""
 
     cameras: list[Camera]
-    covariance: NDArray  # of the network's columns, as of `records.covariance.of_network`
+    covariance: CameraCovariance
     world: str  # the picture whose board is at the origin
     stated: bool  # whether this board lies on the floor; else z is up as in the pictures
     sigma_px: float  # of a corner, along each axis, by the bulk of the residuals
@@ -54,13 +57,6 @@ class Found:
     # and the standard deviation of that; NaN if pictures are in no order
     late: NDArray
     late_sigma: NDArray
-
-    @property
-    def frame(self) -> NDArray:
-        """Covariance of the world frame, as `CameraCovariance.frame` has it."""
-        if self.stated:
-            return np.zeros((3, 3))
-        return world_frame.error_of_pictures(self.cameras)
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,28 +107,30 @@ def calibrate(
     unknown = fixed.active.sum() + len(POSE) * (len(np.unique(fixed.picture)) - 1)
     count = 2 * int(usable.sum())
     sigma_px *= float(np.sqrt(count / max(1, count - unknown)))
-    off = problem.residuals(state.network)
     error_px = np.full(seen.xy.shape, np.nan)
-    error_px[usable] = off
+    error_px[usable] = problem.residuals(state.network)
     _check_rigid(seen, error_px)
     covariance, factor = _covariance(state, fixed, sigma_px)
-    covariance = covariance + _of_size(board, state.network)
-    solved = selection.cameras(state.network, seen.cameras, [c.size for c in known])
+    covariance += _of_size(board, state.network)
+    solved = conversion.cameras_of(state.network, seen.cameras, [c.size for c in known])
     if lenses:
         both = zip(known, solved, strict=True)
         solved = [replace(lens, cam_from_world=one.cam_from_world) for lens, one in both]
-    if floor is None:
-        solved = _upright(solved)
+    solved, frame = _upright(solved) if floor is None else (solved, None)
+    named = camera_covariance.of_network(seen.cameras, covariance, frame)
     late = _delays(state, fixed, sigma_px, seen)
-    name, stated = seen.pictures[posed.world], floor is not None
-    return Found(solved, covariance, name, stated, sigma_px, factor, error_px, *late)
+    at = seen.pictures[posed.world], floor is not None
+    return Found(solved, named, *at, sigma_px, factor, error_px, *late)
 
 
-def _upright(solved: Sequence[Camera]) -> list[Camera]:
-    """Turn the world about its origin: z up as in the pictures; the covariance stays as it is."""
-    along = solved[1].centre_in_world - solved[0].centre_in_world
-    turn = world_frame.axes(world_frame.up_in_pictures(solved), along)
-    return [Sim3(1.0, turn, np.zeros(3)).camera(camera) for camera in solved]
+def _upright(solved: Sequence[Camera]) -> tuple[list[Camera], NDArray]:
+    """Turn the world about its origin: z up as in the pictures; also return how uncertain that is.
+
+    The covariance of the cameras stays as it is.
+    """
+    turned = Sim3(1.0, vertical.upright(solved), np.zeros(3))
+    upright = [turned.camera(camera) for camera in solved]
+    return upright, vertical.error_of_pictures(upright)
 
 
 def _check_rigid(seen: Corners, error_px: NDArray) -> None:
@@ -171,7 +169,7 @@ def _started(
         replace(camera, cam_from_world=pose, dist=np.zeros(5) if ideal is not None else camera.dist)
         for camera, pose in zip(known, posed.cam_from_world, strict=True)
     ]
-    network = selection.of_cameras(placed)
+    network = conversion.network_of(placed)
     xy = seen.xy if ideal is None else _pinhole(known, seen, ideal)
     rows = np.flatnonzero(usable)
     network = problem.with_points(
@@ -245,87 +243,39 @@ def _cost(state: _State, weight: NDArray, sigma_px: float) -> float:
     return float((weight[weight > 0] * (off**2).sum(axis=1)).sum() / sigma_px**2 + (prior**2).sum())
 
 
-@dataclass(frozen=True, eq=False)
-class _Normal:
-    """Normal equations of the cameras, boards eliminated, and what boards need to follow."""
-
-    information: NDArray  # (A, A): of the active columns, then of those added
-    gradient: NDArray  # (A,)
-    boards: dict[int, tuple[NDArray, NDArray, NDArray]]  # inverse (6, 6), gradient, coupling (A, 6)
-    scores: NDArray  # (P, A): part of each picture in the gradient
-
-
 def _normal(
     state: _State,
     fixed: _Problem,
     weight: NDArray,
     sigma_px: float,
     damping: float,
-    added: NDArray | None = None,
-) -> _Normal:
-    """Return the normal equations; `added` (M, 2, K) are derivatives by further unknowns."""
+    by_others: NDArray | None = None,
+) -> Normal:
+    """Return the normal equations; `by_others` (M, 2, E) are derivatives by further unknowns."""
     network = state.network
-    added = np.zeros((len(weight), 2, 0)) if added is None else added
+    by_others = np.zeros((len(weight), 2, 0)) if by_others is None else by_others
     off, by_camera, by_point = problem.linearised(network)
-    rows_of = np.sqrt(weight)[:, None] / sigma_px
-    off = np.where(weight[:, None] > 0, off, 0.0) * rows_of
-    by_camera = np.where(weight[:, None, None] > 0, by_camera, 0.0) * rows_of[:, :, None]
-    by_point = np.where(weight[:, None, None] > 0, by_point, 0.0) * rows_of[:, :, None]
     arm = network.xyz - state.boards[fixed.picture][:, :, 3]
     by_board = np.concatenate([np.cross(arm[:, None, :], by_point), by_point], axis=2)
-    sides, more = network.over_columns(by_camera), added * rows_of[:, :, None]
-    information, gradient = _prior(network, fixed.active, added.shape[2])
-    boards, scores = {}, np.zeros((len(state.boards), len(gradient)))
-    for picture in np.unique(fixed.picture):
-        rows = np.flatnonzero(fixed.picture == picture)
-        side = sides[rows].reshape(-1, network.n_columns)[:, fixed.active]
-        if more.shape[2]:
-            side = np.hstack([side, more[rows].reshape(len(side), -1)])
-        right = off[rows].ravel()
-        information = information + side.T @ side
-        score = side.T @ right
-        if picture != fixed.world:
-            own = by_board[rows].reshape(-1, 6)
-            square = own.T @ own
-            inverse = np.linalg.inv(square + np.diag(damping * np.diag(square) + 1e-9))
-            coupling = side.T @ own
-            boards[int(picture)] = inverse, own.T @ right, coupling
-            information = information - coupling @ inverse @ coupling.T
-            score = score - coupling @ inverse @ boards[int(picture)][1]
-        scores[picture] = score
-        gradient = gradient + score
-    return _Normal(information, gradient, boards, scores)
-
-
-def _prior(network: Network, active: NDArray, n_added: int) -> tuple[NDArray, NDArray]:
-    """Return information and gradient of what is known of the lenses.
-
-    Their columns are the active ones of the network, then `n_added` of which nothing is known.
-    """
-    first = IMAGE * len(network.cam_from_world)
-    inverse = (1 / network.lens_sigma**2).ravel()
-    information, gradient = np.zeros(network.n_columns), np.zeros(network.n_columns)
-    information[first:] = inverse
-    gradient[first:] = inverse * (network.lens - network.lens_mean).ravel()
-    nothing = np.zeros(n_added)
-    information = np.concatenate([information[active], nothing])
-    return np.diag(information), np.concatenate([gradient[active], nothing])
+    by_board[fixed.picture == fixed.world] = 0.0
+    root = np.sqrt(weight) / sigma_px
+    rows = elimination.Rows(off, by_camera, by_others, by_board, fixed.picture, root)
+    nothing, n_others = np.zeros((len(state.boards), len(POSE))), by_others.shape[2]
+    active = np.append(fixed.active, np.ones(n_others, dtype=bool))
+    known = (np.zeros(n_others),) * 2, (nothing, nothing)
+    return elimination.normal_equations(network, rows, active, *known, damping)
 
 
 def _moved(
     state: _State, fixed: _Problem, weight: NDArray, sigma_px: float, damping: float
 ) -> _State:
     """Return the state after a damped step of Gauss and Newton."""
-    normal = _normal(state, fixed, weight, sigma_px, damping)
-    damped = normal.information + damping * np.diag(np.diag(normal.information))
-    part = -np.linalg.solve(damped, normal.gradient)
+    part, own = _normal(state, fixed, weight, sigma_px, damping).step(damping)
     step = np.zeros(len(fixed.active))
     step[fixed.active] = part
     boards = state.boards.copy()
-    for picture, (inverse, gradient, coupling) in normal.boards.items():
-        own = -inverse @ (gradient + coupling.T @ part)
-        boards[picture, :, :3] = rotations.rotation_from_rodrigues(own[:3]) @ boards[picture, :, :3]
-        boards[picture, :, 3] += own[3:]
+    boards[:, :, :3] = rotations.rotation_from_rodrigues(own[:, :3]) @ boards[:, :, :3]
+    boards[:, :, 3] += own[:, 3:]
     network = state.network.moved(step, np.zeros_like(state.network.xyz))
     return _placed(_State(network, boards), fixed)
 

@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration import chessboard
+from courtside.calibration.boards import chessboard
 from courtside.calibration.boards.board import Board
 from courtside.records.user_tables import number, table
 from courtside.study.errors import InputError, StrPath

@@ -5,12 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from courtside.calibration import point_covariance
+from courtside.calibration import vertical
 from courtside.calibration.boards.adjustment import Found
 from courtside.calibration.boards.board import Board
 from courtside.calibration.boards.corners import Corners
-from courtside.calibration.bundle.problem import IMAGE, LENS, POSE
-from courtside.calibration.people import world_frame
 from courtside.geometry import triangulation
 
 # ASSUME: one camera is told whose corners fit worse by this factor, and by more than a pixel.
@@ -42,7 +40,7 @@ def summary(found: Found, seen: Corners, board: Board, *, known: bool) -> dict[s
     report: dict[str, Any] = {"warnings": _warnings(found, seen, rms_px, known)}
     report |= {"remarks": [], "world_of_picture": found.world}
     if not found.stated:
-        vertical_deg = world_frame.vertical_sigma_deg(found.frame)
+        vertical_deg = vertical.sigma_deg(found.covariance.frame)
         report["vertical_sigma_deg"] = vertical_deg
         report["remarks"].append(
             f"board: z is up as in the pictures, within {vertical_deg:.0f} degrees (standard "
@@ -50,18 +48,15 @@ def summary(found: Found, seen: Corners, board: Board, *, known: bool) -> dict[s
             "name the picture in which it lies on the floor as `floor`"
         )
     report |= {"sigma_px": found.sigma_px, "covariance_factor": found.factor}
-    first = IMAGE * len(found.cameras)
     for c, camera in enumerate(found.cameras):
-        at, lens = IMAGE * c + np.arange(len(POSE)), first + len(LENS) * c
         used = own[c] & np.isfinite(found.error_px[:, 0])
         one = {
             "n_corners": int(used.sum()),
             "n_pictures": len(np.unique(seen.picture[used])),
             "rms_px": rms_px[c],
-            "place_sigma_mm": 1000
-            * point_covariance.centre_sigma(camera, found.covariance[np.ix_(at, at)]),
+            "place_sigma_mm": 1000 * found.covariance.place_sigma_m(camera.name),
             "f_px": float(camera.K[1, 1]),
-            "f_sigma_px": float(np.sqrt(found.covariance[lens, lens])),
+            "f_sigma_px": found.covariance.sigma(camera.name, "f_px"),
         }
         if np.isfinite(found.late[c]):
             one["late_pictures"] = float(found.late[c])
@@ -120,14 +115,9 @@ def _late_line(found: Found, seen: Corners, c: int) -> str:
 
 def neighbours_mm(found: Found, seen: Corners, board: Board) -> tuple[float, float, int]:
     """Return by how much neighbouring corners are too far apart, mm: mean, deviation, number."""
-    shape = len(seen.pictures), len(board.corners)
-    xy = np.full((len(seen.cameras), *shape, 2), np.nan)
+    xy = np.full((len(seen.cameras), len(seen.pictures), len(board.corners), 2), np.nan)
     xy[seen.camera, seen.picture, seen.corner] = seen.xy
-    xyz = triangulation.triangulate_all(found.cameras, xy.reshape(len(xy), -1, 2)).reshape(
-        *shape, 3
-    )
-    pairs = board.neighbours
-    side = board.side_m
+    xyz, pairs = triangulation.triangulate_all(found.cameras, xy), board.neighbours
     apart = np.linalg.norm(xyz[:, pairs[:, 0]] - xyz[:, pairs[:, 1]], axis=-1)
-    off = 1000 * (apart[np.isfinite(apart)] - side)
+    off = 1000 * (apart[np.isfinite(apart)] - board.side_m)
     return (float(off.mean()), float(off.std()), len(off)) if len(off) else (np.nan, np.nan, 0)

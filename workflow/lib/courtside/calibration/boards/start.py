@@ -7,6 +7,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.calibration import robust_poses
+from courtside.calibration.boards import chessboard
 from courtside.calibration.boards.board import Board
 from courtside.calibration.boards.corners import Corners
 from courtside.geometry import rotations
@@ -15,7 +17,6 @@ from courtside.study.errors import InputError, few
 
 FEWEST_CORNERS = 6  # ASSUME: of a view that is to tell a pose by itself
 SHOWN = 20  # pictures of a list in a message
-FEWEST_VIEWS = 4  # as of `chessboard`
 MISREAD, LEAST_OFF_PX = 0.1, 3.0  # ASSUME: of a square, and px: farther off is another corner
 FLAT_SHARE = 0.5  # ASSUME: of the corners of the right board
 MOST_VIEWS = 40  # ASSUME: more do not better a lens, and cost with their square
@@ -51,7 +52,7 @@ def flat(board: Board, seen: Corners) -> NDArray:
         _, inliers = cv2.findHomography(places, xy, cv2.RANSAC, limit_px)
         if inliers is not None:
             found[rows] = inliers.ravel().astype(bool)
-    share = float(found.mean()) if len(found) else 0.0
+    share = float(found.mean())
     if share < FLAT_SHARE:
         raise InputError(
             f"board: expected corners that lie on one plane, {FEWEST_CORNERS} or more in a "
@@ -66,24 +67,16 @@ def lens(name: str, size: Sequence[int], board: Board, seen: Corners, camera: in
     Raises `InputError` if it has fewer than four views of six corners.
     """
     rows = [at for at in _views(seen, camera) if len(at) >= FEWEST_CORNERS]
-    if len(rows) < FEWEST_VIEWS:
+    if len(rows) < chessboard.FEWEST:
         raise InputError(
-            f"camera {name}: expected {FEWEST_VIEWS} pictures or more with {FEWEST_CORNERS} "
+            f"camera {name}: expected {chessboard.FEWEST} pictures or more with {FEWEST_CORNERS} "
             f"corners of the board, found {len(rows)}; {HOW}, or give `lenses`"
         )
     rows = [rows[k] for k in np.unique(np.linspace(0, len(rows) - 1, MOST_VIEWS).astype(int))]
     first = plain(name, (size[0], size[1]), 1.0)
-    flags = cv2.CALIB_USE_INTRINSIC_GUESS | cv2.CALIB_FIX_ASPECT_RATIO
-    flags |= cv2.CALIB_ZERO_TANGENT_DIST | cv2.CALIB_FIX_K3
-    _, matrix, dist, *_ = cv2.calibrateCamera(
-        [board.corners[seen.corner[at]].astype(np.float32) for at in rows],
-        [seen.xy[at].astype(np.float32) for at in rows],
-        first.size,
-        first.K.copy(),  # OpenCV writes its result there
-        np.zeros(5),
-        flags=flags,
-    )
-    return replace(first, K=matrix, dist=dist.ravel()[:5])
+    places = [board.corners[seen.corner[at]] for at in rows]
+    _, matrix, dist, *_ = chessboard.solve(places, [seen.xy[at] for at in rows], first.size)
+    return replace(first, K=matrix, dist=dist)
 
 
 def poses(board: Board, seen: Corners, ideal: NDArray, world: str | None) -> Poses:
@@ -128,15 +121,9 @@ def _posed(board: Board, seen: Corners, ideal: NDArray) -> dict[tuple[int, int],
             extent = np.linalg.svd(xyz - xyz.mean(axis=0), compute_uv=False)
             if len(rows) < FEWEST_CORNERS or extent[1] < 0.1 * board.square_m:  # on one line
                 continue
-            done, turned, shift, _ = cv2.solvePnPGeneric(
-                xyz, at, np.eye(3), None, flags=cv2.SOLVEPNP_IPPE
-            )
-            if done:
-                rotation = rotations.rotation_from_rodrigues(turned[0].ravel())
-                found[camera, int(seen.picture[rows[0]])] = (
-                    rows,
-                    np.column_stack([rotation, shift[0].ravel()]),
-                )
+            lens = robust_poses.IDEAL, None
+            if both := robust_poses.placed(xyz, at, *lens, cv2.SOLVEPNP_IPPE):
+                found[camera, int(seen.picture[rows[0]])] = rows, both[0]
     return found
 
 

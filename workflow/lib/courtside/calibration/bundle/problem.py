@@ -38,7 +38,9 @@ class Network:
     image_idx: NDArray  # (M,) int: of each observation
     point_idx: NDArray  # (M,) int
     xy: NDArray  # (M, 2): observed px
-    sigma_px: NDArray  # (M,) or (M, 2): standard deviation of an observation, per axis
+    sigma_px: (
+        NDArray  # (M, 2): standard deviation of an observation along x and y; given (M,): both
+    )
     loss_scale: NDArray  # (M,): scale of the Cauchy loss, in the observation's sigmas; inf: no loss
     flex_sigma: NDArray  # (V, 5): prior about 0; 0 keeps a number at 0
     lens_mean: NDArray  # (L, 8): prior
@@ -47,6 +49,9 @@ class Network:
     xyz_sigma: NDArray  # (N,): inf: unknown
 
     def __post_init__(self) -> None:
+        if np.ndim(self.sigma_px) == 1:
+            both = np.repeat(np.asarray(self.sigma_px)[:, None], 2, axis=1)
+            object.__setattr__(self, "sigma_px", both)
         for first, *others in (PER_IMAGE, PER_LENS, PER_POINT, PER_VIEW):
             object.__setattr__(self, first, np.asarray(getattr(self, first)))
             length = len(getattr(self, first))
@@ -55,12 +60,6 @@ class Network:
                 found = len(getattr(self, name))
                 if found != length:
                     raise ValueError(f"expected {name} of length {length}, found {found}")
-
-    @property
-    def axis_sigma_px(self) -> NDArray:
-        """Standard deviation of each observation along x and y, (M, 2) px."""
-        per_view = self.sigma_px.reshape(len(self.xy), -1) if len(self.xy) else np.zeros((0, 1))
-        return np.broadcast_to(per_view, self.xy.shape)
 
     @property
     def n_columns(self) -> int:

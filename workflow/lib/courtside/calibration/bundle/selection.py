@@ -1,4 +1,4 @@
-"""Choice and weights of tie points, control points, frames and the fixed cameras of a network."""
+"""Choice and weights of tie points, control points, images and frames of a network."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -8,7 +8,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from courtside.calibration.bundle import problem, solver
 from courtside.calibration.bundle.problem import Network
-from courtside.geometry.camera import Camera
 from courtside.geometry.similarity import Sim3
 from courtside.statistics.normal_errors import MEDIAN_TO_SIGMA
 
@@ -134,11 +133,8 @@ def add_control_points(
     ]
     image_idx, point = np.array(clicked, dtype=int).reshape(-1, 2).T
     used, point_idx = np.unique(point, return_inverse=True)
-    sigma, others = np.array([sigma_px[v] for v in image_idx]), network.sigma_px
-    if any(np.ndim(each) for each in sigma_px.values()):
-        by_point = {v: np.broadcast_to(each, (len(xyz), 2)) for v, each in sigma_px.items()}
-        sigma = np.array([by_point[v][p] for v, p in clicked]).reshape(-1, 2)
-        others = network.axis_sigma_px
+    by_point = {v: np.broadcast_to(each, (len(xyz), 2)) for v, each in sigma_px.items()}
+    sigma = np.array([by_point[v][p] for v, p in clicked]).reshape(-1, 2)
     xyz, xyz_sigma = np.asarray(xyz)[used], np.asarray(xyz_sigma)[used]
     places = np.array([clicks[v][p] for v, p in clicked]).reshape(-1, 2)
     return replace(
@@ -149,7 +145,7 @@ def add_control_points(
         image_idx=np.concatenate([network.image_idx, image_idx]),
         point_idx=np.concatenate([network.point_idx, point_idx + len(network.xyz)]),
         xy=np.concatenate([network.xy, places]),
-        sigma_px=np.concatenate([others, sigma]) if len(sigma) else others,
+        sigma_px=np.concatenate([network.sigma_px, sigma]),
         loss_scale=np.concatenate([network.loss_scale, np.full(len(places), float(loss_scale))]),
     )
 
@@ -191,31 +187,6 @@ def marginalise(network: Network, images: Sequence[int] | NDArray) -> solver.Qua
     return solver.Quadratic(images_only(network, images), information, gradient)
 
 
-def cameras(
-    network: Network, names: Sequence[str], sizes: Sequence[tuple[int, int]]
-) -> list[Camera]:
-    """Return the first images of a network as cameras; `sizes` are (width, height), px."""
-    found = []
-    for v, (name, size) in enumerate(zip(names, sizes, strict=True)):
-        f_px, aspect, cx_px, cy_px, *dist = network.lens[network.lens_of_image[v]]
-        K = np.array([[f_px * aspect, 0, cx_px], [0, f_px, cy_px], [0, 0, 1]])
-        found.append(Camera(name, size, K, np.array([*dist, 0.0]), network.cam_from_world[v]))
-    return found
-
-
-def of_cameras(known: Sequence[Camera]) -> Network:
-    """Return the network of cameras without points: the inverse of `cameras`."""
-    lenses = []
-    for camera in known:
-        (fx, _, cx), (_, fy, cy), _ = camera.K
-        lenses.append([fy, fx / fy, cx, cy, *camera.dist[:4]])
-    return problem.without_points(
-        np.array([camera.cam_from_world for camera in known]).reshape(-1, 3, 4),
-        np.array(lenses).reshape(-1, len(problem.LENS)),
-        [camera.size[1] for camera in known],
-    )
-
-
 def with_lens_priors(
     network: Network,
     sizes: Sequence[tuple[int, int]],
@@ -235,15 +206,3 @@ def with_lens_priors(
     for key, value in spread.items():
         sigma[:, problem.LENS.index(key)] = value
     return replace(network, lens_mean=mean, lens_sigma=sigma)
-
-
-def fixed_cameras(
-    network: Network, fixed: Mapping[str, int], sizes: Mapping[str, tuple[int, int]]
-) -> list[Camera]:
-    """Return the fixed cameras of a network, in its frame.
-
-    `fixed` contains the index of each fixed camera's image, `sizes` the size of its pictures, px.
-    """
-    return cameras(
-        images_only(network, list(fixed.values())), list(fixed), [sizes[name] for name in fixed]
-    )

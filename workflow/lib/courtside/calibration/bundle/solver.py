@@ -9,7 +9,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from courtside.calibration.bundle import problem
+from courtside.calibration.bundle import inverses, problem
 from courtside.calibration.bundle.problem import Network
 
 DENSE_ELEMENTS = 10_000_000  # 80 MB: up to this size, a dense product is faster than a sparse one
@@ -59,6 +59,10 @@ class Normal:
     gradient: NDArray  # (A,)
     cost: float  # half the sum of squared, robustly weighted residuals
     back: Callable[[NDArray], NDArray]  # from a step of the active ones to that of points (N, 3)
+
+    def covariance(self) -> NDArray:
+        """Return the covariance (K, K) of all columns; 0 for those that are not active."""
+        return inverses.of_columns(self.information, self.active)
 
 
 def adjust(
@@ -113,9 +117,9 @@ class _State:
 
 
 def _state(network: Network, quadratic: Quadratic | None) -> _State:
-    seen, (off, inverse) = problem.see(network), _prior(network)
+    seen, (off, inverse) = problem.see(network), prior(network)
     step = np.zeros(0) if quadratic is None else network.difference(quadratic.reference)
-    scaled = seen.residual / network.axis_sigma_px
+    scaled = seen.residual / network.sigma_px
     if not np.isfinite(scaled).all():
         return _State(network, seen, off, inverse, step, np.inf)
     square = (scaled**2).sum(axis=1)
@@ -199,7 +203,7 @@ def _along(values: NDArray, terms: NDArray) -> NDArray:
 
 def _weight(network: Network, residual: NDArray) -> NDArray:
     """Return the root of each axis's weight (M, 2); 0 where its point is behind its image."""
-    sigma = network.axis_sigma_px
+    sigma = network.sigma_px
     square = ((residual / sigma) ** 2).sum(axis=1)
     robust = 1 / np.sqrt(1 + square / network.loss_scale**2)
     return np.where(np.isfinite(square), robust, 0.0)[:, None] / sigma
@@ -212,7 +216,7 @@ def _active(network: Network) -> NDArray:
     return np.concatenate([images.ravel(), (network.lens_sigma > 0).ravel()])
 
 
-def _prior(network: Network) -> tuple[NDArray, NDArray]:
+def prior(network: Network) -> tuple[NDArray, NDArray]:
     """Return (value - mean) / sigma and 1 / sigma of images and lenses; 0 without a prior."""
     flex = np.concatenate(
         [np.full((len(network.flex), len(problem.POSE)), np.inf), network.flex_sigma], axis=1
@@ -241,7 +245,7 @@ def _camera_side(
     """Return information (K, K) and gradient (K,) of images and lenses before elimination."""
     size = state.network.n_columns
     information, gradient = np.zeros((size, size)), np.zeros(size)
-    for seen in _by_image(state.network):
+    for seen in by_image(state.network):
         own = columns[seen[0]]
         rows = by_camera[seen].reshape(-1, len(own))
         information[own[:, None], own] += rows.T @ rows
@@ -254,7 +258,7 @@ def _camera_side(
     return information, gradient
 
 
-def _by_image(network: Network) -> list[NDArray]:
+def by_image(network: Network) -> list[NDArray]:
     """Return the observations (M',) of each image that has some."""
     order = np.argsort(network.image_idx, kind="stable")
     _, first = np.unique(network.image_idx[order], return_index=True)

@@ -16,8 +16,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from courtside.calibration import point_covariance
-from courtside.calibration.bundle import problem, solver
+from courtside.calibration.bundle import inverses, problem, solver
 from courtside.calibration.bundle.problem import IMAGE, POSE, Network
 from courtside.statistics import normal_errors
 
@@ -86,7 +85,7 @@ def estimate(
     `factors` are those already contained in the network's sigmas and in the quadratic; `lines` is
     additional information, whose weight stays.
     """
-    sigma = network.axis_sigma_px
+    sigma = network.sigma_px
     residual, rows = _rows(network)
     known = [quadratic] if lines is None else [quadratic, lines]
     covariance = _covariance(network, solver.total(known), rows)
@@ -128,7 +127,7 @@ def _rows(network: Network) -> tuple[NDArray, NDArray]:
     rows[:, :, :size] = network.over_columns(by_camera)
     places = size + 3 * network.point_idx[:, None, None] + np.arange(3)
     np.put_along_axis(rows, places.repeat(2, axis=1), by_point, axis=2)
-    return residual, rows / network.axis_sigma_px[:, :, None]
+    return residual, rows / network.sigma_px[:, :, None]
 
 
 def _covariance(network: Network, quadratic: solver.Quadratic, rows: NDArray) -> NDArray:
@@ -143,11 +142,7 @@ def _covariance(network: Network, quadratic: solver.Quadratic, rows: NDArray) ->
     moves = np.concatenate([np.ones((len(network.flex), len(POSE))), network.flex_sigma], axis=1)
     free = np.diag(information) > 0
     free[: moves.size] &= moves.ravel() > 0
-    scale = 1 / np.sqrt(np.diag(information)[free])
-    inverse = np.linalg.inv(information[np.ix_(free, free)] * np.outer(scale, scale))
-    covariance = np.zeros_like(information)
-    covariance[np.ix_(free, free)] = inverse * np.outer(scale, scale)
-    return covariance
+    return inverses.of_columns(information[np.ix_(free, free)], free)
 
 
 def shift_columns(network: Network) -> NDArray:
@@ -175,7 +170,7 @@ def _of_ties(network, quadratic, covariance) -> tuple[float, float]:
     """Return the ties' squared distance from their own minimum, in sigmas, and their redundancy."""
     information = quadratic.information
     size = len(information)
-    own = point_covariance.pseudo_inverse(information, GAUGE)
+    own = inverses.pseudo_inverse(information, GAUGE)
     step = network.difference(quadratic.reference)
     slope = quadratic.gradient + information @ step
     known = np.count_nonzero(np.diag(information) > 0) - GAUGE

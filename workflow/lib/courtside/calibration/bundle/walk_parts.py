@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration.bundle import selection
+from courtside.calibration.bundle import conversion, selection
 from courtside.calibration.bundle.problem import PER_IMAGE, Network
 from courtside.geometry.camera import Camera
 
@@ -62,7 +62,7 @@ def views(
     for part in reversed(parts):
         of_part = [names[at] for at in part.images]
         of_lenses = [sizes[lens] for lens in part.network.lens_of_image]
-        found |= {c.name: c for c in selection.cameras(part.network, of_part, of_lenses)}
+        found |= {c.name: c for c in conversion.cameras_of(part.network, of_part, of_lenses)}
     return [found[name] for name in names]
 
 

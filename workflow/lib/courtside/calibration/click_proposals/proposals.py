@@ -48,7 +48,12 @@ class Proposals:
     # (P,): share of what is expected near the point that is seen, less where the place is uncertain
     confidence: NDArray
     reason: tuple[str, ...]  # P: why nothing is proposed; empty where something is
-    camera: Camera  # the given one, moved so that the lines fit
+    camera: Camera | None  # the given one, moved so that the lines fit; None without
+
+    @classmethod
+    def none(cls, n: int, reason: str, camera: Camera | None) -> "Proposals":
+        """Return that none of `n` points is proposed, for one reason."""
+        return cls(np.full((n, 2), np.nan), np.full(n, np.nan), np.zeros(n), (reason,) * n, camera)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,11 +90,9 @@ def propose(
     if image.shape[1::-1] != tuple(camera.size):
         raise ValueError(f"expected a picture of {camera.size} px, found {image.shape[1::-1]}")
     moved = register(View.of(image, camera, court, lines), search_px)
-    n = len(court.points)
     if moved.reason:
-        nothing, reasons = np.full(n, np.nan), (moved.reason,) * n
-        return Proposals(np.full((n, 2), np.nan), nothing, np.zeros(n), reasons, moved.view.camera)
-    found = [_point(moved.view, at) for at in range(n)]
+        return Proposals.none(len(court.points), moved.reason, moved.view.camera)
+    found = [_point(moved.view, at) for at in range(len(court.points))]
     return _checked(moved, found, max_sigma_px)
 
 

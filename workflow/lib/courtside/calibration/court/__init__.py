@@ -4,8 +4,8 @@ court: read, of_places, to_line_centres, Court, ClickedPoints
 line_edges: named, post, middle_line, stretches, paint: edges and areas of the painted lines;
     crossings, click_covariances, click_variances: how exactly clicks show where edges cross
 sfm_alignment: reconstruct, align, paper_frame, check, stretch, refuse_exchanged_cameras
-joint_adjustment: condense, condense_free, solve, solve_by_edges, solve_with_factors, free, Ties,
-    Solution: tie points with clicked court points
+joint_adjustment: condense, condense_free, solve, solve_by_edges, solve_by_scatter,
+    solve_with_factors, free, Ties, Solution: tie points with clicked court points
 resection: dlt, nonlinear: one camera from known points, by `one_camera`
 known_points: method, calibrate, cameras: all cameras from known points, each by itself
 points_alone: calibrate, summary: all cameras from points alone, together

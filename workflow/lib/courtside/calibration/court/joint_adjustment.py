@@ -11,13 +11,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration import point_covariance as uncertainty
-from courtside.calibration.bundle import selection, solver, variance_components, walk_parts
+from courtside.calibration import point_covariance
+from courtside.calibration.bundle import (
+    conversion,
+    inverses,
+    selection,
+    solver,
+    variance_components,
+    walk_parts,
+)
 from courtside.calibration.bundle.problem import FLEX, IMAGE, POSE, Network
 from courtside.calibration.bundle.variance_components import Factors
 from courtside.calibration.bundle.walk_parts import Part
 from courtside.calibration.court import line_edges, sfm_alignment
 from courtside.calibration.court.court import ClickedPoints, Court
+from courtside.calibration.records import covariance as camera_covariance
+from courtside.calibration.records.covariance import CameraCovariance
 from courtside.geometry.camera import Camera
 from courtside.geometry.similarity import Sim3
 from courtside.study.errors import InputError
@@ -72,9 +81,14 @@ class Solution:
     covariance: NDArray
     factors: Factors
 
+    @property
+    def named(self) -> CameraCovariance:
+        """The covariance by camera, as files have it."""
+        return camera_covariance.of_network([c.name for c in self.cameras], self.covariance)
+
     def point_covariance(self, xyz: NDArray) -> NDArray:
         """Return the covariance (N, 3, 3) m2 of points (N, 3) triangulated from exact pixels."""
-        return uncertainty.point_covariance(self.network, self.covariance, xyz)
+        return point_covariance.point_covariance(self.network, self.covariance, xyz)
 
 
 def condense(
@@ -112,7 +126,7 @@ def condense(
     ties : the mean over the parts
     parts : with their chosen points after adjustment, in the court's frame
     """
-    cameras = selection.fixed_cameras(network, fixed, sizes)
+    cameras = conversion.fixed_cameras(network, fixed, sizes)
     sigma_px = [click_sigma(click_sigma_px, sizes[name]) for name in fixed]
 
     def adjusted(clicks: ClickedPoints, straightened: bool) -> Iterator[Part]:
@@ -138,7 +152,7 @@ def condense(
 
 
 def _fixed_cameras(network, names, at, sizes) -> list[Camera]:
-    return selection.fixed_cameras(network, dict(zip(names, map(int, at), strict=True)), sizes)
+    return conversion.fixed_cameras(network, dict(zip(names, map(int, at), strict=True)), sizes)
 
 
 def _alignment(court, cameras, clicks) -> Sim3:
@@ -220,8 +234,8 @@ def _in_free_frame(network: Network, fixed: Sequence[int]) -> Network:
 def free(ties: Ties) -> Solution:
     """Return the `Solution` of `condense_free`; its covariance leaves out frame and scale."""
     network = ties.knowledge.reference
-    cameras = selection.cameras(network, ties.cameras, ties.sizes)
-    covariance = uncertainty.pseudo_inverse(ties.knowledge.information)
+    cameras = conversion.cameras_of(network, ties.cameras, ties.sizes)
+    covariance = inverses.pseudo_inverse(ties.knowledge.information)
     return Solution(cameras, network, covariance, variance_components.none(len(cameras)))
 
 
@@ -294,8 +308,8 @@ def solve(
         network, quadratic=known, max_iterations=max_iterations, tolerance=1e-7
     )
     _check_placed(ties, normal)
-    cameras = selection.cameras(network, ties.cameras, ties.sizes)
-    covariance = uncertainty.of_columns(normal)
+    cameras = conversion.cameras_of(network, ties.cameras, ties.sizes)
+    covariance = normal.covariance()
     shifts = variance_components.shift_columns(network)
     covariance[shifts], covariance[:, shifts] = 0.0, 0.0  # of the clicks, not of the cameras
     return Solution(cameras, network, covariance, factors)
@@ -322,23 +336,41 @@ def solve_by_edges(ties: Ties, clicks: ClickedPoints, court: Court, **options: A
     return solve(ties, clicks, court, **options, factors=factors)
 
 
-def solve_with_factors(ties: Ties, clicks: ClickedPoints, court: Court, **options: Any) -> Solution:
-    """Do as `solve_by_edges`, with weights and covariance from the residuals.
+def solve_by_scatter(
+    ties: Ties,
+    clicks: ClickedPoints,
+    court: Court,
+    *,
+    of_ties: bool = True,
+    rounds: int = FACTOR_ROUNDS,
+    **options: Any,
+) -> Solution:
+    """Do as `solve_by_edges`, with the weights of clicks, and `of_ties`, from their residuals.
 
-    The given sigmas of clicks and ties are priors (`variance_components`). A few clicks determine
-    their scatter poorly; the covariance is enlarged for this (`Factors.widening`). `**options` are
-    those of `solve`, without `factors`.
+    Their given sigmas are priors (`variance_components`). `**options` are those of `solve`, without
+    `factors`.
     """
     solved = solve_by_edges(ties, clicks, court, **options)
-    for _ in range(FACTOR_ROUNDS):
+    for _ in range(rounds):
         before = solved.factors
         knowledge = solver.scaled(ties.knowledge, 1 / before.ties)
         lines = options.get("lines")
         found = variance_components.estimate(solved.network, knowledge, before, lines)
+        if not of_ties:
+            found = replace(found, ties=1.0, ties_redundancy=0.0)
         solved = solve(ties, clicks, court, **options, factors=found, start=solved.network)
         change = np.append(found.clicks / before.clicks, found.ties / before.ties)
         if np.abs(np.log(change)).max() < FACTOR_TOLERANCE:
             break
+    return solved
+
+
+def solve_with_factors(ties: Ties, clicks: ClickedPoints, court: Court, **options: Any) -> Solution:
+    """Do as `solve_by_scatter`, with a larger covariance (`Factors.widening`).
+
+    A few clicks determine their scatter poorly.
+    """
+    solved = solve_by_scatter(ties, clicks, court, **options)
     return replace(solved, covariance=solved.covariance * solved.factors.widening)
 
 

@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration.bundle import selection, solver, variance_components
-from courtside.calibration.bundle.problem import IMAGE, LENS
+from courtside.calibration.bundle import conversion, selection, solver
 from courtside.calibration.court import (
     click_checks,
     joint_adjustment,
@@ -31,7 +30,7 @@ from courtside.geometry.camera import Camera, project
 CENTRE_SHARE = 0.01  # of the picture's width
 SPREAD = {"aspect": 1e-3, "k1": 0.3, "k2": 0.2, "p1": 5e-4, "p2": 5e-4}
 MAX_ITERATIONS = 200
-ROUNDS, SETTLED = 8, 0.05  # of the variance factors: see `joint_adjustment`
+ROUNDS = 8  # of the variance factors: see `joint_adjustment`
 # ASSUME: a camera whose clicks scatter so much more than the others', or than stated, is named. In
 # a real hall, points with errors of some centimetres scatter 2.4 times as much as stated at most.
 SCATTERED, LARGEST = 3.0, 6.0
@@ -107,17 +106,17 @@ def summary(found: Found) -> dict[str, Any]:
     By camera: `n_points`; `rms_px`, per axis; `f_px` and `k1` with their standard deviations.
     """
     report: dict[str, Any] = {"warnings": found.warnings}
-    cameras, spread = found.solution.cameras, np.sqrt(np.diag(found.solution.covariance))
-    lens_sigma = spread[IMAGE * len(cameras) :].reshape(len(cameras), len(LENS))
-    for camera, sigma in zip(cameras, lens_sigma, strict=True):
+    cameras = found.solution.cameras
+    spread = found.solution.named
+    for camera in cameras:
         error_px = found.error_px[camera.name]
         one = {
             "n_points": int(np.isfinite(error_px).sum()),
             "rms_px": _rms_px(error_px),
             "f_px": camera.K[1, 1],
-            "f_sigma_px": sigma[LENS.index("f_px")],
+            "f_sigma_px": spread.sigma(camera.name, "f_px"),
             "k1": camera.dist[0],
-            "k1_sigma": sigma[LENS.index("k1")],
+            "k1_sigma": spread.sigma(camera.name, "k1"),
         }
         for key, value in one.items():
             shown = value if isinstance(value, int) else round(float(value), 4)
@@ -127,21 +126,14 @@ def summary(found: Found) -> dict[str, Any]:
 
 def _lenses(starts: Sequence[Camera]) -> Ties:
     """Return what is known of the lenses before any click, about cameras to start from."""
-    network = selection.of_cameras(starts)
-    information = np.zeros((network.n_columns, network.n_columns))
-    reference = network.lens.copy()
-    for at, camera in enumerate(starts):
-        width, height = camera.size
-        mean = {"aspect": 1.0, "cx_px": (width - 1) / 2, "cy_px": (height - 1) / 2}
-        sigma = SPREAD | dict.fromkeys(("cx_px", "cy_px"), CENTRE_SHARE * width)
-        for name, spread in sigma.items():
-            column = IMAGE * len(starts) + len(LENS) * at + LENS.index(name)
-            information[column, column] = spread**-2.0
-            reference[at, LENS.index(name)] = mean.get(name, 0.0)
-    known = solver.Quadratic(
-        replace(network, lens=reference), information, np.zeros(len(information))
-    )
-    return Ties(tuple(c.name for c in starts), tuple(c.size for c in starts), known)
+    sizes = [camera.size for camera in starts]
+    network = conversion.network_of(starts)
+    usual = selection.with_lens_priors(network, sizes, SPREAD, CENTRE_SHARE)
+    information = np.zeros(network.n_columns)
+    information[-network.lens.size :] = usual.lens_sigma.ravel() ** -2.0
+    reference = replace(network, lens=usual.lens_mean)
+    known = solver.Quadratic(reference, np.diag(information), np.zeros(len(information)))
+    return Ties(tuple(camera.name for camera in starts), tuple(sizes), known)
 
 
 def _solved(lenses: Ties, clicks: ClickedPoints, court: Court, weights: dict) -> Solution:
@@ -151,17 +143,9 @@ def _solved(lenses: Ties, clicks: ClickedPoints, court: Court, weights: dict) ->
     90 % ellipsoids held 89 to 91 % of the errors (40 draws each), and 92 to 94 % if enlarged.
     """
     options = {**weights, "max_iterations": MAX_ITERATIONS}
-    solved = joint_adjustment.solve_by_edges(lenses, clicks, court, **options)
-    for _ in range(ROUNDS):
-        before = solved.factors
-        found = variance_components.estimate(solved.network, lenses.knowledge, before)
-        found = replace(found, ties=1.0, ties_redundancy=0.0)  # of lenses, which are no ties
-        solved = joint_adjustment.solve(
-            lenses, clicks, court, **options, factors=found, start=solved.network
-        )
-        if np.abs(np.log(found.clicks / before.clicks)).max() < SETTLED:
-            break
-    return solved
+    return joint_adjustment.solve_by_scatter(
+        lenses, clicks, court, of_ties=False, rounds=ROUNDS, **options
+    )
 
 
 def _rms_px(error_px: NDArray) -> float:

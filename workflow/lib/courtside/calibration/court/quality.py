@@ -1,18 +1,16 @@
 """Checks of calibrated cameras without the truth, and the errors to expect of them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration import point_covariance as propagation
-from courtside.calibration.bundle import selection
+from courtside.calibration import point_covariance
+from courtside.calibration.bundle import conversion
 from courtside.calibration.court import click_checks, joint_adjustment
 from courtside.calibration.court.court import ClickedPoints, Court, to_line_centres
-from courtside.calibration.point_covariance import field
-from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records.covariance import CameraCovariance
 from courtside.calibration.records.support import Support
 from courtside.geometry.camera import Camera, in_picture, project
@@ -34,27 +32,21 @@ def check_cameras(
     clicks: ClickedPoints,
     *,
     click_sigma_px: float,
-    inwards: tuple[float, float] | None = None,
-    adjust: Callable[[ClickedPoints], Sequence[Camera]] | None = None,
-    error_modes_m: NDArray | None = None,
     strict: bool = True,
+    **known: Any,
 ) -> dict[str, Any]:
     """Check cameras, in the court's frame, against the clicked court points, each left out in turn.
 
     The result, for a JSON file, holds `warnings`, and `left_out`, by point: how far it is from its
     place (cm) and from each click (px) in a similarity fitted to the other points. Raises
-    `InputError`, or if not `strict` warns, if the points cannot be this court.
-
-    Parameters
-    ----------
-    click_sigma_px : of a good click, in the largest picture
-    inwards, adjust, error_modes_m : as for `click_checks.check`
+    `InputError`, or if not `strict` warns, if the points cannot be this court. `click_sigma_px` is
+    that of a good click in the largest picture, `**known` what else `click_checks.check` takes.
     """
     table, each = leave_one_out_errors(court, cameras, clicks)
-    known: dict[str, Any] = {"sigma_px": click_sigma_px, "inwards": inwards, "table": table}
-    known |= {"adjust": adjust, "error_modes_m": error_modes_m}
     try:
-        warnings = click_checks.check(court, cameras, clicks, **known)
+        warnings = click_checks.check(
+            court, cameras, clicks, sigma_px=click_sigma_px, table=table, **known
+        )
     except InputError as error:
         if strict:
             raise
@@ -95,10 +87,9 @@ def adjust_and_check(
         click_sigma_px=sigma_px,
         inwards=_inwards(court, ties, clicks, solved.factors, **weights),
         adjust=adjust,
-        error_modes_m=field(solved.network, solved.covariance)(court.xyz),
+        error_modes_m=point_covariance.field(solved.network, solved.covariance)(court.xyz),
     )
-    known = camera_covariance.of_network([c.name for c in solved.cameras], solved.covariance)
-    quality |= expected_volume(court, solved.cameras, known)
+    quality |= expected_volume(court, solved.cameras, solved.named)
     return solved, quality | {"variance_factors": _variance_factors(solved)}
 
 
@@ -206,8 +197,8 @@ def place_covariance(
     NaN where fewer than two do.
     """
     spread = covariance.of([camera.name for camera in cameras]).of_columns()
-    network, seen = selection.of_cameras(cameras), shown(cameras, xyz)
-    return propagation.point_covariance(network, spread, xyz, seen)
+    network, seen = conversion.network_of(cameras), shown(cameras, xyz)
+    return point_covariance.point_covariance(network, spread, xyz, seen)
 
 
 def shown(cameras: Sequence[Camera], xyz: NDArray) -> NDArray:

@@ -24,6 +24,33 @@ class FloorFrame:
     axes: NDArray  # (3, 3): rows: the floor's two directions and up, in the camera's frame
 
 
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """Straight pieces of lines, px about the principal point."""
+
+    middle: NDArray  # (N, 2)
+    tangent: NDArray  # (N, 2)
+    length: NDArray  # (N,)
+
+    @classmethod
+    def of(cls, ends: NDArray) -> "Pieces":
+        """Return the pieces between ends (N, 4)."""
+        along = ends[:, 2:] - ends[:, :2]
+        length = np.hypot(*along.T)
+        return cls((ends[:, :2] + ends[:, 2:]) / 2, along / length[:, None], length)
+
+    @property
+    def tolerance(self) -> NDArray:
+        """Tolerance of their directions, (N,) rad."""
+        return TOLERANCE_RAD + END_PX / self.length
+
+    def off(self, axes: NDArray, f_px: float) -> NDArray:
+        """Return the sine (..., N) of each one's angle to axes (..., 3), seen at its middle."""
+        towards = axes[..., None, :2] * f_px - axes[..., None, 2:] * self.middle
+        sine = towards[..., 0] * self.tangent[:, 1] - towards[..., 1] * self.tangent[:, 0]
+        return sine / (np.hypot(towards[..., 0], towards[..., 1]) + 1e-9)
+
+
 def find(ends: NDArray, width: float, rng: np.random.Generator) -> list[FloorFrame]:
     """Find frames whose axes are parallel to many line segments, some for each focal length.
 
@@ -32,17 +59,10 @@ def find(ends: NDArray, width: float, rng: np.random.Generator) -> list[FloorFra
     court help.
     """
     ends = ends[:MOST_SEGMENTS]
-    length = np.hypot(*(ends[:, 2:] - ends[:, :2]).T)
     if len(ends) < 4:
         return []
-    weight = np.minimum(length, 0.15 * width)
-    found: list[FloorFrame] = []
-    pieces = _Pieces(
-        (ends[:, :2] + ends[:, 2:]) / 2,
-        (ends[:, 2:] - ends[:, :2]) / length[:, None],
-        TOLERANCE_RAD + END_PX / length,
-        weight,
-    )
+    pieces, found = Pieces.of(ends), list[FloorFrame]()
+    weight = np.minimum(pieces.length, 0.15 * width)
     for f_px in FOCAL_WIDTHS * width:
         one, other = (np.column_stack([xy, np.full(len(xy), f_px)]) for xy in np.hsplit(ends, 2))
         planes = np.cross(one, other)
@@ -51,25 +71,17 @@ def find(ends: NDArray, width: float, rng: np.random.Generator) -> list[FloorFra
         axes = _upright(*(planes[row] for row in chosen))
         if not len(axes):
             continue
-        agree = (np.abs(_off(axes, f_px, pieces)) < pieces.tolerance).astype(float)
+        agree = (np.abs(pieces.off(axes, f_px)) < pieces.tolerance).astype(float)
         fit = np.maximum(np.maximum(agree[:, 0], agree[:, 1]), 0.5 * agree[:, 2]) @ weight
         kept: list[NDArray] = []
         for at in np.argsort(-fit)[: 20 * KEPT]:
-            polished = _polish(axes[at], f_px, pieces)
+            polished = _polish(axes[at], f_px, pieces, weight)
             if all(_apart(polished, earlier) for earlier in kept):
                 kept.append(polished)
             if len(kept) == KEPT:
                 break
         found += [FloorFrame(float(f_px), axes) for axes in kept]
     return found
-
-
-@dataclass(frozen=True, eq=False)
-class _Pieces:
-    middle: NDArray  # (N, 2)
-    tangent: NDArray  # (N, 2)
-    tolerance: NDArray  # (N,): of the direction, rad
-    weight: NDArray  # (N,)
 
 
 def _upright(one: NDArray, other: NDArray, third: NDArray) -> NDArray:
@@ -87,22 +99,15 @@ def _upright(one: NDArray, other: NDArray, third: NDArray) -> NDArray:
     return axes[(-z[:, 1] > UPRIGHT) & (np.abs(z[:, 0]) < MOST_ROLL) & (z[:, 2] < 0.3)]
 
 
-def _off(axes: NDArray, f_px: float, pieces: _Pieces) -> NDArray:
-    """Return the sine of the angle of each piece to each axis, seen at its middle, (..., 3, N)."""
-    towards = axes[..., None, :2] * f_px - axes[..., None, 2:] * pieces.middle
-    sine = towards[..., 0] * pieces.tangent[:, 1] - towards[..., 1] * pieces.tangent[:, 0]
-    return sine / (np.hypot(towards[..., 0], towards[..., 1]) + 1e-9)
-
-
-def _polish(axes: NDArray, f_px: float, pieces: _Pieces) -> NDArray:
+def _polish(axes: NDArray, f_px: float, pieces: Pieces, weight: NDArray) -> NDArray:
     """Turn a frame so that the pieces parallel to its axes fit best."""
     small = 1e-5
     for wide in (2.0, 1.5, 1.0):
-        off = _off(axes, f_px, pieces)
-        scale = np.sqrt(pieces.weight) / pieces.tolerance * np.array([[1.0], [1.0], [0.7]])
+        off = pieces.off(axes, f_px)
+        scale = np.sqrt(weight) / pieces.tolerance * np.array([[1.0], [1.0], [0.7]])
         scale = np.where(np.abs(off) < wide * pieces.tolerance, scale, 0)
         turns = rotations.rotation_from_rodrigues(small * np.eye(3))
-        slopes = [(_off(axes @ turn.T, f_px, pieces) - off) / small * scale for turn in turns]
+        slopes = [(pieces.off(axes @ turn.T, f_px) - off) / small * scale for turn in turns]
         columns = np.stack([slope.ravel() for slope in slopes], axis=1)
         normal = columns.T @ columns
         step = np.linalg.solve(

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from courtside.calibration.court.court import Court
 from courtside.calibration.court_lines import views
-from courtside.calibration.court_lines.floor_frames import FloorFrame
+from courtside.calibration.court_lines.floor_frames import FloorFrame, Pieces
 from courtside.calibration.court_lines.views import Views
 
 # ASSUME: all of these are tuned by hand on development sessions.
@@ -96,9 +96,8 @@ def find(
 
 def _axes(axes: NDArray, f_px: float, ends: NDArray, court: Court, width: float) -> list[_Axis]:
     """Return the lines across the floor's two axes."""
-    length = np.hypot(*(ends[:, 2:] - ends[:, :2]).T)
-    tangent = (ends[:, 2:] - ends[:, :2]) / length[:, None]
-    middle = (ends[:, :2] + ends[:, 2:]) / 2
+    pieces = Pieces.of(ends)
+    tangent, length = pieces.tangent, pieces.length
     low, high = court.line_corners()
     across, far_m = np.argmin(high - low, axis=1), BEYOND_M + BEYOND_LENGTHS * court.size_m[1]
 
@@ -109,13 +108,10 @@ def _axes(axes: NDArray, f_px: float, ends: NDArray, court: Court, width: float)
     below = np.isfinite(on_floor(ends[:, :2]) + on_floor(ends[:, 2:])).all(axis=1)
     found = []
     for axis in (0, 1):
-        along = axes[1 - axis]
-        towards = along[:2] * f_px - along[2] * middle
-        sine = towards[:, 0] * tangent[:, 1] - towards[:, 1] * tangent[:, 0]
-        sine = np.abs(sine) / (np.linalg.norm(towards, axis=1) + 1e-9)
+        sine = np.abs(pieces.off(axes[1 - axis], f_px))
         good = below & (sine < PARALLEL_RAD + 1 / length)
         step = OFF_PX * width / 1280 * np.column_stack([-tangent[good, 1], tangent[good, 0]])
-        places = [on_floor(middle[good] + by * step)[:, axis] for by in (-1, 0, 1)]
+        places = [on_floor(pieces.middle[good] + by * step)[:, axis] for by in (-1, 0, 1)]
         seen = np.isfinite(places).all(axis=0)
         tolerance = np.abs(places[2] - places[0])[seen] / 2
         lines = _merged(places[1][seen], np.maximum(tolerance, 1e-6), length[good][seen])

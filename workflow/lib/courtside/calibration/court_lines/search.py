@@ -56,7 +56,7 @@ class Found:
     scale: float  # how many times larger the given picture is
 
 
-def find(image: NDArray, court: Court, lines: str = "light", *, seed: int = 0) -> Found:
+def find(image: NDArray, court: Court, lines: str = "light") -> Found:
     """Find cameras that explain the lines of a court in a picture (H, W, 3) uint8.
 
     The principal point is assumed to be the picture's centre. Several lenses are tried. Line
@@ -74,7 +74,7 @@ def find(image: NDArray, court: Court, lines: str = "light", *, seed: int = 0) -
     if not len(court.lines_m):
         return Found(found, seen, image, scale)
     for draw, barrel in itertools.product(range(DRAWS), BARREL):
-        found += _of_lens(seen, court, barrel, seed + draw)
+        found += _of_lens(seen, court, barrel, draw)
         found = _different(found, court, seen.width)
         if found and not fault(found[0], court):
             break
@@ -98,9 +98,9 @@ def fault(one: Candidate, court: Court) -> str:
     return ""
 
 
-def _of_lens(seen: Fields, court: Court, barrel: float, seed: int) -> list[Candidate]:
+def _of_lens(seen: Fields, court: Court, barrel: float, draw: int) -> list[Candidate]:
     """Return candidates with one lens."""
-    rng, along = np.random.default_rng(seed), views.samples(court, FINE_M)
+    rng, along = np.random.default_rng(draw), views.samples(court, FINE_M)
     hypotheses = _hypotheses(seen, court, barrel, rng)
     if hypotheses is None:
         return []

@@ -168,12 +168,9 @@ def proposed(
     As `click_proposals.proposals.propose`. For a symmetric court each reason is `EITHER`, because
     the court looks the same after half a turn.
     """
-    n = len(court.points)
     if verdict.outcome != FOUND or verdict.camera is None:
-        nothing, reason = np.full(n, np.nan), f"court {verdict.outcome}: {verdict.reason}"
-        nowhere = Camera("", image.shape[1::-1], np.eye(3), np.zeros(5), np.eye(3, 4))
-        camera = verdict.camera or nowhere
-        return Proposals(np.full((n, 2), np.nan), nothing, np.zeros(n), (reason,) * n, camera)
+        reason = f"court {verdict.outcome}: {verdict.reason}"
+        return Proposals.none(len(court.points), reason, verdict.camera)
     found = proposals.propose(
         verdict.camera, image, court, search_px=search_px, max_sigma_px=max_sigma_px, lines=lines
     )
@@ -202,12 +199,12 @@ def report(verdict: Verdict, found: Proposals) -> dict:
         "either_end": verdict.symmetric,
         "n_proposed": int(np.isfinite(found.xy[:, 0]).sum()),
     }
-    if verdict.outcome == FOUND and verdict.uncertainty is not None:
-        sure = verdict.uncertainty
+    camera, sure = found.camera, verdict.uncertainty
+    if verdict.outcome == FOUND and camera is not None and sure is not None:
         said |= {
-            "f_px": float(found.camera.K[0, 0]),
-            "f_sigma_px": sure.f_share * float(found.camera.K[0, 0]),
-            "centre_m": found.camera.centre_in_world.tolist(),
+            "f_px": float(camera.K[0, 0]),
+            "f_sigma_px": sure.f_share * float(camera.K[0, 0]),
+            "centre_m": camera.centre_in_world.tolist(),
             "height_sigma_m": sure.height_m,
             "distance_sigma_m": sure.distance_m,
         }

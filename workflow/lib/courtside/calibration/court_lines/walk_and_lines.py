@@ -16,7 +16,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from courtside.calibration.bundle import problem, selection, solver
+from courtside.calibration.bundle import conversion, problem, solver
 from courtside.calibration.bundle.problem import IMAGE, POSE, Network
 from courtside.calibration.court import joint_adjustment, line_edges
 from courtside.calibration.court.court import ClickedPoints, Court
@@ -248,7 +248,7 @@ def _of_edges(solved: Solution, found: Mapping[str, Edges], court: Court) -> _Ob
         np.concatenate([getattr(seen, key) for seen in found.values()])
         for key in ("line", "xyz", "across", "xy", "normal", "sigma_px")
     )
-    network = selection.of_cameras(solved.cameras)
+    network = conversion.network_of(solved.cameras)
     residual, rows, by_point = _linearised(network, xyz, image, xy)
     px_of_m = np.einsum("mr,mrk,mk->m", normal, by_point, across)
     shared_px = THIN_PX / (np.abs(px_of_m) * court.line_width_m)
@@ -273,7 +273,7 @@ def _of_clicks(
     every = np.stack([clicks[camera.name] for camera in solved.cameras])
     image, point = np.nonzero(np.isfinite(every).all(axis=2))
     n, n_images = len(image), len(every)
-    network = selection.of_cameras(solved.cameras)
+    network = conversion.network_of(solved.cameras)
     residual, rows, by_point = _linearised(network, court.xyz[point], image, every[image, point])
     by_line, sigma_m = of_points(court)
     own = np.zeros((n, 2, *sigma_m.shape))

@@ -69,7 +69,7 @@ def left_out(cameras: Sequence[Camera], xy: NDArray) -> NDArray:
 
 
 def placed_by_others(cameras: Sequence[Camera], xy: NDArray, at: int) -> NDArray:
-    """Return the points (N, 3) that all cameras but one place."""
+    """Return the points (..., 3) that all cameras but one place, by views `xy` (C, ..., 2)."""
     others = [k for k in range(len(cameras)) if k != at]
     return triangulate_all([cameras[k] for k in others], xy[others])
 

@@ -9,7 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration.people import metric_scale, world_frame
+from courtside.calibration import vertical
+from courtside.calibration.people import metric_scale
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
 from courtside.geometry.triangulation import triangulate_all
@@ -41,7 +42,7 @@ def warning(cameras: Sequence[Camera], xy: NDArray) -> str:
     along = np.median(rotations.unit(head - low), axis=0) if len(low) >= FEWEST else np.zeros(3)
     if np.linalg.norm(along) < ALIKE:
         return ""
-    up, shown = rotations.unit(along), world_frame.up_in_pictures(cameras)
+    up, shown = rotations.unit(along), vertical.up_in_pictures(cameras)
     if max(up[2], shown[2]) > FAR or up @ shown < NEAR:
         return ""
     looking = np.mean([camera.cam_from_world[2, :3] for camera in cameras], axis=0)
@@ -61,8 +62,7 @@ def _bodies(cameras: Sequence[Camera], xy: NDArray) -> tuple[NDArray, NDArray]:
     seen = np.isfinite(joints).all(axis=-1).sum(axis=0) >= 2
     times = np.flatnonzero(seen[:, :4].all(axis=1))
     times = times[np.linspace(0, len(times) - 1, min(len(times), MOST)).astype(int)]
-    flat = joints[:, times].reshape(len(cameras), -1, 2)
-    xyz = triangulate_all(cameras, flat).reshape(len(times), len(names), 3)
+    xyz = triangulate_all(cameras, joints[:, times])
     place = {name: xyz[:, at] for at, name in enumerate(names)}
     head, hip, ankle = (metric_scale.middle(place, part) for part in ENDS)
     low = np.where(np.isfinite(ankle), ankle, hip)

@@ -10,7 +10,7 @@ resection: `lost`, `expected`, `find`, `widened`, `line`: cameras that agree wit
 relative_poses: `pair`, `pose`: relative poses of cameras from tracks of unknown persons
 metric_scale: `Scale`, `Body`, `KnownLength`, `of_clicks`, `find`, `combined`, `by_lengths`,
     `by_heights`: the scale from stated heights and known lengths
-world_frame: `floor`, `axes`, `of_shape`: the floor from feet or points, axes, covariance
+world_frame: `floor`, `frame_error`, `of_shape`: the floor from feet or points, covariance
 warnings: `find`: warnings about cameras from people alone
 from_nothing: `guess`, `adjust`, `check`, `summary`: cameras from people alone
 refinement: `refine`, `unchanged`: which cameras are taken, what was wrong, the table

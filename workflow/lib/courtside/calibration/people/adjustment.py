@@ -11,8 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration import point_covariance
-from courtside.calibration.bundle import problem, selection, solver
+from courtside.calibration.bundle import conversion, problem, selection, solver
 from courtside.calibration.bundle.problem import POSE, Network
 from courtside.calibration.court import joint_adjustment, line_edges
 from courtside.calibration.court.court import ClickedPoints, Court
@@ -125,14 +124,14 @@ def refine(
         network, normal = solver.adjust(
             network, quadratic=known, max_iterations=MAX_ITERATIONS, tolerance=TOLERANCE
         )
-        found = selection.cameras(network, names, sizes)
+        found = conversion.cameras_of(network, names, sizes)
         if clicks is not None and widened == 1.0:
             scatter = _scatter(network, n_views, clicks)
     found = [
         replace(one, dist=np.append(one.dist[:4], base.dist[4]))
         for one, base in zip(found, cameras, strict=True)
     ]
-    return Refined(found, point_covariance.of_columns(normal), sigma_share, alike)
+    return Refined(found, normal.covariance(), sigma_share, alike)
 
 
 def _without_k3(camera: Camera) -> Camera:
@@ -165,7 +164,7 @@ def _network(
     image_idx, at = np.nonzero(points.accepted)
     used, point_idx = np.unique(at, return_inverse=True)
     network = problem.with_points(
-        selection.of_cameras(cameras), points.xyz[used], image_idx, point_idx, xy[image_idx, at]
+        conversion.network_of(cameras), points.xyz[used], image_idx, point_idx, xy[image_idx, at]
     )
     unit_px = height_px[image_idx, at] / np.sqrt(score[image_idx, at])
     sigma_share = _sigma_share(points, score, height_px, n_joints)
@@ -192,7 +191,7 @@ def _alike(network: Network, cells: NDArray) -> float:
     At least 1. A camera that sees a knee 1 cm too low sees it so for a whole stride: its views are
     not independent, and a covariance that takes them so is too small.
     """
-    scaled = problem.residuals(network) / network.axis_sigma_px
+    scaled = problem.residuals(network) / network.sigma_px
     weight = 1 / (1 + (scaled**2).sum(axis=1) / LOSS**2)
     scaled *= weight[:, None]
     _, cell = np.unique(cells, return_inverse=True)

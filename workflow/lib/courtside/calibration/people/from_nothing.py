@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.calibration import vertical
 from courtside.calibration.file_check import residuals
 from courtside.calibration.people import (
     adjustment,
@@ -148,8 +149,7 @@ def _some(takes: Sequence[Take], track: Track) -> NDArray:
 
 def _placed(cameras: Sequence[Camera], takes: Sequence[Take], track: Track) -> NDArray:
     """Return the joints (T, J, 3) of a track in some of its take's frames."""
-    xy = _some(takes, track)
-    return triangulate_all(cameras, xy.reshape(len(xy), -1, 2)).reshape(*xy.shape[1:3], 3)
+    return triangulate_all(cameras, _some(takes, track))
 
 
 def _explained(cameras, takes: Sequence[Take], tracks: Sequence[Track]) -> float:
@@ -237,7 +237,7 @@ def summary(found: Found, takes: Sequence[str]) -> dict[str, Any]:
         "held_out_joints_permille": round(share, 3),
         "accepted_percent": {name: round(float(value), 1) for name, value in accepted.items()},
         "scale_sigma_percent": round(100 * found.scale.sigma, 2),
-        "vertical_sigma_deg": world_frame.vertical_sigma_deg(found.covariance.frame),
+        "vertical_sigma_deg": vertical.sigma_deg(found.covariance.frame),
         "warnings": list(found.warnings),
         "remarks": list(found.scale.remarks),
         "line": f"people alone: views of held-out joints disagree by {share:.1f} thousandths of "

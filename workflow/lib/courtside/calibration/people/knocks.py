@@ -282,10 +282,7 @@ def _score(halves: list[list[Camera]], seen: Seen, step: _Step) -> held_out.Scor
     for odd, found in enumerate(halves):
         rows = block % 2 != odd
         views = seen.xy[:, rows]
-        flat = views.reshape(len(views), -1, 2)
-        xyz = residuals.placed_by_others(found[: len(views)], flat, at).reshape(
-            *views.shape[1:3], 3
-        )
+        xyz = residuals.placed_by_others(found[: len(views)], views, at)
         last = found[-1] if len(found) > len(seen.xy) else found[at]
         after = (seen.time_s[rows] >= step.time_s)[:, None, None]
         there = np.where(after, project(last, xyz), project(found[at], xyz))

@@ -14,7 +14,7 @@ import scipy
 from numpy.typing import NDArray
 
 from courtside.calibration import point_covariance
-from courtside.calibration.bundle import selection
+from courtside.calibration.bundle import conversion
 from courtside.calibration.court.joint_adjustment import click_sigma
 from courtside.geometry.camera import Camera
 from courtside.geometry.triangulation import triangulate_all
@@ -223,8 +223,7 @@ def _share(
         )
     n_clicks = known.xy.size
     steps = np.eye(n_clicks).reshape(n_clicks, *known.xy.shape)  # 1 px each
-    moved = (known.xy + steps).transpose(1, 0, 2, 3).reshape(len(cameras), -1, 2)
-    moved_ends = triangulate_all(cameras, moved).reshape(n_clicks, 2, 3)
+    moved_ends = triangulate_all(cameras, (known.xy + steps).transpose(1, 0, 2, 3))
     by_click = np.linalg.norm(moved_ends[:, 1] - moved_ends[:, 0], axis=1) / own - 1
     by_click = np.nan_to_num(by_click.reshape(known.xy.shape))  # (C, 2, 2): camera, end, axis
     sizes = [camera.size for camera in cameras]
@@ -237,7 +236,7 @@ def _share(
     by_column = np.zeros(0)
     if shape is not None:
         clicked = np.isfinite(known.xy).all(axis=-1).T
-        one, other = point_covariance.sensitivity(selection.of_cameras(cameras), ends, clicked)
+        one, other = point_covariance.sensitivity(conversion.network_of(cameras), ends, clicked)
         by_column = along / own**2 @ (other - one)
     return own, variance, by_bias, by_column
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration.bundle import selection, solver
+from courtside.calibration.bundle import conversion, solver
 from courtside.calibration.bundle.problem import LENS, POSE
 from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance
 from courtside.geometry.camera import Camera
@@ -53,7 +53,7 @@ def knowledge(cameras: Sequence[Camera], known: CameraCovariance) -> solver.Quad
     varies = extent > ROUNDING * extent[-1]
     inverse = (axes / np.where(varies, extent, KNOWN * extent[-1])) @ axes.T
     information[np.ix_(free, free)] = inverse / np.outer(scale, scale)
-    network = selection.of_cameras(cameras)
+    network = conversion.network_of(cameras)
     return solver.Quadratic(network, information, np.zeros(len(covariance)))
 
 

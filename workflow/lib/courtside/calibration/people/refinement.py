@@ -162,9 +162,9 @@ def _alone(seen: Seen, alike: float, gain: float) -> dict[str, str]:
 def _named(base: Sequence[Camera], refined: Sequence[Camera], known: CameraCovariance) -> list[str]:
     """Return the numbers of lenses that changed by more than is stated of them."""
     found = []
-    for at, (old, new) in enumerate(zip(base, refined, strict=True)):
+    for old, new in zip(base, refined, strict=True):
         for name, before, after in zip(LENS, _lens(old), _lens(new), strict=True):
-            sigma = _sigma(known, at, name)
+            sigma = known.sigma(old.name, name)
             if sigma and abs(after - before) > NAMED * sigma:
                 found.append(
                     f"{name} of camera {old.name}: expected {before:.5g} to {sigma:.2g}, as stated "
@@ -175,11 +175,6 @@ def _named(base: Sequence[Camera], refined: Sequence[Camera], known: CameraCovar
 
 def _lens(camera: Camera) -> tuple[float, ...]:
     return camera.K[1, 1], camera.K[0, 2], camera.K[1, 2], camera.dist[0]
-
-
-def _sigma(known: CameraCovariance, at: int, name: str) -> float:
-    column = len(PARAMETERS) * at + PARAMETERS.index(name)
-    return float(np.sqrt(known.covariance[column, column]))
 
 
 def _measures(cameras: Sequence[Camera], scores: dict[str, Score]) -> pd.DataFrame:
@@ -203,7 +198,7 @@ def _numbers(ways: dict[str, list[Camera]], spread: CameraCovariance) -> pd.Data
     rows: list[dict] = []
     for at, base in enumerate(ways["base"]):
         here = {way: cameras[at] for way, cameras in ways.items()}
-        sigma = [_sigma(spread, at, name) for name in PARAMETERS]
+        sigma = [spread.sigma(base.name, name) for name in PARAMETERS]
         turned = {
             way: np.degrees(
                 rotations.angles(one.cam_from_world[:, :3] @ base.cam_from_world[:, :3].T)
@@ -218,6 +213,6 @@ def _numbers(ways: dict[str, list[Camera]], spread: CameraCovariance) -> pd.Data
         own = [of, {"what": "moved_cm", **moved, "sigma": 100 * np.linalg.norm(sigma[3:6])}]
         for number, name in enumerate(LENS):
             of = {way: _lens(one)[number] for way, one in here.items()}
-            own.append({"what": name, **of, "sigma": _sigma(spread, at, name)})
+            own.append({"what": name, **of, "sigma": spread.sigma(base.name, name)})
         rows += [{"camera": base.name, **row} for row in own]
     return pd.DataFrame(rows, columns=list(COLUMNS))

@@ -1,8 +1,7 @@
 """The world frame of cameras from people alone: the floor under their feet, and the covariance.
 
 The origin is on the floor below the middle of the people's paths, z is up, and x runs along the
-floor in the direction from the first camera to the second. Where neither people nor a floor define
-it, z is up as in the pictures.
+floor in the direction from the first camera to the second.
 """
 
 from collections.abc import Sequence
@@ -10,8 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration import point_covariance
-from courtside.calibration.bundle import selection
+from courtside.calibration import point_covariance, vertical
+from courtside.calibration.bundle import conversion
 from courtside.calibration.people import metric_scale
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
@@ -24,7 +23,6 @@ STANDING = 0.1  # the quantile of the ankles' heights that belongs to standing f
 TILT_M = 0.5  # ASSUME: extent of feet, or points, that define the tilt as well as bodies do
 ROUNDS = 30  # of reweighting
 EPSILON_M = 1e-3  # the weight is constant below this distance from the floor
-TURNED = np.array([[0.0, -1.0], [1.0, 0.0]])  # of a normal's x and y to rotations about x and y
 UPRIGHT = np.radians(5.0)  # ASSUME: error of the vertical by bodies alone, standard deviation
 POINT_M = 0.01  # ASSUME: that of a clicked point on the floor
 ANKLE_M = 0.03  # ASSUME: that of the height of a standing ankle, as a network sees it
@@ -32,9 +30,6 @@ ANKLE_M = 0.03  # ASSUME: that of the height of a standing ankle, as a network s
 # and one of the height: Student's t over a normal distribution, squared, at 90 %.
 OF_TILT = 9 / np.log(10)
 OF_HEIGHT = np.tan(0.45 * np.pi) ** 2 / 2.706
-# ASSUME: by how much cameras are rolled, and look down or up, standard deviations; the first counts
-# as that many cameras.
-ROLLED, LOOKING_DOWN, SURE = np.radians(3.0), np.radians(20.0), 3
 TINY_STEP = 1e-6  # of a similarity, for numerical derivatives
 
 
@@ -62,7 +57,7 @@ def floor(xyz: NDArray, cameras: Sequence[Camera], on_floor: NDArray | None = No
     up = rotations.unit(np.nanmedian(upward, axis=0))
     middle = np.median(ankles, axis=0)
     centres = [camera.centre_in_world for camera in cameras]
-    turn = axes(up, centres[1] - centres[0])
+    turn = vertical.axes(up, centres[1] - centres[0])
     slopes, offset = _lowest_plane((ankles - middle) @ turn.T)
     normal = np.array([*-slopes, 1.0])
     up = rotations.unit(turn.T @ normal)
@@ -76,51 +71,8 @@ def floor(xyz: NDArray, cameras: Sequence[Camera], on_floor: NDArray | None = No
         if len(on_floor) >= 3 and extent[1] > TILT_M:
             up = directions[2] * np.sign(directions[2] @ up)
         sole = float((on_floor.mean(axis=0) - middle) @ up)
-    turn = axes(up, centres[1] - centres[0])
+    turn = vertical.axes(up, centres[1] - centres[0])
     return Sim3(1.0, turn, -turn @ middle - [0, 0, sole])
-
-
-def axes(up: NDArray, along: NDArray) -> NDArray:
-    """Return the rotation (3, 3) to axes with z up and x along a direction."""
-    x = rotations.unit(along - (along @ up) * up)
-    return np.stack([x, np.cross(up, x), up])
-
-
-def up_in_pictures(cameras: Sequence[Camera]) -> NDArray:
-    """Return the direction (3,) that is up in the pictures."""
-    return _up_in_pictures(cameras)[0]
-
-
-def error_of_pictures(cameras: Sequence[Camera]) -> NDArray:
-    """Return the covariance of a world frame whose z is `up_in_pictures`, as `frame_error` does.
-
-    The height of the origin is one of choice, without an error.
-    """
-    found = np.zeros((3, 3))
-    found[:2, :2] = TURNED @ _up_in_pictures(cameras)[1][:2, :2] @ TURNED.T
-    return found
-
-
-def _up_in_pictures(cameras: Sequence[Camera]) -> tuple[NDArray, NDArray]:
-    """Return up (3,) and its covariance (3, 3).
-
-    Few cameras are rolled, so that up is perpendicular to the pictures' x axes; more look down, so
-    that it is less surely perpendicular to where they look. How much they are rolled, they say.
-    """
-    x, y, z = np.array([camera.cam_from_world[:, :3] for camera in cameras]).swapaxes(0, 1)
-    rolled = ROLLED**2
-    for _ in range(ROUNDS):
-        extent, directions = np.linalg.eigh(x.T @ x / rolled + z.T @ z / LOOKING_DOWN**2)
-        up = directions[:, 0]
-        seen = np.square(x @ up).sum()
-        rolled = (SURE * ROLLED**2 + seen) / (SURE + len(cameras) - 1)
-    aside = directions[:, 1:]
-    return up * -np.sign(y.sum(axis=0) @ up), aside / extent[1:] @ aside.T
-
-
-def vertical_sigma_deg(frame: NDArray) -> float:
-    """Return the standard deviation of the vertical, degrees, of a frame's covariance (3, 3)."""
-    return round(float(np.degrees(np.sqrt(np.trace(frame[:2, :2]) / 2))), 2)
 
 
 def _lowest_plane(xyz: NDArray) -> tuple[NDArray, float]:
@@ -180,7 +132,7 @@ def frame_error(joints: NDArray, apart: NDArray | None, on_floor: NDArray) -> ND
         if len(on_floor) >= 3 and np.linalg.svd(about, compute_uv=False)[1] > TILT_M:
             slopes = POINT_M**2 * np.linalg.inv(about.T @ about)
     found = np.diag([0.0, 0.0, height])
-    found[:2, :2] = TURNED @ slopes @ TURNED.T
+    found[:2, :2] = vertical.TURNED @ slopes @ vertical.TURNED.T
     return found
 
 
@@ -197,7 +149,7 @@ def of_shape(
     frame (an S-transformation, Baarda 1973). The error of the scale is then added: `scale_sigma`,
     a share, about the middle of the joints. With None, the scale and its error stay as they are.
     """
-    network, middle = selection.of_cameras(cameras), xyz.mean(axis=0)
+    network, middle = conversion.network_of(cameras), xyz.mean(axis=0)
     moved = [
         _about(middle, 1.0, rotations.rotation_from_rodrigues(e)) for e in TINY_STEP * np.eye(3)
     ]
@@ -205,7 +157,7 @@ def of_shape(
     if scale_sigma is not None:
         moved.append(_about(middle, 1 + TINY_STEP, np.eye(3)))
     of_cameras = np.stack([
-        selection.of_cameras([one.camera(camera) for camera in cameras]).difference(network)
+        conversion.network_of([one.camera(camera) for camera in cameras]).difference(network)
         for one in moved
     ], axis=1) / TINY_STEP  # fmt: skip
     of_points = np.stack([(one.points(xyz) - xyz).ravel() for one in moved], axis=1) / TINY_STEP

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from courtside.calibration.bundle import problem, selection
+from courtside.calibration.bundle import conversion, problem
 from courtside.calibration.bundle.problem import Network
 from courtside.calibration.planning import cameras
 from courtside.geometry.camera import Camera, in_picture, project
@@ -144,7 +144,7 @@ def _in_view(camera: Camera, xyz: NDArray) -> NDArray:
 
 def _network_of(images, n_fixed, xyz, seen, lens_prior) -> Network:
     point_idx, image_idx = np.nonzero(seen)
-    alone = selection.of_cameras(images)
+    alone = conversion.network_of(images)
     lens = alone.lens[: n_fixed + 1]
     mean, sigma = (values[: len(lens)] for values in lens_prior)
     of_image = np.minimum(np.arange(len(images)), n_fixed)

@@ -46,6 +46,15 @@ class CameraCovariance:
         whole[np.ix_(at, at)] = self.covariance
         return whole
 
+    def sigma(self, camera: str, parameter: str) -> float:
+        """Return the standard deviation of one of a camera's `PARAMETERS`."""
+        at = len(PARAMETERS) * self.cameras.index(camera) + PARAMETERS.index(parameter)
+        return float(np.sqrt(self.covariance[at, at]))
+
+    def place_sigma_m(self, camera: str) -> float:
+        """Return that of a camera's place, root of the sum over axes: as of its translation."""
+        return float(np.linalg.norm([self.sigma(camera, f"t{axis}_m") for axis in "xyz"]))
+
     def of(self, cameras: Sequence[str]) -> "CameraCovariance":
         """Return the covariance of some cameras, in order; `ValueError` names a missing one."""
         for name in cameras:

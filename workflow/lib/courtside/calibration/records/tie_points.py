@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from courtside.calibration.bundle import problem, selection, solver
+from courtside.calibration.bundle import conversion, problem, solver
 from courtside.calibration.bundle.problem import LENS
 from courtside.calibration.court import joint_adjustment
 from courtside.calibration.records.support import Support
@@ -59,7 +59,7 @@ class Record:
 
 def write(path: StrPath, record: Record) -> None:
     """Write a `Record` to an npz file."""
-    sfm = selection.of_cameras(record.sfm_cameras)
+    sfm = conversion.network_of(record.sfm_cameras)
     reference = record.ties.knowledge.reference if record.ties else None
     knowledge, support = record.ties.knowledge if record.ties else None, record.support
     arrays = {
@@ -95,7 +95,7 @@ def read(path: StrPath) -> Record:
 def _record(found: Mapping[str, NDArray]) -> Record:
     sizes = [(int(width), int(height)) for width, height in found["size"]]
     names, heights_px = tuple(map(str, found["camera"])), found["size"][:, 1]
-    sfm = selection.cameras(
+    sfm = conversion.cameras_of(
         problem.without_points(found["cam_from_sfm"], found["lens_sfm"], heights_px), names, sizes
     )
     ties = None

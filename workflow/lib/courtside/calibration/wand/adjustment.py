@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration import point_covariance
-from courtside.calibration.bundle import problem
-from courtside.calibration.bundle.problem import IMAGE, Network
+from courtside.calibration.bundle import elimination, inverses, problem
+from courtside.calibration.bundle.elimination import Normal
+from courtside.calibration.bundle.problem import Network
 from courtside.geometry import rotations
 from courtside.statistics import normal_errors
 
@@ -72,18 +72,6 @@ class Adjusted:
     factor: float  # of the covariance, from the scatter of the parts of the time
 
 
-@dataclass(frozen=True, eq=False)
-class _Normal:
-    """Normal equations of cameras and length, bodies eliminated."""
-
-    information: NDArray  # (A, A)
-    gradient: NDArray  # (A,)
-    inverse: NDArray  # (N, 5, 5): of the bodies' information
-    own: NDArray  # (N, 5): gradient of the bodies
-    coupling: NDArray  # (N, 5, A)
-    scores: NDArray  # (N, A): contribution of each body to the gradient
-
-
 def adjust(state: State, active: NDArray, of_wand: NDArray) -> Adjusted:
     """Adjust the `active` columns (K,) of the cameras, and all bodies.
 
@@ -134,7 +122,7 @@ def _sigma(state: State, of_wand: NDArray, redundancy: float) -> float:
 
 def _weighted(state: State, of_wand: NDArray, sigma_px: float, loss: NDArray) -> State:
     """Return the state with this sigma of markers, and these Cauchy scales (M,) of all views."""
-    sigma = np.where(of_wand, sigma_px, state.network.sigma_px)
+    sigma = np.where(of_wand[:, None], sigma_px, state.network.sigma_px)
     network = replace(state.network, sigma_px=sigma, loss_scale=loss)
     return replace(state, network=network)
 
@@ -159,7 +147,7 @@ def _minimised(state: State, columns: NDArray) -> State:
 
 def _scaled(state: State) -> tuple[NDArray, NDArray]:
     """Return squared residuals (M,) in sigmas, NaN behind a camera, and robust weights (M,)."""
-    off = problem.residuals(state.network) / state.network.sigma_px[:, None]
+    off = problem.residuals(state.network) / state.network.sigma_px
     square = (off**2).sum(axis=1)
     return square, np.nan_to_num(1 / (1 + square / state.network.loss_scale**2))
 
@@ -184,45 +172,23 @@ def _in_sigmas(off: NDArray, sigma: NDArray) -> tuple[NDArray, NDArray]:
     return off * inverse, inverse
 
 
-def _normal(state: State, columns: NDArray, damping: float) -> _Normal:
+def _normal(state: State, columns: NDArray, damping: float) -> Normal:
     """Return the normal equations of the active `columns` (K + 1,): of cameras, then the length."""
     network, bodies = state.network, state.bodies
     off, by_camera, by_point = problem.linearised(network)
-    _, weight = _scaled(state)
-    root = (np.sqrt(weight) / network.sigma_px)[:, None]
-    off, by_point = off * root, by_point * root[:, :, None]
-    reach = np.exp(state.length) * bodies.along_m[network.point_idx]
     body = bodies.body[network.point_idx]
-    by_turn = reach[:, None, None] * by_point @ _perpendicular(bodies.direction)[body]
+    reach = (np.exp(state.length) * bodies.along_m[network.point_idx])[:, None, None]
+    by_turn = reach * by_point @ _perpendicular(bodies.direction)[body]
+    by_length = reach * by_point @ bodies.direction[body][:, :, None]
     by_body = np.concatenate([by_point, by_turn], axis=2)
-    along = reach[:, None] * bodies.direction[body]
-    by_length = np.einsum("mri,mi->mr", by_point, along)[:, :, None]
-    side = np.concatenate([by_camera * root[:, :, None], by_length], axis=2)
-    last = np.full((len(off), 1), network.n_columns)
-    at = np.concatenate([network.columns(), last], axis=1)
-    size, count = network.n_columns + 1, len(bodies.origin)
-    by_column = _summed(at, np.einsum("mri,mr->mi", side, off), body, count, size)
-    information = _summed(at, np.einsum("mri,mrj->mij", side, side), at, size, size)
-    prior, pull = _prior(state)
-    information[np.diag_indices(size)] += prior
-    own, inverse = _of_bodies(bodies, body, by_body, off, damping)
-    rows = BODY * body[:, None] + np.arange(BODY)
-    coupling = _summed(at, np.einsum("mri,mrj->mij", by_body, side), rows, BODY * count, size)
-    coupling = coupling.reshape(count, BODY, size)[:, :, columns]
-    solved = inverse @ coupling
-    scores = by_column[:, columns] - np.einsum("bia,bi->ba", solved, own)
-    eliminated = np.einsum("bia,bic->ac", coupling, solved, optimize=True)
-    return _Normal(
-        information[np.ix_(columns, columns)] - eliminated,
-        pull[columns] + scores.sum(axis=0),
-        inverse, own, coupling, scores,
-    )  # fmt: skip
-
-
-def _summed(at: NDArray, values: NDArray, rows: NDArray, n_rows: int, size: int) -> NDArray:
-    """Return the sums (n_rows, size) of values (M, [R,] A) by rows (M, [R]) and columns (M, A)."""
-    flat = rows[..., None] * size + (at[:, None] if rows.ndim > 1 else at)
-    return np.bincount(flat.ravel(), values.ravel(), minlength=n_rows * size).reshape(n_rows, size)
+    root = np.sqrt(_scaled(state)[1]) / network.sigma_px[:, 0]  # of both axes
+    rows = elimination.Rows(off, by_camera, by_length, by_body, body, root)
+    length, of_length = _in_sigmas(np.array([state.length]), np.array([state.length_sigma]))
+    place, inverse = _in_sigmas(bodies.origin - bodies.known, bodies.sigma_m[:, None])
+    information, pull = np.zeros((2, len(bodies.origin), BODY))
+    information[:, :3], pull[:, :3] = inverse**2, inverse * place
+    known = (of_length**2, of_length * length), (information, pull)
+    return elimination.normal_equations(network, rows, columns, *known, damping)
 
 
 def _perpendicular(direction: NDArray) -> NDArray:
@@ -232,45 +198,11 @@ def _perpendicular(direction: NDArray) -> NDArray:
     return np.stack([first, np.cross(direction, first)], axis=2)
 
 
-def _prior(state: State) -> tuple[NDArray, NDArray]:
-    """Return information (K + 1,) and gradient (K + 1,) of the priors of lenses and length."""
-    network = state.network
-    first = IMAGE * len(network.cam_from_world)
-    lens, inverse = _in_sigmas(network.lens - network.lens_mean, network.lens_sigma)
-    length, of_length = _in_sigmas(np.array(state.length), np.array(state.length_sigma))
-    weight = np.concatenate([np.zeros(first), inverse.ravel(), [float(of_length)]])
-    off = np.concatenate([np.zeros(first), lens.ravel(), [float(length)]])
-    return weight**2, weight * off
-
-
-def _of_bodies(
-    bodies: Bodies, body: NDArray, by_body: NDArray, off: NDArray, damping: float
-) -> tuple[NDArray, NDArray]:
-    """Return the gradient (N, 5) of the bodies and the inverse (N, 5, 5) of their information."""
-    count = len(bodies.origin)
-    blocks = np.einsum("mri,mrj->mij", by_body, by_body).reshape(len(off), -1)
-    at = np.broadcast_to(np.arange(BODY * BODY), blocks.shape)
-    square = _summed(at, blocks, body, count, BODY * BODY).reshape(count, BODY, BODY)
-    at = np.broadcast_to(np.arange(BODY), (len(off), BODY))
-    own = _summed(at, np.einsum("mri,mr->mi", by_body, off), body, count, BODY)
-    place, inverse = _in_sigmas(bodies.origin - bodies.known, bodies.sigma_m[:, None])
-    diagonal = np.einsum("bii->bi", square)
-    diagonal[:, :3] += inverse**2
-    own[:, :3] += inverse * place
-    diagonal *= 1 + damping
-    diagonal += diagonal == 0  # a point has no direction
-    return own, np.linalg.inv(square)
-
-
 def _moved(state: State, columns: NDArray, damping: float) -> State:
     """Return the state after a damped step."""
-    normal = _normal(state, columns, damping)
-    damped = normal.information + damping * np.diag(np.diag(normal.information) + 1e-12)
-    part = -np.linalg.solve(damped, normal.gradient)
+    part, own = _normal(state, columns, damping).step(damping)
     step = np.zeros(len(columns))
     step[columns] = part
-    pull = normal.own + np.einsum("bia,a->bi", normal.coupling, part)
-    own = -np.einsum("bij,bj->bi", normal.inverse, pull)
     bodies = state.bodies
     turn = np.einsum("bij,bj->bi", _perpendicular(bodies.direction), own[:, 3:])
     bodies = replace(
@@ -279,15 +211,14 @@ def _moved(state: State, columns: NDArray, damping: float) -> State:
         direction=rotations.unit(bodies.direction + turn),
     )
     network = state.network.moved(step[:-1], np.zeros_like(state.network.xyz))
-    return replace(
-        state, network=network, bodies=bodies, length=state.length + float(step[-1])
-    ).placed()
+    length = state.length + float(step[-1])
+    return replace(state, network=network, bodies=bodies, length=length).placed()
 
 
-def _inverse(state: State, normal: _Normal) -> NDArray:
+def _inverse(state: State, normal: Normal) -> NDArray:
     """Return the covariance (A, A) of the active columns."""
     free = 0 if np.isfinite(state.bodies.sigma_m).any() else RIGID
-    return point_covariance.pseudo_inverse(normal.information, n_free=free)
+    return inverses.pseudo_inverse(normal.information, n_free=free)
 
 
 def _factor_of_blocks(state: State, columns: NDArray) -> float:

@@ -7,11 +7,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration.bundle import problem, selection
+from courtside.calibration import vertical
+from courtside.calibration.bundle import conversion, problem, selection
 from courtside.calibration.bundle.problem import FLEX, IMAGE, LENS
 from courtside.calibration.court import points_alone
 from courtside.calibration.people import world_frame
 from courtside.calibration.people.adjustment import Clicks
+from courtside.calibration.records import covariance as camera_covariance
+from courtside.calibration.records.covariance import CameraCovariance
 from courtside.calibration.wand import adjustment, culprit, start, timing, world
 from courtside.calibration.wand.adjustment import Adjusted, Bodies, State
 from courtside.calibration.wand.points import Seen, Wand
@@ -35,17 +38,12 @@ class Found:
     """The result of a calibration with a wand."""
 
     cameras: list[Camera]
-    covariance: NDArray  # of the network's columns, as for `records.covariance.of_network`
+    covariance: CameraCovariance
     world: str  # description of the world frame
     stated: bool  # whether floor or points define it
     xyz: NDArray  # (F, M, 3) m: markers whose views agree, others NaN
     error_px: NDArray  # (C, F, M, 2): projected minus measured; NaN where either is missing
     adjusted: Adjusted
-
-    @property
-    def frame(self) -> NDArray:
-        """Covariance of the world frame, as `CameraCovariance.frame` has it."""
-        return np.zeros((3, 3)) if self.stated else world_frame.error_of_pictures(self.cameras)
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +99,9 @@ def calibrate(
         covariance = world_frame.of_shape(cameras, found.covariance, moved.points(datum), None)
     error_px = np.stack([project(camera, xyz) for camera in cameras]) - seen.xy
     stated = clicks is not None or floor is not None
-    return Found(cameras, covariance, text, stated, xyz, error_px, found)
+    frame = None if stated else vertical.error_of_pictures(cameras)
+    named = camera_covariance.of_network(seen.cameras, covariance, frame)
+    return Found(cameras, named, text, stated, xyz, error_px, found)
 
 
 def _agreeing(
@@ -239,7 +239,7 @@ def _state(
     known = np.isfinite(xyz[..., 0])
     xy = _straight(cameras, lenses, seen.xy[:, frames][:, known])
     image, point = np.nonzero(np.isfinite(xy[..., 0]))
-    network = selection.of_cameras(_without(cameras, lenses))
+    network = conversion.network_of(_without(cameras, lenses))
     network = problem.with_points(network, xyz[known], image, point, xy[image, point])
     sizes, spread = [camera.size for camera in cameras], points_alone.SPREAD
     network = selection.with_lens_priors(network, sizes, spread, points_alone.CENTRE_SHARE)
@@ -288,35 +288,29 @@ def _in_front(state: State) -> State:
 def _with_clicks(state: State, cameras, lenses, clicks: Clicks) -> State:
     """Return a state with clicked points as additional bodies, with their own sigma and loss."""
     bodies, network = state.bodies, state.network
-    xy = _straight(cameras, lenses, clicks.xy)
-    image, point = np.nonzero(np.isfinite(xy[..., 0]))
-    used, at = np.unique(point, return_inverse=True)
-    alone_px = clicks.alone_px()
-    sigma_px = np.sqrt((alone_px**2).mean(axis=2))  # one for both axes
-    loss = clicks.loss_scale * float((clicks.sigma_px / alone_px).mean())
-    first, blocks = len(bodies.origin), bodies.block.max() + 1
-    bodies = Bodies(
-        np.concatenate([bodies.origin, clicks.xyz[used]]),
-        np.concatenate([bodies.direction, np.tile([1.0, 0.0, 0.0], (len(used), 1))]),
-        np.concatenate([bodies.known, clicks.xyz[used]]),
-        np.concatenate([bodies.sigma_m, clicks.sigma_m[used]]),
-        np.concatenate([bodies.body, first + np.arange(len(used))]),
-        np.concatenate([bodies.along_m, np.zeros(len(used))]),
-        np.concatenate([bodies.block, blocks + np.arange(len(used))]),
-    )
-    both = problem.with_points(
+    xy, alone_px = _straight(cameras, lenses, clicks.xy), clicks.alone_px()
+    both = selection.add_control_points(
         network,
-        np.concatenate([network.xyz, clicks.xyz[used]]),
-        np.concatenate([network.image_idx, image]),
-        np.concatenate([network.point_idx, len(network.xyz) + at]),
-        np.concatenate([network.xy, xy[image, point]]),
+        clicks.xyz,
+        clicks.sigma_m,
+        dict(enumerate(xy)),
+        sigma_px=dict.fromkeys(range(len(cameras)), 1.0),
+        loss_scale=clicks.loss_scale * float((clicks.sigma_px / alone_px).mean()),
     )
-    network = replace(
-        both,
-        sigma_px=np.concatenate([network.sigma_px, sigma_px[image, point]]),
-        loss_scale=np.concatenate([network.loss_scale, np.full(len(image), loss)]),
+    sigma_px = np.sqrt((alone_px**2).mean(axis=2))[np.isfinite(xy).all(axis=2)]  # of both axes
+    both = replace(both, sigma_px=np.append(network.sigma_px[:, 0], sigma_px))
+    xyz, sigma_m = both.xyz[len(network.xyz) :], both.xyz_sigma[len(network.xyz) :]
+    first, blocks, number = len(bodies.origin), bodies.block.max() + 1, np.arange(len(xyz))
+    bodies = Bodies(
+        np.concatenate([bodies.origin, xyz]),
+        np.concatenate([bodies.direction, np.tile([1.0, 0.0, 0.0], (len(xyz), 1))]),
+        np.concatenate([bodies.known, xyz]),
+        np.concatenate([bodies.sigma_m, sigma_m]),
+        np.concatenate([bodies.body, first + number]),
+        np.concatenate([bodies.along_m, np.zeros(len(xyz))]),
+        np.concatenate([bodies.block, blocks + number]),
     )
-    return _in_front(replace(state, bodies=bodies, network=network))
+    return _in_front(replace(state, bodies=bodies, network=both))
 
 
 def _adjust(state: State, cameras: Sequence[Camera], lenses: Mapping[str, Camera]) -> Adjusted:
@@ -333,7 +327,7 @@ def _adjust(state: State, cameras: Sequence[Camera], lenses: Mapping[str, Camera
 def _cameras(found: Adjusted, cameras, lenses) -> list[Camera]:
     """Return the adjusted cameras, with their known lenses."""
     names, sizes = [c.name for c in cameras], [c.size for c in cameras]
-    solved = selection.cameras(found.state.network, names, sizes)
+    solved = conversion.cameras_of(found.state.network, names, sizes)
     return [
         replace(lenses[one.name], cam_from_world=one.cam_from_world) if one.name in lenses else one
         for one in solved

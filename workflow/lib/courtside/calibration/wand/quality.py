@@ -5,10 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration import point_covariance
-from courtside.calibration.bundle.problem import IMAGE, LENS, POSE
+from courtside.calibration import vertical
 from courtside.calibration.court import place_checks
-from courtside.calibration.people import world_frame
 from courtside.calibration.wand import timing, world
 from courtside.calibration.wand.adjustment import WRONG_SIGMAS
 from courtside.calibration.wand.calibration import Found
@@ -42,27 +40,24 @@ def summary(found: Found, wand: Wand, seen: Seen, known: set[str]) -> dict[str, 
     report: dict[str, Any] = {"warnings": [], "world": found.world}
     report |= {"sigma_px": found.adjusted.sigma_px, "covariance_factor": found.adjusted.factor}
     report["length_mm"] = _length_mm(found, wand)
-    first = IMAGE * len(found.cameras)
+    sigma = found.covariance.sigma
     for c, camera in enumerate(found.cameras):
-        pose, lens = IMAGE * c + np.arange(len(POSE)), first + len(LENS) * c
-        sigma = np.sqrt(np.diag(found.covariance)[lens : lens + len(LENS)])
         one = {
             "n_frames": int(np.isfinite(seen.xy[c, ..., 0]).any(axis=1).sum()),
             "rms_px": float(np.sqrt(np.mean(off[c][fine[c]] ** 2))),
             "wrong_percent": 100 * float(wrong[c].sum() / max(int(shared[c].sum()), 1)),
-            "place_sigma_mm": 1000
-            * point_covariance.centre_sigma(camera, found.covariance[np.ix_(pose, pose)]),
+            "place_sigma_mm": 1000 * found.covariance.place_sigma_m(camera.name),
             "late_frames": float(late[c]),
         }
         if camera.name not in known:
-            one |= {"f_px": float(camera.K[1, 1]), "f_sigma_px": float(sigma[0])}
-            one |= {"k1": float(camera.dist[0]), "k1_sigma": float(sigma[LENS.index("k1")])}
+            one |= {"f_px": float(camera.K[1, 1]), "f_sigma_px": sigma(camera.name, "f_px")}
+            one |= {"k1": float(camera.dist[0]), "k1_sigma": sigma(camera.name, "k1")}
         for key, value in one.items():
             report.setdefault(key, {})[camera.name] = value
     report["warnings"] = _warnings(found, wand) + _of_cameras(found, seen, known, late, late_sigma)
     report["remarks"] = [] if found.stated else [_world(found)]
     if not found.stated:
-        report["vertical_sigma_deg"] = world_frame.vertical_sigma_deg(found.frame)
+        report["vertical_sigma_deg"] = vertical.sigma_deg(found.covariance.frame)
     return report
 
 
@@ -89,7 +84,7 @@ def _length_mm(found: Found, wand: Wand) -> dict[str, float | int]:
 
 
 def _world(found: Found) -> str:
-    vertical_deg = world_frame.vertical_sigma_deg(found.frame)
+    vertical_deg = vertical.sigma_deg(found.covariance.frame)
     return (
         "wand: the origin is the middle of the wand's path, z is up as in the pictures, within "
         f"{vertical_deg:.0f} degrees (standard deviation), and x runs from camera "

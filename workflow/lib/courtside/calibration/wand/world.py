@@ -6,8 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.calibration import robust_poses
-from courtside.calibration.people import world_frame
+from courtside.calibration import robust_poses, vertical
 from courtside.geometry import rotations, similarity
 from courtside.geometry.camera import Camera, project, undistort
 from courtside.geometry.similarity import Sim3
@@ -51,7 +50,7 @@ def of_floor(xyz: NDArray, above_m: float, cameras: Sequence[Camera]) -> Sim3:
         )
     centres = np.array([camera.centre_in_world for camera in cameras])
     up = up if np.median((centres - middle) @ up) > 0 else -up
-    turn = world_frame.axes(up, xyz[0, -1] - xyz[0, 0])
+    turn = vertical.axes(up, xyz[0, -1] - xyz[0, 0])
     origin = xyz[0, 0] - ((xyz[0, 0] - middle) @ up + above_m) * up
     return Sim3(1.0, turn, -turn @ origin)
 
@@ -62,9 +61,7 @@ def of_cameras(xyz: NDArray, cameras: Sequence[Camera]) -> Sim3:
     The origin is the middle of the wand's path, z is up as in the pictures, and x runs from the
     first camera to the second, perpendicular to z.
     """
-    up = world_frame.up_in_pictures(cameras)
-    along = cameras[1].centre_in_world - cameras[0].centre_in_world
-    turn = world_frame.axes(up, along)
+    turn = vertical.upright(cameras)
     return Sim3(1.0, turn, -np.nanmedian(xyz.reshape(-1, 3) @ turn.T, axis=0))
 
 

@@ -47,7 +47,7 @@ def trunks(cameras: Sequence[Camera], xy: Sequence[NDArray], names: Sequence[str
         # Each row of one camera with each of the other, (2, P, Q, n, 2, 2).
         first, second = _ends(xy[one][:, at], ends), _ends(xy[other][:, at], ends)
         pair = np.stack(np.broadcast_arrays(first[:, None], second[None]))
-        xyz = triangulate_all(views, pair.reshape(2, -1, 2)).reshape(*pair.shape[1:-1], 3)
+        xyz = triangulate_all(views, pair)
         seen = np.stack([project(camera, xyz) for camera in views])
         off_px = np.linalg.norm(seen - pair, axis=-1).max(axis=-1)
         size_px = np.linalg.norm(pair[..., 0, :] - pair[..., 1, :], axis=-1)

@@ -8,7 +8,8 @@ import cv2
 import numpy as np
 import pytest
 
-from courtside.calibration import chessboard, file_formats
+from courtside.calibration import file_formats
+from courtside.calibration.boards import chessboard
 from courtside.geometry import rotations
 from courtside.study.errors import InputError
 from fixtures.recordings.real_data import REAL, needs_real
@@ -113,11 +114,11 @@ def test_the_lens_is_that_of_the_boards_that_are_left(find, monkeypatch):
     boards, solved = find(), []
     many = replace(boards, paths=boards.paths * 5, xy=np.concatenate([boards.xy] * 5))
 
-    def solve(xy, _):
+    def solve(places, xy, size):
         solved.append(len(xy))
         return 0.1, K, DIST, 1.0, np.array([9.0] + [0.1] * (len(xy) - 1))
 
-    monkeypatch.setattr(chessboard, "_solve", solve)
+    monkeypatch.setattr(chessboard, "solve", solve)
     lens = chessboard.calibrate(many)
     assert len(solved) == chessboard.MAX_ROUNDS + 1
     assert lens.n_used == solved[-1] == 30 - chessboard.MAX_ROUNDS

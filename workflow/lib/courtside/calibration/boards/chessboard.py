@@ -136,10 +136,12 @@ def calibrate(boards: Boards, *, name: str = "camera") -> Lens:
     """
     paths, xy = list(boards.paths), list(boards.xy)
     dropped = dict(boards.dropped)
+    grid = _grid(boards.inner_corners)
+    board = np.column_stack([grid, np.zeros(len(grid))])
     for n_left_out in range(MAX_ROUNDS + 1):
         if len(xy) < FEWEST:
             raise InputError(_too_few(name, len(xy), dropped))
-        rms_px, matrix, dist, f_sigma_px, errors = _solve(xy, boards)
+        rms_px, matrix, dist, f_sigma_px, errors = solve([board] * len(xy), xy, boards.size)
         worst = int(np.argmax(errors))
         is_fine = errors[worst] <= max(FINE_PX, OUTLIER * np.median(errors))
         if is_fine or n_left_out == MAX_ROUNDS:
@@ -165,14 +167,19 @@ def _too_few(name: str, count: int, dropped: Mapping[Path, str]) -> str:
     )
 
 
-def _solve(xy: Sequence[NDArray], boards: Boards) -> tuple[float, NDArray, NDArray, float, NDArray]:
-    """Return rms px, K, dist, sigma of the focal length px, and each board's error px."""
-    board = np.column_stack([_grid(boards.inner_corners), np.zeros(len(xy[0]))]).astype(np.float32)
-    start = plain("", boards.size, 1.0).K.copy()  # OpenCV writes its result there
+def solve(
+    places: Sequence[NDArray], xy: Sequence[NDArray], size: tuple[int, int]
+) -> tuple[float, NDArray, NDArray, float, NDArray]:
+    """Return rms px, K, dist, sigma of the focal length px, and the error px of each view.
+
+    `places` (N, 3) are those of each view's corners on the board, z = 0, `xy` (N, 2) px where they
+    are seen.
+    """
+    start = plain("", size, 1.0).K.copy()  # OpenCV writes its result there
     rms, matrix, dist, _, _, sigma, _, errors = cv2.calibrateCameraExtended(
-        [board] * len(xy),
-        [corners.astype(np.float32) for corners in xy],
-        boards.size,
+        [each.astype(np.float32) for each in places],
+        [each.astype(np.float32) for each in xy],
+        size,
         start,
         np.zeros(5),
         flags=cv2.CALIB_USE_INTRINSIC_GUESS

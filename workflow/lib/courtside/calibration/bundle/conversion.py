@@ -1,0 +1,45 @@
+"""Cameras as a network, and images of a network as cameras."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from courtside.calibration.bundle import problem, selection
+from courtside.calibration.bundle.problem import Network
+from courtside.geometry.camera import Camera
+
+
+def network_of(known: Sequence[Camera]) -> Network:
+    """Return the network of cameras without points: the inverse of `cameras_of`."""
+    lenses = []
+    for camera in known:
+        (fx, _, cx), (_, fy, cy), _ = camera.K
+        lenses.append([fy, fx / fy, cx, cy, *camera.dist[:4]])
+    return problem.without_points(
+        np.array([camera.cam_from_world for camera in known]).reshape(-1, 3, 4),
+        np.array(lenses).reshape(-1, len(problem.LENS)),
+        [camera.size[1] for camera in known],
+    )
+
+
+def cameras_of(
+    network: Network, names: Sequence[str], sizes: Sequence[tuple[int, int]]
+) -> list[Camera]:
+    """Return the first images of a network as cameras; `sizes` are (width, height), px."""
+    found = []
+    for v, (name, size) in enumerate(zip(names, sizes, strict=True)):
+        f_px, aspect, cx_px, cy_px, *dist = network.lens[network.lens_of_image[v]]
+        K = np.array([[f_px * aspect, 0, cx_px], [0, f_px, cy_px], [0, 0, 1]])
+        found.append(Camera(name, size, K, np.array([*dist, 0.0]), network.cam_from_world[v]))
+    return found
+
+
+def fixed_cameras(
+    network: Network, fixed: Mapping[str, int], sizes: Mapping[str, tuple[int, int]]
+) -> list[Camera]:
+    """Return the fixed cameras of a network, in its frame.
+
+    `fixed` contains the index of each fixed camera's image, `sizes` the size of its pictures, px.
+    """
+    alone = selection.images_only(network, list(fixed.values()))
+    return cameras_of(alone, list(fixed), [sizes[name] for name in fixed])
