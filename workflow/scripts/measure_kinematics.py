@@ -19,8 +19,10 @@ from courtside.study.execution.script import run
 
 
 def main(paths, frames_csv, summary_csv, *, max_gap_s, stage, sex_of):
-    points = keypoints.read_3d(paths.skeletons)
-    raw = skeleton_filter.prepare(keypoints.read_3d(paths.raw), max_gap_s)
+    unused = ("covariance_camera", "outlier")  # for the memory
+    raw = keypoints.read_3d(paths.raw, left_out=(*unused, "offset"))
+    raw = skeleton_filter.prepare(raw, max_gap_s)
+    points = keypoints.read_3d(paths.skeletons, left_out=(*unused, "reproj_error_px"))
     shape, (chosen, order) = skeleton.read(paths.skeleton), cutoffs.read(paths.cutoffs)
     how = kinematics.Filter(shape.by_group(chosen), order)
     table = derived_joints.read(paths.derived)

@@ -9,7 +9,7 @@ import pytest
 
 from courtside.kinematics import filtering, measures, shared_errors, skeleton_filter
 from courtside.reconstruction import joint_correction
-from courtside.records.keypoints import derived_joints, missing_reason
+from courtside.records.keypoints import derived_joints, keypoints, missing_reason
 from fixtures.people import footwork, walker
 
 CONFIG = Path(__file__).parents[3] / "config"
@@ -199,6 +199,17 @@ def test_cameras_that_stretch_space_err_by_the_same_share_in_speed_and_distance(
             assert distance.camera_sigma_m == pytest.approx(0.01 * distance.measured_m, rel=1e-6)
     for angle in person.angles.values():
         assert angle.sigma_deg.max() < 0.01
+
+
+def test_blocks_of_frames_have_no_borders(monkeypatch):
+    time_s, xyz = circling(seconds=1)
+    xyz[20:30] = np.nan  # a whole block without anybody
+    record = footwork.record(xyz, time_s, 0.01, 0.0, np.random.default_rng(0))
+    whole = with_field(record, stretch).angles
+    monkeypatch.setattr(keypoints, "BLOCK", 5)
+    for name, angle in with_field(record, stretch).angles.items():
+        np.testing.assert_array_equal(angle.degrees, whole[name].degrees)
+        np.testing.assert_array_equal(angle.sigma_deg, whole[name].sigma_deg)
 
 
 def slow(rng, n_frames, rate_hz, sigma_m, memory_s):

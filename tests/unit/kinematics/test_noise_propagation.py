@@ -1,5 +1,7 @@
 """Gains of filters and derivatives against made-up noise, and the noise found in made-up paths."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
@@ -75,6 +77,20 @@ def test_the_derivative_of_a_wave_is_exact_where_bodies_move():
         found = noise_propagation.differentiate(np.sin(omega * t)[:, None], rate_hz)[100:-100, 0]
         assert np.abs(found - omega * np.cos(omega * t)[100:-100]).max() < error * omega
     assert np.isnan(noise_propagation.differentiate(np.zeros((2, 3)), rate_hz)).all()
+
+
+def test_many_series_have_the_derivatives_of_each_and_need_little_memory():
+    lines = np.random.default_rng(0).normal(size=(2000, 150)).cumsum(axis=0)
+    lines[700:720] = np.nan
+    noise_propagation.differentiate(lines[:, :1], 60.0)  # imports
+    tracemalloc.start()
+    found = noise_propagation.differentiate(lines, 60.0)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 3 * lines.nbytes  # a spline of all has eight times as much
+    for at in (0, 15, 16, 149):
+        alone = noise_propagation.differentiate(lines[:, at : at + 1], 60.0)[:, 0]
+        np.testing.assert_array_equal(found[:, at], alone)
 
 
 def test_a_covariance_that_changes_is_averaged_over_the_reach_of_the_filter():

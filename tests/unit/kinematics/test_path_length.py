@@ -1,5 +1,7 @@
 """Lengths of known paths, the bias that noise gives them, and how sure the corrected length is."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
@@ -40,6 +42,16 @@ def test_the_mean_length_of_random_vectors():
     draws = mean[:, None] + np.einsum("nij,nkj->nki", roots, rng.normal(size=(5, 400_000, 3)))
     simulated = np.linalg.norm(draws, axis=-1).mean(axis=1)
     np.testing.assert_allclose(path_length.mean_norm(mean, spread), simulated, rtol=3e-3)
+
+
+def test_the_mean_length_of_many_vectors_needs_little_memory():
+    """The nodes of all vectors at once are 48 times as large as these."""
+    mean, spread = np.ones((20_000, 3)), np.broadcast_to(np.eye(3), (20_000, 3, 3)).copy()
+    tracemalloc.start()
+    path_length.mean_norm(mean, spread)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 10 * spread.nbytes
 
 
 def test_the_mean_length_in_closed_form():

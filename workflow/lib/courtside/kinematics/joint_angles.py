@@ -50,6 +50,12 @@ class Angle:
     sigma_deg: NDArray
 
 
+def joined(parts: Sequence[Angle]) -> Angle:
+    """Return an angle over the frames of several parts, one after the other."""
+    each = ([getattr(part, key) for part in parts] for key in ("degrees", "sigma_deg"))
+    return Angle(*map(np.concatenate, each))
+
+
 def between(first: NDArray, middle: NDArray, last: NDArray, variance: Variance) -> Angle:
     """Return the angle, 0 to 180 degrees, at the middle one of three points (T, 3) m.
 

@@ -17,7 +17,7 @@ from courtside.kinematics.joint_angles import Angle
 from courtside.kinematics.noise_propagation import Noise
 from courtside.kinematics.path_length import Distance, Others
 from courtside.kinematics.shared_errors import Field
-from courtside.records.keypoints import derived_joints
+from courtside.records.keypoints import derived_joints, keypoints
 from courtside.records.keypoints import skeleton as limbs
 from courtside.records.keypoints.derived_joints import DerivedJoints
 from courtside.records.keypoints.keypoints import Keypoints3D
@@ -250,5 +250,9 @@ def _parts(take: _Take, weights: NDArray) -> dict[float, NDArray]:
 
 def angles(skeletons: Keypoints3D, person: int, field: Field | None = None) -> dict[str, Angle]:
     """Return the joint angles of one person, by the person's index, as `measure` states them."""
-    errors = shared_errors.of_person(skeletons, person, field)
-    return joint_angles.measure(skeletons.xyz[person], errors, skeletons.joints.tolist())
+    joints, parts = skeletons.joints.tolist(), []
+    for at in keypoints.blocks(len(skeletons.time_s)):
+        part = skeletons.frames(at)
+        errors = shared_errors.of_person(part, person, field)
+        parts.append(joint_angles.measure(part.xyz[person], errors, joints))
+    return {name: joint_angles.joined([part[name] for part in parts]) for name in parts[0]}
