@@ -1,5 +1,6 @@
 """Triangulation against exact truth, OpenCV, NumPy, statistics, and a board of known size."""
 
+import tracemalloc
 from dataclasses import replace
 
 import cv2
@@ -196,13 +197,30 @@ def test_points_behind_the_cameras_are_refused():
 
 
 @pytest.mark.parametrize("batch", [1, 7, 1000])
-def test_batches_do_not_change_the_result(batch, monkeypatch):
+@pytest.mark.parametrize(
+    ("solve", "options"),
+    [(triangulation.triangulate_robust, LIMITS), (triangulation.triangulate_plain, {})],
+)
+def test_batches_do_not_change_the_result(batch, solve, options, monkeypatch):
     views, xyz = scene.ring(4), scene.points(50)
     xy = scene.views(views, xyz) + np.random.default_rng(4).normal(0, 8, (4, 50, 2))
-    whole = triangulation.triangulate_robust(views, xy, np.ones((4, 50)), **LIMITS)
+    whole = solve(views, xy, np.ones((4, 50)), **options)
     monkeypatch.setattr(triangulation, "BATCH", batch)
-    parts = triangulation.triangulate_robust(views, xy, np.ones((4, 50)), **LIMITS)
+    parts = solve(views, xy, np.ones((4, 50)), **options)
     np.testing.assert_allclose(parts.xyz, whole.xyz, atol=1e-9)
+
+
+def test_views_without_weights_need_little_memory(monkeypatch):
+    """The equations of all points at once are ten times as large as their keypoints."""
+    monkeypatch.setattr(triangulation, "BATCH", 2000)
+    views, xyz = scene.ring(4), scene.points(50_000)
+    xy, score = scene.views(views, xyz), np.ones((4, 50_000))
+    tracemalloc.start()
+    found = triangulation.triangulate_plain(views, xy, score)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    results = sum(values.nbytes for values in vars(found).values())
+    assert peak < results + 5 * xy.nbytes
 
 
 @pytest.mark.parametrize("batch", [7, 1000])

@@ -6,7 +6,7 @@ is (C, N), the detector's confidence 0 to 1. `xyz` is (N, 3) m in the world, NaN
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -127,18 +127,10 @@ def triangulate_robust(
     _check(cameras, xy, score, min_views)
     limit_px = _by_camera(max_error_px, score)
     fading_px = None if fade_px is None else _by_camera(fade_px, score)
-    n_points = score.shape[1]
-    found = Triangulated(
-        xyz=np.empty((n_points, 3)),
-        covariance=np.empty((n_points, 3, 3)),
-        accepted=np.empty(score.shape, dtype=bool),
-        error_px=np.empty(score.shape),
-        weight=np.empty(score.shape),
-    )
-    for start in range(0, n_points, BATCH):
-        at = slice(start, start + BATCH)
+
+    def solved(at: slice) -> Triangulated:
         limit = _some(limit_px, at)
-        part = _solve(
+        return _solve(
             cameras,
             xy[:, at],
             score[:, at],
@@ -148,6 +140,22 @@ def triangulate_robust(
             fade_px=FADE * limit if fading_px is None else _some(fading_px, at),
             weak_m=np.inf if weak_m is None else weak_m,
         )
+
+    return _in_batches(score.shape, solved)
+
+
+def _in_batches(shape: tuple[int, ...], solved: Callable[[slice], Triangulated]) -> Triangulated:
+    """Triangulate the points of scores of this `shape`, (C, N), some at a time."""
+    found = Triangulated(
+        xyz=np.empty((shape[1], 3)),
+        covariance=np.empty((shape[1], 3, 3)),
+        accepted=np.empty(shape, dtype=bool),
+        error_px=np.empty(shape),
+        weight=np.empty(shape),
+    )
+    for start in range(0, shape[1], BATCH):
+        at = slice(start, start + BATCH)
+        part = solved(at)
         found.xyz[at], found.covariance[at] = part.xyz, part.covariance
         found.accepted[:, at], found.error_px[:, at] = part.accepted, part.error_px
         found.weight[:, at] = part.weight
@@ -377,6 +385,14 @@ def triangulate_plain(
     far.
     """
     _check(cameras, xy, score, min_views)
+    return _in_batches(
+        score.shape, lambda at: _plain(cameras, xy[:, at], score[:, at], min_views, min_score)
+    )
+
+
+def _plain(
+    cameras: Sequence[Camera], xy: NDArray, score: NDArray, min_views: int, min_score: float
+) -> Triangulated:
     used = np.isfinite(xy).all(axis=-1) & np.isfinite(score) & (score >= min_score) & (score > 0)
     used &= used.sum(axis=0) >= min_views
     views = Views(cameras, xy, used.astype(float))
