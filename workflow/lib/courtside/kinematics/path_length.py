@@ -35,11 +35,12 @@ def mean_norm(mean: NDArray, covariance: NDArray) -> NDArray:
     size = np.sqrt((variance + squares).sum(axis=1))
     size = np.where(size > 0, size, 1.0)
     nodes, node_weights = np.polynomial.legendre.leggauss(N_NODES)
+    variance, squares = variance / size[:, None] ** 2, squares / size[:, None] ** 2
     angle = (nodes + 1) * np.pi / 4
     left = np.empty((N_NODES, len(mean)))
     for of_node, t2 in zip(left, np.tan(angle) ** 2, strict=True):
-        spread = 1 + 2 * t2 * (variance / size[:, None] ** 2)
-        exponent = (t2 * (squares / size[:, None] ** 2) / spread).sum(axis=-1)
+        spread = 1 + 2 * t2 * variance
+        exponent = (t2 * squares / spread).sum(axis=-1)
         of_node[:] = 1 - np.exp(-exponent) / np.sqrt(spread.prod(axis=-1))
     integral = (node_weights * np.pi / 4 / np.sin(angle) ** 2) @ left
     return integral * size / np.sqrt(np.pi)
