@@ -1,5 +1,6 @@
 """Errors of kinematics: measures made from the truth itself, and with known errors."""
 
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -11,7 +12,7 @@ from courtside.evaluation import kinematics
 from courtside.records import tables
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import derived_joints
-from fixtures.people import walker
+from fixtures.people import walker, waves
 
 TABLE = derived_joints.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
 LIMBS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
@@ -151,11 +152,11 @@ def skeletons(real, sigma_m=0.01):
     """Return a perfect measurement of a truth, with a stated standard deviation per axis."""
     shape = real.xyz.shape[:-1]
     nothing = np.zeros((*shape, 3, 3))
-    return SimpleNamespace(
+    return replace(
+        waves.record(real.xyz[0]),
         joints=real.joints,
         person_id=real.person_id,
         time_s=real.time_s,
-        xyz=real.xyz.copy(),
         covariance_2d=nothing + sigma_m**2 * np.eye(3),
         covariance_camera=nothing,
         covariance_network=nothing,
@@ -185,7 +186,8 @@ def test_a_bent_elbow_measured_too_straight_has_this_bias_and_misses_its_interva
 def test_coverage_of_angles_follows_the_noise_that_was_stated():
     real = posed(60.0, seconds=60)
     measured = skeletons(real, sigma_m=0.01)
-    measured.xyz += np.random.default_rng(1).normal(0, 0.01, measured.xyz.shape)
+    noise = np.random.default_rng(1).normal(0, 0.01, measured.xyz.shape)
+    measured = replace(measured, xyz=measured.xyz + noise)
     rows = kinematics.angles(measured, real).set_index("angle")
     assert rows.loc["elbow_flexion", "within_90_percent"] == pytest.approx(90, abs=1.5)
     assert rows.loc["elbow_flexion", "sigma_deg"] == pytest.approx(
@@ -197,7 +199,7 @@ def test_angles_without_truth_are_left_out_and_missing_ones_are_counted():
     real = posed(60.0)
     measured = skeletons(real)
     measured.xyz[0, :30, JOINTS.index("left_wrist")] = np.nan
-    measured.time_s = measured.time_s + 1.0
+    measured = replace(measured, time_s=measured.time_s + 1.0)
     row = kinematics.angles(measured, real).set_index("angle").loc["left_elbow_flexion"]
     assert (row["n"], row["missing_percent"]) == (61, pytest.approx(100 * 30 / 91))
 

@@ -143,10 +143,10 @@ def test_click_errors_make_a_racket_longer_on_average():
         real,
         np.stack([xy[:2] for xy in exact.values()]),
         np.ones((2, 2)),
-        max_error_px=np.inf,
+        max_error_px=sigma_px,  # which the covariance is of; the views agree exactly
     )
     along = (ends[0, 0] - ends[0, 1]) / LENGTH_M
-    covariance = sigma_px**2 * both.covariance.sum(axis=0)
+    covariance = both.covariance.sum(axis=0)
     expected = np.trace((np.eye(3) - np.outer(along, along)) @ covariance) / (2 * LENGTH_M)
     error = np.std(off) / np.sqrt(n_frames)
     assert expected > 8 * error

@@ -22,12 +22,12 @@ def parsed_once():
 
 def study(named):
     content = yaml_files.read(CONFIG / "config.yaml")
-    content |= {"sessions": ["walk-4cams", "repeats"], "variations": []}
+    content |= {"sessions": ["walk-4cams", "players-b"], "variations": []}
     found = configuration.load(content, "config/config.yaml", CONFIG)
-    session = found.sessions["repeats"]
+    session = found.sessions["players-b"]
     step = session.parameters["detect_pose"] | {"providers": named}
     changed = replace(session, parameters=session.parameters | {"detect_pose": step})
-    return replace(found, sessions=found.sessions | {"repeats": changed})
+    return replace(found, sessions=found.sessions | {"players-b": changed})
 
 
 def test_the_default_asks_for_nothing():
@@ -39,7 +39,7 @@ def test_what_a_session_lacks_is_one_line_each():
     with pytest.raises(InputError) as caught:
         providers.check(study(["cuda", "directml", "cpu"]))
     first, second = caught.value.lines
-    assert "repeats.yaml: detect_pose.providers: expected the execution provider cuda" in first
+    assert "players-b.yaml: detect_pose.providers: expected the execution provider cuda" in first
     assert "install onnxruntime-gpu in place of onnxruntime" in first
     assert "directml" in second and "onnxruntime-directml" in second
 
@@ -47,7 +47,7 @@ def test_what_a_session_lacks_is_one_line_each():
 def test_what_the_whole_study_lacks_is_one_line():
     content = yaml_files.read(CONFIG / "config.yaml")
     content["detect_pose"]["providers"] = ["cuda", "cpu"]
-    content |= {"sessions": ["walk-4cams", "repeats"], "variations": []}
+    content |= {"sessions": ["walk-4cams", "players-b"], "variations": []}
     with pytest.raises(InputError) as caught:
         providers.check(configuration.load(content, "config/config.yaml", CONFIG))
     (line,) = caught.value.lines
