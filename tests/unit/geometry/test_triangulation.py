@@ -121,6 +121,17 @@ def test_covariance_holds_larger_errors_of_near_views():
     assert 0.88 <= np.mean(squared < 6.251) <= 0.92
 
 
+def test_a_camera_that_never_sees_a_person_takes_no_part_in_the_covariance():
+    """The limit in such a camera is unknown where it is a share of the person's height."""
+    views, xyz = scene.ring(3), scene.points(5)
+    xy, limit_px = scene.views(views, xyz), np.full((3, 5), 20.0)
+    two = triangulation.triangulate_robust(views[:2], xy[:2], np.ones((2, 5)), max_error_px=20.0)
+    xy[2], limit_px[2] = np.nan, np.nan
+    found = triangulation.triangulate_robust(views, xy, np.ones((3, 5)), max_error_px=limit_px)
+    np.testing.assert_allclose(found.covariance, two.covariance, rtol=1e-9)
+    assert np.isfinite(found.covariance).all()
+
+
 def test_missing_and_low_scores_are_not_used():
     views, xyz = scene.ring(3), scene.points(3)
     xy = scene.views(views, xyz)

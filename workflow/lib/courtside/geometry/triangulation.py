@@ -310,7 +310,8 @@ def _noise_covariance(
     _, in_cam = views.residuals(np.nan_to_num(xyz))
     weight = views.weight * accepted
     rows, weighted = views.jacobians(in_cam, weight)
-    _, noisy = views.jacobians(in_cam, weight * np.square(sigma_px))
+    # A camera that never sees a person may have no limit for it.
+    _, noisy = views.jacobians(in_cam, np.where(accepted, weight * np.square(sigma_px), 0.0))
     inverse = inverse_3x3(weighted @ rows)
     return inverse @ (noisy @ rows) @ inverse
 
