@@ -311,7 +311,8 @@ def _noise_covariance(
     weight = views.weight * accepted
     rows, weighted = views.jacobians(in_cam, weight)
     # A camera that never sees a person may have no limit for it.
-    _, noisy = views.jacobians(in_cam, np.where(accepted, weight * np.square(sigma_px), 0.0))
+    variance = np.where(accepted, weight * np.square(sigma_px), 0.0)
+    noisy = np.ascontiguousarray((rows * variance.T.repeat(2, axis=1)[..., None]).mT)
     inverse = inverse_3x3(weighted @ rows)
     return inverse @ (noisy @ rows) @ inverse
 
