@@ -189,13 +189,16 @@ def test_cameras_of_another_session_are_made_or_there(folder):
     borrowed = changed("calibration", "file", value=path)
     (line,) = faults(folder, borrowed)
     assert line.endswith(
-        f"hall.yaml: calibration.file: expected cameras that the study makes or that are there, "
-        f"found {path}, and no such session; add players-b to `sessions`, or put the files there"
+        f"hall.yaml: calibration.file: expected {path} and {path[:-12]}covariance.npz, or a "
+        "session of the study that makes them, found neither: session players-b is not one of "
+        "`sessions`; add players-b there, or put the files there"
     )
     load(folder, borrowed, sessions=["hall", "players-b"])
     other = changed("calibration", "file", value=path.replace("sfm-n40", "sfm-n12"))
     (line,) = faults(folder, other, sessions=["hall", "players-b"])
-    assert "'known18'] of it; add sfm-n12 to its `calibrations`, or put" in line
+    ways = "['sfm-n40', 'sfm-n40-lines', 'known18']"
+    assert f"found neither: session players-b has the calibrations {ways}" in line
+    assert line.endswith("; add sfm-n12 to them, or put the files there")
     made = (folder.parent / path).parent
     made.mkdir(parents=True)
     (made / "cameras.toml").touch()

@@ -145,18 +145,22 @@ def _unmade_cameras(study: Study, root: Path) -> Iterator[str]:
         file = session.calibration_file or ""
         made = session_files.MADE.fullmatch(file)
         needed = filter(None, [file, session.file_covariance])
-        if made is None or all(session_files.is_there(root / path) for path in needed):
+        missing = [path for path in needed if not session_files.is_there(root / path)]
+        if made is None or not missing:
             continue
         base = study.sessions.get(made["session"])
         ways = base.calibrations() if base else []
         if made["calibration"] in ways:
             continue
-        there = f"calibrations {ways} of it" if base else "no such session"
-        add = f"add {made['calibration']} to its `calibrations`"
-        advice = add if base else f"add {made['session']} to `sessions`"
+        if base:
+            why = f"session {base.name} has the calibrations {ways}"
+            advice = f"add {made['calibration']} to them"
+        else:
+            why = f"session {made['session']} is not one of `sessions`"
+            advice = f"add {made['session']} there"
         yield (
-            f"{session.file}: calibration.file: expected cameras that the study makes or that are "
-            f"there, found {file}, and {there}; {advice}, or put the files there"
+            f"{session.file}: calibration.file: expected {' and '.join(missing)}, or a session of "
+            f"the study that makes them, found neither: {why}; {advice}, or put the files there"
         )
 
 
