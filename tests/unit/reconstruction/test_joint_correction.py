@@ -284,9 +284,15 @@ def test_lengths_are_those_of_the_body_in_spite_of_noise_and_gaps():
     assert joint_correction.lengths(noisy[:4], ARM) == {}
 
 
+def with_own_lengths(points):
+    """Keep the limbs' lengths, which are those of the same points."""
+    limbs_m = [joint_correction.lengths(one, points.joints.tolist()) for one in points.xyz]
+    return joint_correction.keep(points, limbs_m)
+
+
 def test_an_uncertain_elbow_comes_nearer_to_the_truth_and_certain_joints_stay():
     true, noisy = arms(800, seed=2)
-    kept = joint_correction.keep(record_limb_lengths(noisy)).xyz[0]
+    kept = with_own_lengths(record_limb_lengths(noisy)).xyz[0]
     before, after = (np.linalg.norm(xyz - true, axis=2) for xyz in (noisy, kept))
     assert np.median(after[:, 1]) < 0.85 * np.median(before[:, 1])
     assert np.percentile(after[:, 1], 95) < 0.85 * np.percentile(before[:, 1], 95)
@@ -299,16 +305,14 @@ def test_only_the_joint_that_is_uncertain_moves_and_only_along_the_limb():
     stretch = np.where(np.arange(200) % 10 == 0, 1.3, 1.0)  # every tenth forearm is too long
     moved[:, 2] = true[:, 1] + stretch[:, None] * (true[:, 2] - true[:, 1])
     sigma_m = (1e-4, 1e-4, 0.5)
-    kept = joint_correction.keep(record_limb_lengths(moved, sigma_m)).xyz[0]
+    kept = with_own_lengths(record_limb_lengths(moved, sigma_m)).xyz[0]
     np.testing.assert_allclose(kept[:, :2], true[:, :2], atol=1e-5)
     np.testing.assert_allclose(kept[:, 2], true[:, 2], atol=1e-4)
 
 
 def test_a_skeleton_that_is_right_stays_as_it_is():
     true, _ = arms(50, seed=4)
-    np.testing.assert_allclose(
-        joint_correction.keep(record_limb_lengths(true)).xyz[0], true, atol=1e-9
-    )
+    np.testing.assert_allclose(with_own_lengths(record_limb_lengths(true)).xyz[0], true, atol=1e-9)
 
 
 def test_what_is_missing_stays_missing_and_holds_nothing_else_up():
@@ -316,7 +320,7 @@ def test_what_is_missing_stays_missing_and_holds_nothing_else_up():
     noisy[::2, 2] = np.nan
     points = record_limb_lengths(noisy)
     points.covariance_2d[:, 100:] = np.nan
-    kept = joint_correction.keep(points)
+    kept = with_own_lengths(points)
     np.testing.assert_array_equal(np.isnan(kept.xyz), np.isnan(points.xyz))
     np.testing.assert_array_equal(kept.covariance_2d, points.covariance_2d)
     length = np.linalg.norm(kept.xyz[0, ::2, 1] - kept.xyz[0, ::2, 0], axis=1)
@@ -325,18 +329,18 @@ def test_what_is_missing_stays_missing_and_holds_nothing_else_up():
 
 def test_limbs_that_nobody_knows_and_other_joints_stay():
     _, noisy = arms(5, seed=6)  # too few frames for a length
-    np.testing.assert_array_equal(joint_correction.keep(record_limb_lengths(noisy)).xyz[0], noisy)
+    np.testing.assert_array_equal(with_own_lengths(record_limb_lengths(noisy)).xyz[0], noisy)
     few = replace(record_limb_lengths(arms(50, seed=7)[1]), joints=np.array(["nose", *ARM[1:]]))
-    kept = joint_correction.keep(few)
+    kept = with_own_lengths(few)
     np.testing.assert_array_equal(kept.xyz, few.xyz)
 
 
 def test_the_turn_of_the_world_does_not_matter():
     _, noisy = arms(60, seed=8)
     turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-    straight = joint_correction.keep(record_limb_lengths(noisy)).xyz @ turn.T
+    straight = with_own_lengths(record_limb_lengths(noisy)).xyz @ turn.T
     np.testing.assert_allclose(
-        joint_correction.keep(record_limb_lengths(noisy @ turn.T)).xyz, straight, atol=1e-9
+        with_own_lengths(record_limb_lengths(noisy @ turn.T)).xyz, straight, atol=1e-9
     )
 
 
@@ -375,7 +379,7 @@ def test_corrected_skeletons_are_filtered_last():
     done = joint_correction.correct_then_filter(
         raw, filtered, offsets, sex_of, cutoff_hz, order, cameras=seen_by
     )
-    before = joint_correction.keep(joint_correction.correct(filtered, offsets, sex_of, seen_by))
+    before = with_own_lengths(joint_correction.correct(filtered, offsets, sex_of, seen_by))
 
     def fast(points):  # power above twice the cut-off, of the limbs' joints
         limbs = [list(points.joints).index(name) for name in JOINTS]

@@ -259,24 +259,20 @@ def lengths(xyz: NDArray, joints: Sequence[str]) -> dict[tuple[str, str], float]
     return found
 
 
-def keep(
-    points: Keypoints3D, limbs_m: Sequence[Mapping[tuple[str, str], float]] | None = None
-) -> Keypoints3D:
+def keep(points: Keypoints3D, limbs_m: Sequence[Mapping[tuple[str, str], float]]) -> Keypoints3D:
     """Move joints, as far as their uncertainty allows, so that limbs keep their length.
 
     `xyz` of shoulders, elbows, wrists, hips, knees and ankles changes; missing joints and limbs
-    without a length stay. `limbs_m` are the lengths of each person, by default `lengths` of these
-    points. In each frame the result is the most probable position of a chain's three joints given
-    their measured positions, their covariance (of keypoints and cameras) and the lengths:
-    Gauss-Newton on the squared Mahalanobis distances and the squared relative errors of length over
-    `LENGTH_SIGMA`. The covariance stays as an upper bound: the lengths come from the same joints,
-    so wrong joints give wrong lengths.
+    without a length stay. `limbs_m` are the `lengths` of each person. In each frame the result is
+    the most probable position of a chain's three joints given their measured positions, their
+    covariance (of keypoints and cameras) and the lengths: Gauss-Newton on the squared Mahalanobis
+    distances and the squared relative errors of length over `LENGTH_SIGMA`. The covariance stays as
+    an upper bound: the lengths come from the same joints, so wrong joints give wrong lengths.
     """
     joints, xyz = list(points.joints), points.xyz.copy()
     covariance = points.covariance_2d + np.nan_to_num(points.covariance_camera)
-    known_m = limbs_m or [lengths(one, joints) for one in points.xyz]
     for person, (side, chain) in product(range(len(xyz)), product(SIDES, skeleton.CHAINS)):
-        known = known_m[person]
+        known = limbs_m[person]
         names = [f"{side}_{joint}" for joint in chain]
         wanted = [known.get(pair) for pair in pairwise(chain)]
         if set(names) <= set(joints) and any(wanted):
