@@ -71,6 +71,16 @@ def test_settings_that_differ_are_named_by_rule():
     assert planned.changes(one, other) == {"draw": ["size"], "gone": ["a"]}
 
 
+def test_a_setting_without_a_value_that_is_new_is_named():
+    assert planned.changes({"fit": [{"a": 1}]}, {"fit": [{"a": 1, "b": None}]}) == {"fit": ["b"]}
+
+
+def test_other_combinations_of_the_same_values_name_all_settings():
+    one = [{"a": 1, "b": 1}, {"a": 2, "b": 2}]
+    other = [{"a": 1, "b": 2}, {"a": 2, "b": 1}]
+    assert planned.changes({"fit": one}, {"fit": other}) == {"fit": ["a", "b"]}
+
+
 def test_results_that_snakemake_has_no_records_of_are_told_in_one_line(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name in ("a.txt", "b.txt", "c.txt"):

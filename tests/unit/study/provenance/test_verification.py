@@ -102,8 +102,8 @@ def test_a_file_that_is_only_touched_changes_nothing(study):
         ("workflow/lib/courtside/style.py", "WIDTH = 2", [f"{FIGURE}: code of draw.py changed"]),
         ("workflow/lib/courtside/style.py", "WIDTH = 1  # mm", []),
         ("workflow/scripts/tabulate.py", None, [f"{ALONE}: code of tabulate.py is gone"]),
-        (FIGURE, "x", [f"{FIGURE}: was altered since it was made"]),
-        (ALONE, None, [f"{ALONE}: is gone"]),
+        (FIGURE, "x", [f"{FIGURE}: altered since it was made"]),
+        (ALONE, None, [f"{ALONE}: missing"]),
         (
             "environment.lock",
             "numpy==1\n# new\n",
@@ -214,8 +214,9 @@ def test_inputs_that_are_not_here_are_told_apart_from_those_that_changed(study, 
     assert (n_faults, n_unseen) == (0, 1)
     Path(of).write_text("x")
     lines, n_faults, n_unseen = verification.report("results/run", "results", ".")
-    assert lines[0] == f"{of}: was altered since it was made"
-    assert "1 are out of date or have none, 1 cannot be compared in full" in lines[-1]
+    assert lines[0] == f"{of}: altered since it was made"
+    verdict = "1 are missing, out of date or without a record, 1 cannot be compared in full"
+    assert verdict in lines[-1]
     assert (n_faults, n_unseen) == (1, 1)
 
 
@@ -268,7 +269,7 @@ def test_what_was_deleted_because_nobody_asks_for_it_is_no_fault(study, monkeypa
     (line,) = reported()
     assert line.startswith("1 files that the study no longer asks for were deleted: the next run")
     Path(ALONE).unlink()
-    assert reported() == [f"{ALONE}: is gone", line]
+    assert reported() == [f"{ALONE}: missing", line]
 
 
 def test_the_folder_of_the_results_is_the_present_one(study, monkeypatch):

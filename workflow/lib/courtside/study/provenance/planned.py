@@ -98,11 +98,13 @@ def changes(recorded: Settings, now: Settings) -> dict[str, list[str]]:
 
 def _differing(one: list, other: list) -> list[str]:
     keys = sorted({key for params in (*one, *other) for key in params})
-    return [key for key in keys if _values(one, key) != _values(other, key)]
+    differing = [key for key in keys if _values(one, key) != _values(other, key)]
+    return differing or keys  # the same values, in other combinations
 
 
-def _values(jobs: list, key: str) -> list[str]:
-    return sorted({json.dumps(params.get(key), sort_keys=True) for params in jobs})
+def _values(jobs: list, key: str) -> set[str | None]:
+    """Return all values of a setting, None for a job that lacks it."""
+    return {json.dumps(params[key], sort_keys=True) if key in params else None for params in jobs}
 
 
 def unseen(workflow: Any, repository: Path) -> list[str]:

@@ -90,7 +90,7 @@ def changes(sidecar: dict[str, Any], now: dict[str, Any]) -> list[str]:
     there = now["sha256"](sidecar["file"])
     reasons = []
     if there != sidecar["sha256"]:
-        reasons.append("is gone" if there is None else "was altered since it was made")
+        reasons.append("missing" if there is None else "altered since it was made")
     for kind in ("inputs", "artefacts"):
         for path, recorded in sidecar[kind].items():
             found = now["sha256"](path)
@@ -258,7 +258,7 @@ def _not_compared(
 
 
 def _verdict(n_faults: int, n_unseen: int, plan: planned.Plan) -> str:
-    parts = [f"{n_faults} are out of date or have none"] if n_faults else []
+    parts = [f"{n_faults} are missing, out of date or without a record"] if n_faults else []
     parts += [f"{n_unseen} cannot be compared in full"] if n_unseen else []
     n_left = sum(Path(name).exists() for name in plan.remains)
     text = ", ".join(parts) or "all are up to date"
