@@ -173,7 +173,9 @@ def test_what_changes_no_result_reruns_nothing(kept):
     state = video.stat()
     with changed(video, video.read_bytes() + b"\0"):
         os.utime(video, ns=(state.st_atime_ns, state.st_mtime_ns))
-        with fresh_checkout(kept), remarks_words_and_other_packages(kept), new_dates(kept):
+        with ExitStack() as changes:
+            for change in (fresh_checkout, remarks_words_and_other_packages, new_dates, new_source):
+                changes.enter_context(change(kept))
             assert planned(root=kept) == {}
         message = {
             line.split(":")[0] for line in by_file(verify(kept)) if "cam01.mp4 changed" in line
@@ -216,6 +218,17 @@ def remarks_words_and_other_packages(root):
         changed(module, module.read_bytes() + b"\n# a remark\n"),
         changed(script, script.read_bytes() + b"\n# a remark\n"),
     ):
+        yield
+
+
+@contextmanager
+def new_source(root):
+    """Fetch artefacts from elsewhere, by other code: a checksum states what they hold."""
+    config, script = root / "config/config.yaml", root / "workflow/scripts/fetch_artefact.py"
+    mirrored = config.read_text().replace("mirror_folder: null", f"mirror_folder: {root}", 1)
+    assert mirrored != config.read_text()
+    code = script.read_bytes() + b"\nOTHER = 1\n"
+    with changed(config, mirrored.encode()), changed(script, code):
         yield
 
 

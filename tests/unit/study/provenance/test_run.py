@@ -69,6 +69,11 @@ def test_a_job_becomes_plain_values():
     }
 
 
+def test_where_an_artefact_comes_from_is_no_setting_of_what_it_holds():
+    job = made_up("fetch_net", "results/external/net.tflite", pin="0f", mirror_folder="/mirror")
+    assert run.plain_job(job, Dag([job], [job]), touched=False)["params"] == {"pin": "0f"}
+
+
 def test_files_that_were_only_touched_were_not_made():
     job = made_up("all", script=None)
     found = run.plain_job(job, Dag([job], [job]), touched=True)

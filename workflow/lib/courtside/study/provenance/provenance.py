@@ -172,9 +172,7 @@ def origin(
         "artefacts": {name: sha256_of(name) for name in sorted(kept)},
         "settings": of_rules,
         "seeds": {name: sorted(values, key=str) for name, values in sorted(seeds.items())},
-        "code": dict(
-            sorted((job["script"], job["code"]) for job in upstream_jobs if job["script"])
-        ),
+        "code": dict(sorted((job["script"], job["code"]) for job in upstream_jobs if job["code"])),
     }
 
 

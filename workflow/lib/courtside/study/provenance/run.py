@@ -57,6 +57,7 @@ def record(
 def plain_job(job: Any, dag: Any, touched: bool) -> dict[str, Any]:
     """Return what `provenance.record` needs of a Snakemake job."""
     params = dict(job.params.items())
+    params.pop("mirror_folder", None)  # a checksum tells what is fetched, from wherever
     scripted = job.rule.script is not None
     return {
         "rule": job.rule.name,
