@@ -12,7 +12,7 @@ LIMITS = {"max_shift_px": 1.0, "max_zoom_percent": 0.2}
 
 @pytest.mark.parametrize("n", [*range(1, 27), 40])
 def test_the_median_is_that_of_numpy(n):
-    frames = np.random.default_rng(n).integers(0, 256, (n, 131, 20, 3), dtype=np.uint8)
+    frames = np.random.default_rng(n).integers(0, 256, (n, 131, 200, 3), dtype=np.uint8)
     expected = np.floor(np.median(frames.astype(int), axis=0) + 0.5)
     found = static_picture.temporal_median(list(frames))
     assert found.dtype == np.uint8
