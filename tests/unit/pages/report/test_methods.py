@@ -6,6 +6,7 @@ import re
 import pytest
 
 from courtside.pages.report import methods
+from courtside.study.methods import Calibration
 from fixtures.study import report_made
 
 
@@ -15,7 +16,13 @@ def study(tmp_path):
 
 
 def methods_text(study, used_hz=None):
-    return methods.paragraphs(study["parameters"], study["sessions"], used_hz or {})
+    """Return the methods; court points were clicked, and covariances known as usual, if unsaid."""
+    sessions = [
+        {"clicked": True, "has_covariance": Calibration.parse(one["calibration"]).has_covariance}
+        | one
+        for one in study["sessions"]
+    ]
+    return methods.paragraphs(study["parameters"], sessions, used_hz or {})
 
 
 def test_methods_state_the_configuration(study):

@@ -70,8 +70,7 @@ def paragraphs(
 
     `parameters` are the study's steps as configured: `match_images`, `adjust_network` ... Each of
     `sessions` has `name`, `calibration` (of its takes), `clicked` (whether court points were used
-    there; true if left out), `has_covariance` (of this calibration; if left out, as its name says),
-    `mapper`, `n_images`, `fusion`, `model`,
+    there), `has_covariance` (of this calibration), `mapper`, `n_images`, `fusion`, `model`,
     `imported` (whether another program found the joints), `virtual`, `overrides` ({step: {key:
     value}}), `takes`. `used_hz` are the cut-offs of the filter by session and take, as used.
     """
@@ -91,7 +90,7 @@ def paragraphs(
         simulated=[session["name"] for session in sessions if session["virtual"]],
         calibrations=_calibrations(sessions),
         mapped=mapped,
-        clicked=any(session["mapper"] and session.get("clicked", True) for session in sessions),
+        clicked=any(session["mapper"] and session["clicked"] for session in sessions),
         networks=networks,
         imported=[
             (name, _users(imported, "model", name)) for name in _different(imported, "model")
@@ -134,8 +133,8 @@ def _calibrations(sessions: Iterable[dict]) -> list[tuple[str, str, list[str]]]:
     found: dict[tuple[str, str], list[str]] = {}
     for session in sessions:
         if name := session["calibration"]:
-            way, clicked = Calibration.parse(name), session.get("clicked", True)
-            words = calibrated(way, clicked=clicked, has_covariance=_has_covariance(session))
+            about = {key: session[key] for key in ("clicked", "has_covariance")}
+            words = calibrated(Calibration.parse(name), **about)
             found.setdefault((name, words), []).append(session["name"])
     return [(*one, users) for one, users in found.items()]
 
@@ -148,12 +147,7 @@ def _is_uncertain(session: dict) -> bool:
     """Return whether skeletons of a session rest on cameras whose error is not known."""
     way = session["calibration"]
     measured = any(take["files"].get("pose3d") for take in session["takes"])
-    return bool(way and measured) and not _has_covariance(session)
-
-
-def _has_covariance(session: dict) -> bool:
-    """Return whether the covariance of a session's cameras is known: by default, by their name."""
-    return session.get("has_covariance", Calibration.parse(session["calibration"]).has_covariance)
+    return bool(way and measured) and not session["has_covariance"]
 
 
 def _fused(name: str) -> str:
