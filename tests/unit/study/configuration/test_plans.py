@@ -51,6 +51,7 @@ def test_a_plan_needs_no_walk(tmp_path, content):
     ("change", "message"),
     [
         (lambda c: c.pop("walk"), r"n_images: expected \[0\] without a walk, found \[0, 5, "),
+        (lambda c: c.pop("n_images"), "n_images: expected the numbers of bridging images to"),
         (
             lambda c: c["cameras"]["side"].pop("focal_px"),
             "cameras.side: expected .*focal_px or fov_deg",

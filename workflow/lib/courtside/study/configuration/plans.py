@@ -82,6 +82,11 @@ def _faults(path: StrPath, content: dict[str, Any]) -> Iterator[str]:
             f"{path}: n_images: expected [0] without a walk, found {wanted}; add `walk`, or leave "
             "`n_images` out"
         )
+    if walk is not None and "n_images" not in content:
+        yield (
+            f"{path}: n_images: expected the numbers of bridging images to compare, found none; "
+            "state them, such as [20, 40], or remove `walk`"
+        )
     low, high = (
         [pick(pair) for pair in zip(*content["hall_m"], strict=True)] for pick in (min, max)
     )
