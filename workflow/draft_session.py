@@ -51,7 +51,7 @@ def main(folder, name, court, sessions):
 def check_court(court):
     """Refuse a court of which there is no file."""
     known = ["none", *sorted(path.stem for path in COURTS.glob("*.yaml"))]
-    if court not in known:
+    if court not in (None, *known):
         raise InputError(
             f"--court: expected one of {', '.join(known)}, found {court}; correct it, or add "
             f"{shown(COURTS / f'{court}.yaml')}"
@@ -87,7 +87,7 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=" ".join(__doc__.split("\n\n")[:2]))
     parser.add_argument("folder", type=Path, help="folder of recordings, such as data/north")
     parser.add_argument("--name", help="of the session; the folder's without it")
-    parser.add_argument("--court", default="badminton", help="a file of config/courts, or none")
+    parser.add_argument("--court", help="a file of config/courts (default: badminton), or none")
     parser.add_argument("--sessions", type=Path, default=REPOSITORY / "config" / "sessions")
     given = parser.parse_args()
     try:

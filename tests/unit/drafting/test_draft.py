@@ -124,6 +124,13 @@ CALIBRATION = recording(
 )
 
 
+def test_a_court_that_is_asked_for_is_written_beside_a_calibration_file():
+    """Its painted lines check the file; nobody clicks."""
+    assert draft(*TAKE, CALIBRATION)[2]["court"] == "none"
+    content = draft(*TAKE, CALIBRATION, court="volleyball")[2]
+    assert content["court"] == "volleyball" and "court_points" not in content
+
+
 def test_keypoints_without_videos_are_a_session_that_wants_their_rate(tmp_path):
     guess, text, content = draft(*KEYPOINTS, CALIBRATION)
     folders = {name: f"data/north/pose/{name}_json" for name in ("left", "right")}

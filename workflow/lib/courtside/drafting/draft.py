@@ -23,12 +23,13 @@ SUBJECTS = (
 BOARD = "inner_corners: [7, 4], square_m: 0.06"
 
 
-def text(guess: Guess, *, title: str, folder: str, court: str = "badminton") -> str:
+def text(guess: Guess, *, title: str, folder: str, court: str | None = None) -> str:
     """Write a session's file as YAML text, every guess marked by `# guess:`.
 
     `title` is one line on the session. `folder` is that of the recordings, as paths in the file
-    begin; clicked court points are expected in it. `court` is one of config/courts, or `none`. An
-    `InputError` if there is no recording to make a session of.
+    begin; clicked court points are expected in it. `court` is one of config/courts, or `none`; by
+    default badminton where cameras are to be calibrated by it, otherwise `none`. An `InputError` if
+    there is no recording to make a session of.
     """
     if not guess.walks and not guess.takes and not guess.static:
         raise InputError(
@@ -36,12 +37,13 @@ def text(guess: Guess, *, title: str, folder: str, court: str = "badminton") -> 
             f"{_what_is_there(guess)}; put the videos of the fixed cameras and of the walk there"
         )
     measured = guess.calibration is None and bool(guess.cameras) and not unfilmed(guess)
+    court = court or ("badminton" if measured else "none")
     lines = [
         f"# Drafted from {_quoted(folder)}: check the lines with `{MARK}`; config/README.md lists "
         "all keys.",
         f"description: {_quoted(title)}  {MARK} one line for captions: the gym, the day, the "
         "layout; no names of persons, the report shows it",
-        f"court: {court if measured else 'none'}  {MARK} none, or a file of config/courts",
+        f"court: {court}  {MARK} none, or a file of config/courts",
     ]
     if guess.takes:
         lines += ["subjects:", f"  p1: {{consent: [analysis, pictures]}}  {MARK} {SUBJECTS}"]
