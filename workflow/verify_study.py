@@ -74,7 +74,10 @@ def numbers_in_short():
     try:
         n_stale = len(numbers.report(RESULTS, REPOSITORY, tables.made(REPOSITORY)))
     except (InputError, OSError):
-        return f"{numbers.REGISTER}: not compared, because it is of a full default run"
+        return (
+            f"{numbers.REGISTER}: not compared, because it is of a full default run; --numbers "
+            "says what was found"
+        )
     return f"{numbers.REGISTER}: {n_stale} numbers would change" + (
         "; --numbers lists them" if n_stale else ""
     )

@@ -27,7 +27,7 @@ def temporal_median(frames: Iterable[NDArray]) -> NDArray:
         raise ValueError(f"expected pictures of one size, found {[f.shape for f in frames]}")
     middle = (len(frames) - 1) // 2, len(frames) // 2
     exchanges = _exchanges(len(frames), middle)
-    every = [np.ascontiguousarray(frame).reshape(-1) for frame in frames]
+    every = [frame.ravel() for frame in frames]
     image = np.empty_like(every[0])
     for at in range(0, len(image), BAND):
         band = np.stack([frame[at : at + BAND] for frame in every])
