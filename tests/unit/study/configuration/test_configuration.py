@@ -260,6 +260,40 @@ def test_an_override_obeys_the_rules_of_its_step(folder, override, part):
     assert part in found[0]
 
 
+@pytest.mark.parametrize(
+    ("step", "own"),
+    [
+        ("filter_motion", {"cutoff_hz": {"arms": 12}}),
+        ("map_images", {"attempts": {"incremental": 3}}),
+        ("correct_inertial", {"sigma_m": {"depth": 0.05}}),
+        ("fit_source", {"sigma_m": {"rgb": {"wrist": 0.07}}}),
+    ],
+)
+def test_an_override_of_one_value_in_a_table_keeps_its_other_values(folder, step, own):
+    study = load(folder, SESSION | {"override": {step: own}})
+    common, ours = study.parameters[step], study.sessions["hall"].parameters[step]
+    usual = common
+    while isinstance(own, dict):
+        (key,) = own
+        assert {**ours, key: None} == {**usual, key: None}
+        own, ours, usual = own[key], ours[key], usual[key]
+    assert ours == own != usual
+    assert study.parameters[step] == yaml_files.read(CONFIG / "config.yaml")[step]
+
+
+def test_a_study_states_whole_tables(folder):
+    block = yaml_files.read(CONFIG / "config.yaml")["map_images"]
+    (line,) = faults(folder, map_images=block | {"attempts": {"global": 6}})
+    assert "config.yaml: map_images.attempts: expected the key 'incremental'" in line
+
+
+def test_an_override_of_one_value_in_a_table_is_checked(folder):
+    own = {"filter_motion": {"cutoff_hz": {"arm": 12}}}
+    (line,) = faults(folder, SESSION | {"override": own})
+    assert "override.filter_motion.cutoff_hz" in line
+    assert "did you mean 'arms'?" in line
+
+
 def test_an_override_of_all_cut_offs_is_taken(folder):
     cutoff_hz = {"head": 1, "trunk": 2, "arms": "residual", "legs": 4}
     study = load(folder, SESSION | {"override": {"filter_motion": {"cutoff_hz": cutoff_hz}}})
@@ -381,10 +415,7 @@ def test_a_fault_of_a_condition_names_key_and_value(folder, condition, parts):
         *[("match_images", "seed", v) for v in (-1, True)],
         *[("map_images", "rule", v) for v in ("odd", None)],
         *[("map_images", "seed", v) for v in (-1, 1.0)],
-        *[
-            ("map_images", "colmap", v)
-            for v in ({"global": {}}, {"global": {}, "incremental": {}, "x": {}})
-        ],
+        *[("map_images", "colmap", v) for v in ({"global": {}, "incremental": {}, "x": {}},)],
         *[("adjust_network", "min_points", v) for v in (2, "20")],
         *[("adjust_network", "tie_sigma", v) for v in (0, -1)],
         *[("adjust_network", "tie_loss", v) for v in (0,)],

@@ -113,7 +113,7 @@ def _validator(schema: str) -> Any:
 def _overridable(steps: Content) -> Content:
     """Return the schema of `override`: blocks of steps without required keys, and some lists."""
     blocks = {
-        key: {name: value for name, value in block.items() if name != "required"}
+        key: _partial(block, steps["$defs"])
         for key, block in steps["properties"].items()
         if block.get("type") == "object" and key not in OF_STUDY
     }
@@ -121,6 +121,18 @@ def _overridable(steps: Content) -> Content:
     more = ("export_stages", "take_figures")
     blocks |= {key: steps["properties"][key] for key in (*lists, *more)}
     return {"type": "object", "additionalProperties": False, "properties": blocks}
+
+
+def _partial(rules: Content, definitions: Content) -> Content:
+    """Return the rules of a table without its required keys, nor those of tables inside it."""
+    found = definitions.get(rules.get("$ref", "").rpartition("/")[2], rules)
+    if found.get("type") != "object":
+        return rules
+    optional = {key: value for key, value in found.items() if key != "required"}
+    inside = {
+        key: _partial(value, definitions) for key, value in found.get("properties", {}).items()
+    }
+    return optional | ({"properties": inside} if inside else {})
 
 
 def _lines(error: Any) -> Iterator[str]:  # of jsonschema, whose types leave all values open

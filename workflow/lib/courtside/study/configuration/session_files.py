@@ -224,12 +224,13 @@ def variations(base: Session, name: str, content: Content) -> dict[str, Session]
 
 
 def _merged(parameters: Content, override: Content) -> Content:
-    return {
-        key: {**value, **override.get(key, {})}
-        if isinstance(value, dict)
-        else override.get(key, value)
-        for key, value in parameters.items()
+    """Return `parameters` with what `override` states; tables keep what it does not name."""
+    tables = {
+        key: _merged(parameters[key], value)
+        for key, value in override.items()
+        if isinstance(value, dict) and isinstance(parameters.get(key), dict)
     }
+    return {**parameters, **override, **tables}
 
 
 def _subjects(content: Content) -> dict[str, Subject]:
