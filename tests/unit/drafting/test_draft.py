@@ -41,6 +41,7 @@ def test_a_whole_session_has_all_its_keys():
         },
         "walks": {"walk": {"video": "data/north/walk.mp4"}},
         "court_points": "data/north/court_points.csv",
+        "people": "data/north/people.csv",
         "takes": {
             "a": {"videos": {"left": "data/north/a_left.mp4", "right": "data/north/a_right.mp4"}}
         },
@@ -50,6 +51,14 @@ def test_a_whole_session_has_all_its_keys():
     assert "click them" in text
     (described,) = (line for line in text.splitlines() if line.startswith("description:"))
     assert "no names of persons, the report shows it" in described  # the folder may be called so
+
+
+def test_named_persons_are_looked_for_where_pictures_show_them():
+    _, text, content = draft(*TAKE, recording("data/north/a/who.csv", "people"))
+    assert content["people"] == "data/north/a/who.csv"
+    assert "who.csv" not in text.partition("not used")[2]
+    assert "people" not in draft(WALK)[2]
+    assert "people" not in draft(recording("data/north/mocopi.bvh", "bvh"))[2]
 
 
 def test_the_workflow_takes_a_draft(tmp_path):

@@ -70,10 +70,15 @@ def test_every_kind_is_found(gym):
     assert found["data/My Gym/cut right.mp4"].note.startswith("expected a video")
 
 
+def test_a_table_of_named_persons_is_known_by_its_columns(tmp_path):
+    (tmp_path / "who.csv").write_text("take,subject,camera,time_s,x_px,y_px,from_s,to_s\n")
+    (found,) = survey.survey(tmp_path, root=tmp_path)
+    assert (found.kind, found.note) == ("people", "")
+
+
 @pytest.mark.parametrize(
     ("columns", "key"),
     [
-        ("take,subject,camera,time_s,x_px,y_px", "people"),
         ("camera,x_px,y_px,x_m,y_m,z_m", "court_points"),
         ("picture,camera,corner,x_px,y_px", "board: corners"),
         ("camera,frame,marker,x_px,y_px", "wand: points"),

@@ -49,7 +49,7 @@ def text(guess: Guess, *, title: str, folder: str, court: str | None = None) -> 
         lines += ["subjects:", f"  p1: {{consent: [analysis, pictures]}}  {MARK} {SUBJECTS}"]
     clicked = measured and court != "none"
     lines += [*_cameras(guess), *_walks(guess), *_places(guess, folder, clicked)]
-    lines += [*_synchronised(guess), *_takes(guess)]
+    lines += [*_people(guess, folder), *_synchronised(guess), *_takes(guess)]
     lines += _override(guess)
     if measured and court == "none" and not guess.walks:
         lines += _people_alone(guess)
@@ -181,6 +181,16 @@ def _places(guess: Guess, folder: str, clicked: bool) -> list[str]:
         return []
     remark = "" if guess.court_points else "  # not there yet: click them, see config/README.md"
     return [f"court_points: {_quoted(court_points(guess, folder))}{remark}"]
+
+
+def _people(guess: Guess, folder: str) -> list[str]:
+    """Return the key of the table in which persons are named, where they can be seen."""
+    if guess.people:
+        return [f"people: {_quoted(guess.people.path)}"]
+    if all(name in unfilmed(guess) or not take for name, take in guess.takes.items()):
+        return []
+    remark = "not there yet: needed if a take shows several people, who are named on a page"
+    return [f"people: {_quoted(f'{folder}/people.csv')}  # {remark}"]
 
 
 def court_points(guess: Guess, folder: str) -> str:

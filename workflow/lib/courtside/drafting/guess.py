@@ -45,7 +45,7 @@ class Recording:
     # Folders below the one that was searched, and the name without its suffix
     parts: tuple[str, ...]
     # `video`, `photo`, `photos`, `keypoints` (a folder of JSON), `bvh`, `bag`, `depth` (a folder
-    # of plain files), `court_points`, `racket`, `calibration`, or `unusable`
+    # of plain files), `court_points`, `people`, `racket`, `calibration`, or `unusable`
     kind: str
     size: tuple[int, int] | None = None  # of its pictures, px
     rate_hz: float | None = None  # of a video
@@ -106,6 +106,7 @@ class Guess:
     numbered: list[str] = field(default_factory=list)
     serials: dict[str, str] = field(default_factory=dict)  # by camera
     court_points: Recording | None = None
+    people: Recording | None = None  # in which persons are named
     calibration: Recording | None = None
     unused: list[tuple[Recording, str]] = field(default_factory=list)  # with the reason
 
@@ -443,7 +444,7 @@ def _sort_others(found: Guess, recordings: Iterable[Recording], own: Words) -> N
     if alone:  # a session of devices
         _place_single_views(found, [r for r in recordings if r.kind in DEVICES])
     for recording in recordings:
-        if recording.kind in ("court_points", "calibration"):
+        if recording.kind in ("court_points", "people", "calibration"):
             if getattr(found, recording.kind) is None:
                 setattr(found, recording.kind, recording)
             else:

@@ -24,11 +24,11 @@ BAGS = {".bag", ".db3"}
 CALIBRATIONS = {".toml", ".txt", ".xml", ".xcp", ".mcal"}
 CLICKED = {"camera", "x_px", "y_px"}
 OTHER_TABLES = {  # by the key of a session that names them: columns beside those
-    "people": {"take", "subject", "time_s"},
     "court_points": {"x_m", "y_m", "z_m"},
     "board: corners": {"picture", "corner"},
     "wand: points": {"marker"},
 }
+PEOPLE = {*CLICKED, "take", "subject", "time_s"}
 RACKET = {"take", "camera", "frame_idx", "end"}
 EMPTY = "an empty folder; copy its recordings into it, or delete it"
 
@@ -148,8 +148,9 @@ def _table(path: Path) -> dict[str, Any] | None:
         return None
     if set(clicks.COLUMNS) <= header:
         return {"kind": "court_points"}
-    if header >= RACKET:
-        return {"kind": "racket"}
+    for kind, columns in (("racket", RACKET), ("people", PEOPLE)):
+        if header >= columns:
+            return {"kind": kind}
     for key, columns in OTHER_TABLES.items():
         if header >= CLICKED | columns:
             note = f"by its columns the table of the key `{key}`; name it there in the session"
