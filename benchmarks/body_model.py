@@ -68,8 +68,8 @@ def fitted(results, session, way, folder):
         skeleton=config / "skeletons/blazepose33.yaml",
         offsets=config / f"joint_offsets/{NETWORK}.csv",
     )
-    file = config / "sessions" / f"{session}.yaml"
-    known = yaml_files.read(file).get("subjects", {}) if file.is_file() else {}
+    session_yaml = config / "sessions" / f"{session}.yaml"
+    known = yaml_files.read(session_yaml).get("subjects", {}) if session_yaml.is_file() else {}
     paths.contacts, paths.skeletons, paths.court = folder / "contacts.npz", paths.corrected, None
     tables = [folder / f"{part}.csv" for part in ("steps", "events", "summary")]
     find_contacts.main(paths, paths.contacts, *tables)

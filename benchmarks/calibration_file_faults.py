@@ -142,8 +142,10 @@ def trial(kind, cameras, xyz, views, seed):
     spoilt, name = plant(cameras, kind, rng)
     static, people = clicked(cameras, xyz, rng), residuals.of_people(views)
     by = {"static": (static, None), "people": (None, people), "both": (static, people)}
+    unknown = np.full((len(views), len(views[0])), np.nan)  # somebody is seen whole
+    person_px = residuals.height_px(views, unknown)
     for what, data in by.items():
-        judged = verdict.judge(spoilt, verdict.Seen(*data), residuals.height_px(views))
+        judged = verdict.judge(spoilt, verdict.Seen(*data), person_px)
         yield said(kind, what, name, judged)
 
 

@@ -1,7 +1,7 @@
 """Errors of cameras calibrated from the people that they film, and nothing else.
 
     python benchmarks/people_alone.py RESULTS [--session SESSION] [--takes TAKE ...]
-        [--cameras NAME ...]
+        [--cameras NAME ...] [--development RESULTS]
 
 RESULTS are those of a run that detected poses in the takes of a virtual session. Lenses are
 unknown. Three cameras film two players, whose heights are stated to the centimetre; in other rows
@@ -11,7 +11,9 @@ projected by the true cameras and triangulated by the estimated ones. `joints`: 
 the best rigid motion. `shape`: the same after the best similarity. `scale`: error of all lengths,
 its root mean square over draws. `hold`: share of the joints inside the 90 % ellipsoids of the
 cameras' covariance, over all draws. `accepted`: views of held-out limb joints that agree with the
-others. Writes docs/numbers/people_alone.csv.
+others. With the results of the development sessions (`--development`), heights alone give the scale
+there, too: from joints as the network sees them, and without its joint offsets, as the study does.
+Writes docs/numbers/people_alone.csv.
 """
 
 import argparse
@@ -37,7 +39,7 @@ from courtside.evaluation.numbers.players import NETWORK as MODEL
 from courtside.geometry import camera as camera_models
 from courtside.geometry import similarity
 from courtside.geometry.triangulation import triangulate_all
-from courtside.reconstruction import self_calibration
+from courtside.reconstruction import joint_correction, self_calibration
 from courtside.records.keypoints import keypoints
 from courtside.records.truth import session_truth, take_truth
 from courtside.statistics import normal_errors
@@ -65,6 +67,13 @@ KNOWN = {
 }
 CLICK = {key: WEIGHTS[key] for key in ("click_sigma_px", "click_bias_px")}
 DRAWS = 20  # of the clicks
+DEVELOPMENT = (  # sessions and persons
+    ("players-dev", ("m1", "f1", "m2", "f2")),
+    ("players-dev-stands", ("m1", "f1", "m6", "f6")),
+    ("players-dev-stands", ("m2", "f2", "m7", "f7")),
+    ("players-dev-near", ("m1", "f1", "m6", "f6")),
+    ("players-dev-near", ("m7", "f7")),
+)
 EVERY = 12  # of the true frames: neighbouring ones are nearly equal
 
 
@@ -144,8 +153,8 @@ def with_lengths(found, known, heights):
     return rescaled(found, metric_scale.combined(each, covariance))
 
 
-def rows(results, name, takes, names):
-    """Yield the parts of the rows of docs/numbers/people_alone.csv."""
+def calibrated(results, name, takes, names, offsets):
+    """Return the cameras by people alone, the true ones, some true joints (N, 3), the heights."""
     session = yaml_files.read(ROOT / "config" / "sessions" / f"{name}.yaml")
     stated_takes = {take: session["takes"][take] for take in takes}
     everybody = list(session["subjects"])
@@ -155,13 +164,26 @@ def rows(results, name, takes, names):
     }
     folder = results / "virtual" / name
     real = session_truth.read(folder / "truth.npz").cameras
-    real = [camera for camera in real if camera.name in names]
-    names = [camera.name for camera in real]
+    real = [camera for camera in real if not names or camera.name in names]
     true = [take_truth.read(folder / "takes" / take / "truth.npz") for take in takes]
     xyz = np.concatenate([one.xyz[:, ::EVERY, :12].reshape(-1, 3) for one in true])
+    of_takes = partial(timed, results, name, stated_takes, [camera.name for camera in real])
+    found = self_calibration.calibrate(
+        [camera.name for camera in real], {}, of_takes, heights_m, LIMITS, offsets=offsets
+    )
+    return found, real, xyz[np.isfinite(xyz).all(axis=1)], stated_takes
+
+
+def offsets_of(model):
+    """Return the table of a network's joint offsets."""
+    return joint_correction.read(ROOT / "config" / "joint_offsets" / f"{model}.csv")
+
+
+def rows(results, name, takes, names):
+    """Yield the parts of the rows of the table `ways`."""
+    found, real, xyz, stated_takes = calibrated(results, name, takes, names, offsets_of(MODEL))
+    names = [camera.name for camera in real]
     seconds = sum(take["virtual"]["seconds"] for take in stated_takes.values())
-    of_takes = partial(timed, results, name, stated_takes, names)
-    found = self_calibration.calibrate(names, {}, of_takes, heights_m, LIMITS)
     print(found.warnings)
     for what, (places, heights) in (("heights stated", (None, True)), *KNOWN.items()):
         if places is None:
@@ -182,6 +204,23 @@ def rows(results, name, takes, names):
         yield row, "alone_accepted", f"{accepted.mean():.1f}", "%", n
 
 
+def layouts(results):
+    """Yield the rows of the table `heights-alone`, of development sessions."""
+    for session, persons in DEVELOPMENT:
+        known = yaml_files.read(ROOT / "config" / "sessions" / f"{session}.yaml")["takes"]
+        takes = [take for take, said in known.items() if set(said["subjects"]) <= set(persons)]
+        for part, offsets in (("seen", None), ("corrected", offsets_of(MODEL))):
+            found, real, xyz, _ = calibrated(results, session, takes, (), offsets)
+            joint_mm, _, scale, inside = errors(found, real, xyz)
+            printed = (
+                f"joints {joint_mm:.0f} mm, scale {scale:+.1f} % (stated "
+                f"{100 * found.scale.sigma:.1f}), hold {inside:.0f} %"
+            )
+            row = f"`{session}`, {len(real)} cameras, persons {', '.join(persons)}"
+            print(row, part, printed, flush=True)
+            yield ["heights-alone", row, part, printed, "mm", session, len(xyz), 0, *MADE]
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("results", type=Path)
@@ -189,6 +228,7 @@ if __name__ == "__main__":
     parser.add_argument("--takes", nargs="+", default=list(TAKES))
     parser.add_argument("--cameras", nargs="+", default=list(THREE))
     parser.add_argument("--model", default=MODEL)
+    parser.add_argument("--development", type=Path)
     given = parser.parse_args()
     chosen = given.session, tuple(given.cameras), tuple(given.takes), given.model
     documented = chosen == ("players-b", THREE, TAKES, MODEL)
@@ -200,4 +240,8 @@ if __name__ == "__main__":
         )
     ]
     if documented:
-        stated.write(ROOT / stated.FOLDER / "people_alone.csv", stated.joined(made))
+        path = ROOT / stated.FOLDER / "people_alone.csv"
+        others = stated.of_other_sessions(path, [given.session])
+        if given.development:
+            others = list(layouts(given.development))
+        stated.write(path, [*stated.joined(made), *others])

@@ -269,8 +269,8 @@ def walk_rows(results):
     """Yield rows of `walk-4cams`: the file as shipped, refined by one half, scored by the other."""
     session = yaml_files.read(ROOT / "config" / "sessions" / "walk-4cams.yaml")
     names = list(session["cameras"])
-    theirs = file_formats.read(results.parent / session["calibration"]["file"])
-    theirs = file_formats.rename(theirs, {name: name for name in names})
+    path = results.parent / session["calibration"]["file"]
+    theirs = file_formats.rename(path, file_formats.read(path), {name: name for name in names})
     crops = {name: (one or {}).get("crop_px") for name, one in session["cameras"].items()}
     base = [camera_models.crop(c, crops[c.name]) if crops[c.name] else c for c in theirs]
     seen = of_takes(results / "walk-4cams", ["balancing"], "file", NETWORK, names)[0]

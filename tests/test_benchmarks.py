@@ -4,9 +4,12 @@ import ast
 import importlib.util
 import inspect
 import json
+import os
+import re
 import runpy
 import shutil
 import sqlite3
+import subprocess
 import sys
 from pathlib import Path
 from types import SimpleNamespace
@@ -47,6 +50,7 @@ from courtside.study.targets import together
 from fixtures.cameras import court_cameras
 
 ROOT = Path(__file__).parents[1]
+WRONG_CALL = r"Missing positional|Unexpected keyword|Missing named|\[attr-defined\]"  # of mypy
 LOG = """Provided cores: 2
 [Sat Nov 21 16:12:02 2026]
 localrule film:
@@ -180,6 +184,17 @@ def test_what_a_benchmark_imports_is_there(path):
             assert file or elsewhere(node.module), node.module
             if file:
                 assert {one.name for one in node.names} <= defined(file), node.module
+
+
+def test_benchmarks_call_the_library_as_it_is():
+    """Only what a call lacks, or what is not there: they unpack rows and tuples of any length."""
+    command = [sys.executable, "-m", "mypy", "--config-file", "pyproject.toml", "benchmarks"]
+    path = os.pathsep.join(["workflow/lib", "benchmarks"])
+    environment = os.environ | {"MYPYPATH": path}
+    said = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True)
+    assert "checked" in said.stdout, said
+    wrong = [line for line in said.stdout.splitlines() if re.search(WRONG_CALL, line)]
+    assert wrong == []
 
 
 def test_both_models_of_structure_from_motion_are_scored_over_the_volume(tmp_path):

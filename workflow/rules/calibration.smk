@@ -245,6 +245,7 @@ rule calibrate_from_people:
     input:
         files=files_of(calibration.placing, "pose2d"),
         lens_tomls=of_job(calibration.known_lenses),
+        offsets=of_job(calibration.joint_offsets),
         static=lambda w: session_of(w).known_lengths and session_of(w).static_points or [],
     output:
         cameras_toml=paths.CAMERAS,

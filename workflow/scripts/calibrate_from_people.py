@@ -5,7 +5,7 @@ from courtside.calibration.people import from_nothing, metric_scale
 from courtside.calibration.people.views import Limits
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.geometry import camera as camera_models
-from courtside.reconstruction import self_calibration
+from courtside.reconstruction import joint_correction, self_calibration
 from courtside.records.cameras import clicks
 from courtside.records.keypoints import keypoints
 from courtside.study.execution import log
@@ -33,7 +33,8 @@ def main(
         ]
 
     limits = Limits.of(steps["views"])
-    found = self_calibration.calibrate(names, lenses, timed, heights_m, limits, known)
+    offsets = joint_correction.read(paths.offsets) if paths.offsets else None
+    found = self_calibration.calibrate(names, lenses, timed, heights_m, limits, known, offsets)
     camera_models.write_toml(cameras_toml, found.cameras, source="people alone")
     camera_covariance.write(covariance_npz, found.covariance)
     report = from_nothing.summary(found, [take["take"] for take in takes])

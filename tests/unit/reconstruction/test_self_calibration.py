@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 sys.path.append(str(Path(__file__).parents[3] / "benchmarks"))  # last: both have a `scene`
@@ -15,8 +16,8 @@ from courtside.calibration.people import metric_scale
 from courtside.calibration.people.from_nothing import Guess
 from courtside.calibration.people.views import Limits
 from courtside.geometry import camera as camera_models
-from courtside.geometry import triangulation
-from courtside.reconstruction import self_calibration
+from courtside.geometry import similarity, triangulation
+from courtside.reconstruction import joint_correction, self_calibration
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
@@ -77,12 +78,7 @@ def test_persons_are_seen_through_their_tracks():
 
 
 def test_cameras_are_guessed_from_a_take():
-    xy = tracks_made.take(CAMERAS, WALK).xy
-    views = [
-        keypoints_made.view(camera, skeleton.JOINTS, TIME_S, own)
-        for camera, own in zip(CAMERAS, xy, strict=True)
-    ]
-    take = "walk", views, dict.fromkeys(NAMES, Clock())
+    take = "walk", views_of(WALK), dict.fromkeys(NAMES, Clock())
     lenses = {camera.name: camera for camera in CAMERAS}
     found = self_calibration.guess(NAMES, lenses, [take], HEIGHTS)
     assert [camera.name for camera in found.cameras] == NAMES
@@ -91,14 +87,16 @@ def test_cameras_are_guessed_from_a_take():
         self_calibration.guess(NAMES, lenses, [filmed()], HEIGHTS)
 
 
+def views_of(xyz):
+    """Return the keypoints of joints (P, T, 12, 3) by each camera."""
+    each = zip(CAMERAS, tracks_made.take(CAMERAS, xyz).xy, strict=True)
+    return [keypoints_made.view(camera, skeleton.JOINTS, TIME_S, own) for camera, own in each]
+
+
 @pytest.fixture
 def calibrated():
     """Return a function: calibrate by one take, its clocks from one time to the next."""
-    xy = tracks_made.take(CAMERAS, WALK).xy
-    views = [
-        keypoints_made.view(camera, skeleton.JOINTS, TIME_S, own)
-        for camera, own in zip(CAMERAS, xy, strict=True)
-    ]
+    views = views_of(WALK)
     lenses, limits = {one.name: one for one in CAMERAS}, Limits(score=0.05, limit=0.05, fade=0.067)
 
     def calibrate(*clocks, heights_m=(1.6, 1.8), known=()):
@@ -147,6 +145,68 @@ def test_another_unit_is_that_of_a_calibration_with_this_length(calibrated):
     ]
     sigma = np.sqrt(np.trace(np.stack(spread), axis1=2, axis2=3))
     np.testing.assert_allclose(sigma[0], sigma[1], rtol=0.1)
+
+
+def lowered(xyz):
+    """Return joints whose shoulders are too low, and the table of offsets that puts them right."""
+    names, share = list(skeleton.JOINTS), 0.1
+    place = {
+        part: xyz[:, :, [names.index(f"{side}_{part}") for side in ("left", "right")]]
+        for part in ("shoulder", "hip")
+    }
+    trunk = place["shoulder"].mean(axis=2) - place["hip"].mean(axis=2)
+    seen = xyz.copy()
+    for side in ("left", "right"):
+        seen[:, :, names.index(f"{side}_shoulder")] -= share * trunk
+    shares = dict.fromkeys(skeleton.LIMBS, 0.0)
+    shares["shoulder"] = -share / (1 - share)  # of the trunk as seen
+    rows = [(joint, "up", own, 0.01, 100) for joint, own in shares.items()]
+    return seen, pd.DataFrame(rows, columns=joint_correction.COLUMNS)
+
+
+def test_heights_give_metres_by_bodies_without_the_offsets_of_a_network():
+    """The shoulders as seen would make the scale too large by 3 %, beside another share."""
+    seen, table = lowered(WALK)
+    of_height = {
+        share: {"walk": {f"p{at}": metric_scale.length(xyz) / share.mean for at, xyz in each}}
+        for share in (metric_scale.SEEN, metric_scale.CORRECTED)
+        for each in [list(enumerate(WALK))]
+    }
+    lenses, limits = {one.name: one for one in CAMERAS}, Limits(score=0.05, limit=0.05, fade=0.067)
+
+    def metres(share, offsets):
+        found = self_calibration.calibrate(
+            NAMES,
+            lenses,
+            lambda _: [("walk", views_of(seen), dict.fromkeys(NAMES, Clock()))],
+            of_height[share],
+            limits,
+            offsets=offsets,
+        )
+        centres = [
+            np.stack([camera.centre_in_world for camera in cameras])
+            for cameras in (found.cameras, CAMERAS)
+        ]
+        return 1 / similarity.umeyama(*centres).scale
+
+    assert metres(metric_scale.CORRECTED, table) == pytest.approx(1, abs=0.005)
+    assert metres(metric_scale.SEEN, None) > 1.025
+
+
+def test_offsets_change_the_length_of_each_track_by_their_own_factor():
+    seen, table = lowered(WALK)
+    views = views_of(seen)
+    tracks = [(0, ((0,), (1,), (0,))), (0, ((1,), (0,), (1,)))]
+    take = "walk", views, dict.fromkeys(NAMES, Clock())
+    factor = self_calibration.stretches(tracks, [take], table, CAMERAS)
+    corrected, own = (
+        np.array([metric_scale.length(one) for one in skeletons]) for skeletons in (WALK, seen)
+    )
+    np.testing.assert_allclose(factor, corrected / own, rtol=2e-3)
+    for view in views:
+        view.xy[0 if view.camera != "c1" else 1, :, list(view.joints).index("left_hip")] = np.nan
+    factor = self_calibration.stretches(tracks, [take], table, CAMERAS)
+    assert np.isnan(factor).tolist() == [True, False]
 
 
 def test_clocks_that_are_not_sure_are_refused(calibrated):

@@ -24,7 +24,7 @@ WALK = tracks_made.persons(40)
 LENSES = {camera.name: camera for camera in TRUE}
 HEIGHTS = {
     "walk": {
-        f"p{at}": metric_scale.length(xyz) / metric_scale.OF_HEIGHT for at, xyz in enumerate(WALK)
+        f"p{at}": metric_scale.length(xyz) / metric_scale.SEEN.mean for at, xyz in enumerate(WALK)
     }
 }
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from courtside.calibration.people import metric_scale, prior
-from courtside.calibration.people.metric_scale import OF_HEIGHT, Body
+from courtside.calibration.people.metric_scale import CORRECTED, SEEN, Body
 from courtside.geometry import camera as camera_models
 from courtside.geometry import triangulation
 from courtside.geometry.similarity import Sim3
@@ -24,10 +24,10 @@ N_DRAWS = 2000
 CLICK_PX = {"click_sigma_px": 2.0, "click_bias_px": 0.0}
 
 
-def body(height_m, frames=100, first=0.0, last=10.0, take=0, tracklets=()):
+def body(height_m, frames=100, first=0.0, last=10.0, take=0, tracklets=(), share=SEEN):
     """Return the body of somebody so tall."""
-    length = UNITS_PER_M * OF_HEIGHT * height_m
-    return Body(take, length, frames, first, last, frozenset(tracklets))
+    length = UNITS_PER_M * share.mean * height_m
+    return Body(take, length, frames, first, last, frozenset(tracklets), share)
 
 
 def named(heights):
@@ -49,12 +49,22 @@ def test_heights_give_metres_the_tallest_to_the_longest():
     found = metric_scale.by_heights(bodies, named(heights))
     alone = metric_scale.by_heights(bodies[2:], named([[None, 1.8], [1.5]]))
     assert found.metres == pytest.approx(2.5) == alone.metres
-    # four persons taught the share
-    least = np.hypot(metric_scale.NETWORK_SIGMA, metric_scale.OF_HEIGHT_SIGMA / 2)
+    learned = SEEN.sigma / np.sqrt(metric_scale.LEARNED_FROM)
+    least = np.hypot(metric_scale.BODIES_SIGMA, learned)
     assert least < found.sigma < alone.sigma
     assert not found.warnings and not found.remarks and not alone.warnings
     (remark,) = alone.remarks
     assert remark.startswith("only one person's height defines the scale; add a second person")
+
+
+def test_bodies_without_the_network_s_offsets_have_a_share_of_their_own():
+    heights = named([[1.8, 1.6]])
+    seen, corrected = (
+        metric_scale.by_heights([body(1.8, share=share), body(1.6, share=share)], heights)
+        for share in (SEEN, CORRECTED)
+    )
+    assert corrected.metres == pytest.approx(seen.metres)
+    assert corrected.sigma < 0.95 * seen.sigma
 
 
 def test_two_tracks_of_one_person_are_not_two_persons():
@@ -264,8 +274,9 @@ def test_a_known_length_counts_more_than_heights_and_stands_for_them():
     without = metric_scale.find(SMALL, bodies, named([[None, 1.6]]), [clicked()])
     assert (without.metres, without.by) == (pytest.approx(2.5), "left to right")
     (warning,) = metric_scale.find(SMALL, bodies, named([[1.9, 1.69]]), [clicked()]).warnings
-    assert warning.startswith("stated heights: expected a change of all lengths by 2.")
-    assert "found +4.2 %; check them against left to right" in warning
+    most = 200 * metric_scale.by_heights(bodies, named([[1.9, 1.69]])).sigma
+    assert warning.startswith(f"stated heights: expected a change of all lengths by {most:.1f} % ")
+    assert "found +4.7 %; check them against left to right" in warning
     told = metric_scale.find(SMALL, bodies, named([[1.9, 1.6]]), [clicked()]).warnings
     assert any(line.startswith("stated heights disagree by ") for line in told)
 

@@ -248,6 +248,11 @@ def test_people_alone_place_cameras_with_their_heights_and_known_lenses(job, stu
     assert one["heights_m"] == {who: session.subjects[who].height_m for who in take.subjects}
     assert [path.rpartition("/")[2] for path in one["pose2d"]] == [f"{c}.npz" for c in take.cameras]
     assert calibration.known_lenses(real) == []
+    offsets = f"{study.models[session.parameters['models'][0]].name}.csv"
+    assert calibration.joint_offsets(real) == study.folder / "joint_offsets" / offsets
+    other = {**session.parameters, "models": ["body25b"]}
+    wanting = replace(study, sessions={session.name: replace(session, parameters=other)})
+    assert calibration.joint_offsets(job(wanting, session=session.name)) == []
     assert len(calibration.known_lenses(job(**PLAIN, calibration="people"))) == sum(
         bool(camera.chessboard) for camera in study.sessions["plain-tiny"].cameras.values()
     )

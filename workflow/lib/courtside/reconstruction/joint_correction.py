@@ -126,12 +126,30 @@ def offsets(
     sexes = [(sex_of or {}).get(str(person)) for person in points.person_id]
     by_view = table["vector"].str.startswith(offset_vectors.SEEN).any()
     used = _in_order(cameras, points.cameras) if by_view else []
-    for (joint, rows), at in product(table.groupby("joint"), keypoints.blocks(len(points.time_s))):
-        for side, (person, sex) in product(SIDES, enumerate(sexes)):
-            xyz, accepted = points.xyz[person, at], points.accepted[person, at]
-            basis = offset_vectors.every(xyz, joints, side, joint, sex, used, accepted)
-            offset = sum(basis[row.vector] * row.share for row in rows.itertuples())
-            found[person, at, joints.index(f"{side}_{joint}")] = offset
+    for at, (person, sex) in product(keypoints.blocks(len(points.time_s)), enumerate(sexes)):
+        xyz, accepted = points.xyz[person, at], points.accepted[person, at]
+        found[person, at] = of_person(xyz, accepted, joints, table, used, sex)
+    return found
+
+
+def of_person(
+    xyz: NDArray,
+    accepted: NDArray,
+    joints: list[str],
+    table: pd.DataFrame,
+    cameras: Sequence[Camera],
+    sex: str | None = None,
+) -> NDArray:
+    """Return the offsets (T, J, 3) m of one person's joints `xyz` (T, J, 3), NaN where unknown.
+
+    `accepted` (T, J, C) tells which views of the C `cameras` were used. Of a person whose sex is
+    not known the offsets are the mean of both.
+    """
+    found = np.full(xyz.shape, np.nan)
+    for (joint, rows), side in product(table.groupby("joint"), SIDES):
+        basis = offset_vectors.every(xyz, joints, side, joint, sex, cameras, accepted)
+        offset = sum(basis[row.vector] * row.share for row in rows.itertuples())
+        found[:, joints.index(f"{side}_{joint}")] = offset
     return found
 
 

@@ -2,17 +2,20 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
-from courtside.calibration.people import from_nothing, relative_poses
+from courtside.calibration.people import from_nothing, metric_scale, relative_poses
 from courtside.calibration.people.metric_scale import Heights, KnownLength
 from courtside.calibration.people.relative_poses import Take
 from courtside.calibration.people.views import Limits, Seen, joined
 from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
-from courtside.reconstruction import person_height, resampling
+from courtside.geometry.triangulation import triangulate_all
+from courtside.reconstruction import joint_correction, person_height, resampling
 from courtside.records.devices import clocks as camera_clocks
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import skeleton
@@ -64,12 +67,15 @@ def calibrate(
     heights_m: Heights,
     limits: Limits,
     known: Sequence[KnownLength] = (),
+    offsets: pd.DataFrame | None = None,
 ) -> from_nothing.Found:
     """Return cameras from people alone; arguments are as for `from_nothing.guess` and `adjust`.
 
     `timed` takes cameras by name, or None, and returns the takes with clocks estimated with them.
-    If new cameras change the clocks, the cameras are adjusted again. Raises `InputError` if people
-    do not determine the cameras, or if a clock is uncertain.
+    If new cameras change the clocks, the cameras are adjusted again. `offsets` is the table of the
+    network's joint offsets (`joint_correction.read`), without which the lengths of bodies depend on
+    the directions of view. Raises `InputError` if people do not determine the cameras, or if a
+    clock is uncertain.
     """
     first, last = guess(names, lenses, timed(None), heights_m, known), list[Filmed]()
     for _ in range(ROUNDS):
@@ -79,11 +85,49 @@ def calibrate(
                 raise InputError(fault)
         if last and _apart_s(last, takes) < SAME_S:
             break
-        found = from_nothing.adjust(
-            first.cameras, lenses, seen(first, takes), first.tracks, heights_m, limits, known
-        )
+        people = seen(first, takes), first.tracks, heights_m
+        stretch = None if offsets is None else partial(stretches, first.tracks, takes, offsets)
+        found = from_nothing.adjust(first.cameras, lenses, *people, limits, known, stretch)
         first, last = replace(first, cameras=found.cameras), list(takes)
     return found
+
+
+def stretches(
+    tracks: Sequence[relative_poses.Track],
+    takes: Sequence[Filmed],
+    offsets: pd.DataFrame,
+    cameras: Sequence[Camera],
+) -> NDArray:
+    """Return for each track the length of leg and trunk without joint offsets, over that with them.
+
+    (K,), NaN where a joint that the offsets need is not seen; `cameras` are in metres.
+    """
+    found = []
+    for take, rows in tracks:
+        xy, joints = _whole(cameras, takes[take], rows)
+        xyz = triangulate_all(cameras, xy)
+        accepted = np.moveaxis(np.isfinite(xy[..., 0]), 0, -1)
+        moved = joint_correction.of_person(xyz, accepted, joints, offsets, cameras)
+        limbs = [joints.index(name) for name in skeleton.JOINTS]
+        own, corrected = (metric_scale.length(one[:, limbs]) for one in (xyz, xyz - moved))
+        found.append(corrected / own)
+    return np.array(found)
+
+
+def _whole(
+    cameras: Sequence[Camera], take: Filmed, rows: Sequence[Sequence[int]]
+) -> tuple[NDArray, list[str]]:
+    """Return all joints (C, T, J, 2) px of a track, and their names."""
+    _, views, clocks = take
+    time_s, joints = _times(views, clocks), list(views[0].joints)
+    by_name = {view.camera: view for view in views}
+    xy = np.full((len(cameras), len(time_s), len(joints), 2), np.nan)
+    for at, (camera, own) in enumerate(zip(cameras, rows, strict=True)):
+        if camera.name in by_name and own:
+            view = by_name[camera.name]
+            whole, _ = resampling.resample(view, time_s, clocks[view.camera])
+            xy[at] = relative_poses.of_rows(whole, own)
+    return xy, joints
 
 
 def _apart_s(before: Sequence[Filmed], after: Sequence[Filmed]) -> float:

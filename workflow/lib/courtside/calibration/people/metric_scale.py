@@ -21,13 +21,10 @@ from courtside.geometry.triangulation import triangulate_all
 from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
 
-# ASSUME: length of leg and trunk by BlazePose heavy with a mirrored second look, over the height:
-# 0.728, 0.727 (women), 0.714, 0.715 (men) for the persons of players-dev by their true cameras.
-# Anatomical lengths are longer (0.78, Winter 2009, fig. 4.1).
-OF_HEIGHT = 0.721
-OF_HEIGHT_SIGMA = 0.011  # between these persons, share of the length
-LEARNED_FROM = 4  # persons: the mean of so few is uncertain, too
-NETWORK_SIGMA = 0.01  # ASSUME: between networks, the same for all persons
+LEARNED_FROM = 8  # persons: the mean of so few is uncertain, too
+# ASSUME: between networks, and of real bodies: anatomical lengths are 0.77 (de Leva 1996) to 0.78
+# (Winter 2009, fig. 4.1) of the height; those of the persons below are 0.75.
+BODIES_SIGMA = 0.015
 STATED_SIGMA_M = 0.01  # of a height stated to the centimetre, with shoes or without
 MEASURED_SIGMA = 0.01  # ASSUME: of the length of one track, share
 # ASSUME: constant errors of a network bend cameras: with exact clicks, the error of a line of 6.1 m
@@ -49,6 +46,22 @@ Heights = Mapping[str, Mapping[str, float | None]]
 
 
 @dataclass(frozen=True)
+class Share:
+    """The length of leg and trunk over the height, by one kind of joints."""
+
+    mean: float
+    sigma: float  # between persons and directions of view, share of the length
+
+
+# ASSUME: by BlazePose heavy with a mirrored second look, for the persons of players-dev,
+# players-dev-stands and players-dev-near: joints as the network sees them, and less its offsets.
+# A network's offsets depend on the direction of view: 0.727, 0.748 and 0.750 in these sessions by
+# their true cameras, without the offsets 0.752, 0.757 and 0.756 (0.747 to 0.757 by people alone).
+SEEN = Share(0.743, 0.015)
+CORRECTED = Share(0.753, 0.008)
+
+
+@dataclass(frozen=True)
 class Body:
     """The body of one track."""
 
@@ -58,6 +71,7 @@ class Body:
     first: float  # time of the first joint in the take
     last: float  # time of the last joint
     tracklets: frozenset[tuple[int, int]] = frozenset()  # camera and row of those that it joins
+    share: Share = SEEN  # of the length in the height
 
 
 @dataclass(frozen=True)
@@ -263,9 +277,10 @@ def by_heights(bodies: Sequence[Body], heights_m: Heights) -> Scale:
     cost, scale, ratios = min(found, key=lambda one: one[0])
     stated = [list(own.values()) for own in heights_m.values()]
     persons = sum(max(own.count(height) for own in stated) for height in ratios)
-    of_height = np.hypot(OF_HEIGHT_SIGMA, STATED_SIGMA_M / min(ratios))
-    learned = OF_HEIGHT_SIGMA / np.sqrt(LEARNED_FROM)
-    sigma = float(np.linalg.norm([of_height / np.sqrt(persons), learned, NETWORK_SIGMA]))
+    share_sigma = max(one.share.sigma for one in bodies)
+    of_height = np.hypot(share_sigma, STATED_SIGMA_M / min(ratios))
+    learned = share_sigma / np.sqrt(LEARNED_FROM)
+    sigma = float(np.linalg.norm([of_height / np.sqrt(persons), learned, BODIES_SIGMA]))
     rivals = [np.expm1(one[1] - scale) for one in found if one[0] < cost + SURE**2]
     warnings = [*_rivals(rivals, sigma), *_disagreeing(ratios, SURE * np.sqrt(2) * of_height)]
     remarks = (ONE_HEIGHT,) if persons == 1 else ()
@@ -277,17 +292,18 @@ class _Assignments:
     """All W assignments of the B tracks of a take to its persons."""
 
     height_m: NDArray  # (W, B): of the person of each track; NaN for no person
-    length: NDArray  # (B,)
+    stature: NDArray  # (B,): height by the length of the body, in its unit
+    share_sigma: NDArray  # (B,): of the share of this length
     weight: NDArray  # (B,): share of the frames
     n_unseen: NDArray  # (W,): stated persons without a track
 
     def ratio(self) -> NDArray:
         """Return the logarithm (W, B) of metres per unit by each track."""
-        return np.log(OF_HEIGHT * self.height_m / self.length)
+        return np.log(self.height_m / self.stature)
 
     def best(self, scale: float) -> tuple[float, NDArray, NDArray]:
         """Return the best assignment: its cost, in variances, heights and ratios (B,)."""
-        own = np.hypot(OF_HEIGHT_SIGMA, STATED_SIGMA_M / self.height_m)
+        own = np.hypot(self.share_sigma, STATED_SIGMA_M / self.height_m)
         off = (self.ratio() - scale) / np.hypot(own, MEASURED_SIGMA)
         cost = np.nan_to_num(off**2, nan=NOBODY**2) @ self.weight + NOBODY**2 * self.n_unseen
         at = int(cost.argmin())
@@ -323,12 +339,14 @@ def _assignments(bodies: Sequence[Body], stated: Iterable[float | None]) -> _Ass
         return None
     most = int(np.log(MOST_WAYS) / np.log(len(heights) + 1))
     known = known[: max(len(heights), most)]
-    length = np.array([one.length for one in known])
+    stature = np.array([one.length / one.share.mean for one in known])
+    share_sigma = np.array([one.share.sigma for one in known])
     weight = np.array([one.frames for one in known], dtype=float)
     weight *= len(heights) / weight[: len(heights)].sum()
     if len(heights) > MOST_PERSONS:
-        order = np.argsort(np.argsort(length))
-        return _Assignments(np.sort(heights)[order][None], length, weight, np.zeros(1))
+        order = np.argsort(np.argsort(stature))
+        ordered = np.sort(heights)[order][None]
+        return _Assignments(ordered, stature, share_sigma, weight, np.zeros(1))
     every = np.array(list(product(range(len(heights) + 1), repeat=len(known))))
     fine = (every < len(heights)).any(axis=1)
     for (a, one), (b, other) in combinations(enumerate(known), 2):
@@ -337,7 +355,9 @@ def _assignments(bodies: Sequence[Body], stated: Iterable[float | None]) -> _Ass
             fine &= (every[:, a] != every[:, b]) | (every[:, a] == len(heights))
     seen = np.sum([(every[fine] == who).any(axis=1) for who in range(len(heights))], axis=0)
     whose = np.append(heights, np.nan)[every[fine]]
-    return _Assignments(whose, length, weight, len(heights) - seen) if len(whose) else None
+    if not len(whose):
+        return None
+    return _Assignments(whose, stature, share_sigma, weight, len(heights) - seen)
 
 
 def _converged(

@@ -63,7 +63,7 @@ def floor(xyz: NDArray, cameras: Sequence[Camera], on_floor: NDArray | None = No
     up = rotations.unit(turn.T @ normal)
     sole = (
         float(offset / np.linalg.norm(normal))
-        - ANKLE * metric_scale.length(xyz) / metric_scale.OF_HEIGHT
+        - ANKLE * metric_scale.length(xyz) / metric_scale.SEEN.mean
     )
     if on_floor is not None and len(on_floor):
         about = on_floor - on_floor.mean(axis=0)

@@ -154,6 +154,12 @@ SHOWN = {
         "walk, 18 clicks, lines": "{both}",
         "true cameras": "{true}",
     },
+    "heights-alone": {
+        "people alone, heights stated: development sessions": "{row}",
+        "lengths of joints as seen": "{seen}",
+        "without the joint offsets (used)": "{corrected}",
+        **made("corrected"),
+    },
     "refined-people": {
         "cameras": "{row}",
         "before": "{before}",

@@ -101,6 +101,12 @@ def placing(job: Job) -> list[dict[str, Any]]:
     return found
 
 
+def joint_offsets(job: Job) -> Path | list:
+    """Return the joint offsets of the network whose keypoints place cameras, where it has some."""
+    model = {"model": job.session.parameters["models"][0]}
+    return takes.known_of_network(Job(job.study, {**job.wildcards, **model}), paths.OFFSETS_CSV)
+
+
 def known_lenses(job: Job) -> list[str]:
     """Return the lenses of the cameras that have pictures of a chessboard."""
     own = [name for name, camera in job.session.cameras.items() if camera.chessboard]
