@@ -1,6 +1,6 @@
 """All ways to calibrate, each alone and refined by people, against truth and on real footage.
 
-    python benchmarks/ways_to_calibrate.py RESULTS --charuco FOLDER [--halls RESULTS] [--seeds 8]
+    python benchmarks/ways_to_calibrate.py RESULTS --charuco FOLDER [--halls RESULTS] [--seeds 30]
 
 RESULTS are those of a default run. The virtual session `players-b` is calibrated by its walk and
 clicks, clicks alone, its court lines, a board, and as a file with errors, in as many draws: of
@@ -335,7 +335,7 @@ if __name__ == "__main__":
     parser.add_argument("results", type=Path)
     parser.add_argument("--charuco", type=Path, required=True)
     parser.add_argument("--halls", type=Path)
-    parser.add_argument("--seeds", type=int, default=8)
+    parser.add_argument("--seeds", type=int, default=30)
     given = parser.parse_args()
     made = list(rows(given.results, given.halls, given.charuco, given.seeds))
     path = ROOT / stated.FOLDER / "ways_to_calibrate.csv"

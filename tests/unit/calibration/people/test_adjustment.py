@@ -11,7 +11,7 @@ from courtside.calibration.bundle import conversion
 from courtside.calibration.court.court import read
 from courtside.calibration.people import adjustment, prior
 from courtside.calibration.people.adjustment import Clicks
-from courtside.calibration.people.views import Limits
+from courtside.calibration.people.views import Limits, joined
 from courtside.geometry import camera as cameras
 from courtside.geometry.similarity import umeyama
 from courtside.geometry.triangulation import triangulate_all
@@ -124,6 +124,20 @@ def test_views_that_err_alike_count_less():
     shifted = replace(seen, xy=seen.xy + 0.01 * seen.height_px[:, :, None, None] * shift)
     found = adjustment.refine(base, shifted, prior.knowledge(base, KNOWN), LIMITS)
     assert found.alike > 8
+
+
+def test_more_persons_whose_joints_err_alike_make_no_joint_more_certain():
+    """A network errs alike of all persons: their errors do not average out."""
+    base, shift = walkers.disturbed(TRUE, KNOWN, 0), np.random.default_rng(5)
+    shift = 0.01 * shift.normal(size=(4, 1, 10, 2))
+    parts = [walkers.seen(TRUE, WALK[at : at + 24], seed=at) for at in (0, 24)]
+    parts = [replace(part, xy=part.xy + part.height_px[..., None, None] * shift) for part in parts]
+    one, two = (
+        adjustment.refine(base, seen, prior.knowledge(base, KNOWN), LIMITS)
+        for seen in (parts[0], joined(parts))
+    )
+    assert two.alike > 1.5 * one.alike
+    assert spread(two) > 0.8 * spread(one)
 
 
 def test_k3_of_a_lens_is_kept_and_heeded():

@@ -85,7 +85,7 @@ class Refined:
     cameras: list[Camera]
     covariance: NDArray  # (K, K): of the columns of the cameras' network, flex included
     sigma_share: NDArray  # (J,): of a joint with score 1, per axis, in heights of the person
-    alike: float  # how many views of a joint, in a row, count as one: they err alike
+    alike: float  # how many views of a joint by one camera count as one: they err alike
 
 
 def refine(
@@ -99,8 +99,8 @@ def refine(
 
     Graduated as in `triangulate_robust`: views within wide limits are chosen and weighted, cameras
     and joints adjusted with a Cauchy loss as wide, then the limits narrow. A joint's scatter is
-    measured from its residuals; views of one joint by one camera err alike for a while, and what
-    their sums show (`_alike`) widens all of them.
+    measured from its residuals; views of one joint by one camera err alike, and what their sums
+    show (`_alike`) widens all of them.
     """
     names, sizes = [c.name for c in cameras], [c.size for c in cameras]
     found = [_without_k3(camera) for camera in cameras]
@@ -156,7 +156,7 @@ def _network(
 ) -> tuple[Network, NDArray, NDArray]:
     """Return joints seen by two cameras or more, sigma by joint (J,), and each view's cell (M,).
 
-    A cell is one joint of one track in one camera.
+    A cell is one joint in one camera, of all persons and takes.
     """
     points = placed(cameras, seen, limits.times(widened))
     xy, score, height_px = seen.flat()
@@ -168,8 +168,8 @@ def _network(
     )
     unit_px = height_px[image_idx, at] / np.sqrt(score[image_idx, at])
     sigma_share = _sigma_share(points, score, height_px, n_joints)
-    joint, track = at % n_joints, seen.track[at // n_joints]
-    cells = (track * n_joints + joint) * len(cameras) + image_idx
+    joint = at % n_joints
+    cells = joint * len(cameras) + image_idx
     return replace(network, sigma_px=unit_px * sigma_share[joint]), sigma_share, cells
 
 
@@ -188,8 +188,10 @@ def _sigma_share(points, score, height_px, n_joints) -> NDArray:
 def _alike(network: Network, cells: NDArray) -> float:
     """Return how many times the variance of sums over cells is that of independent residuals.
 
-    At least 1. A camera that sees a knee 1 cm too low sees it so for a whole stride: its views are
-    not independent, and a covariance that takes them so is too small.
+    At least 1. A camera that sees a knee 1 cm too low sees it so for a whole stride, and nearly so
+    of other persons: its views are not independent, and a covariance that takes them so is too
+    small. With a cell for each track, 90 % ellipsoids of development sessions with 8 to 16 tracks
+    held 0 to 3 % of the joints; with cells of all tracks they hold 96 to 100 %.
     """
     scaled = problem.residuals(network) / network.sigma_px
     weight = 1 / (1 + (scaled**2).sum(axis=1) / LOSS**2)

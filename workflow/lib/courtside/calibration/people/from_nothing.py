@@ -47,9 +47,6 @@ MOST_ROWS = 480  # frames of all persons together; more frames add little
 MOST_FRAMES = 200  # of one take in the comparison of initial cameras
 MOST_PLACES = 200  # joints that define the world frame of the covariance
 STILL = 0.15  # ASSUME: a person with a shorter path over the own extent does not move
-# Constant errors of a network bend cameras, and residuals do not show it. In five calibrations from
-# development sessions the squared errors of shape were 0.8 to 2.9 times as large as stated.
-BENT = 1.5  # factor on the covariance: with it, 90 % ellipsoids held 91 % of these joints
 LEAST_ACCEPTED = 50.0  # ASSUME: percent of a camera's views, for a usable camera
 
 
@@ -228,7 +225,7 @@ def adjust(
     apart = world_frame.halves_apart(joints, cameras, half, on_floor)
     found = [*scale.warnings, *warnings.find(cameras, seen, joints, score, limits, apart)]
     places = _places(joints)
-    covariance = world_frame.of_shape(cameras, BENT * fitted.covariance, places, scale.sigma)
+    covariance = world_frame.of_shape(cameras, fitted.covariance, places, scale.sigma)
     frame, names = world_frame.frame_error(joints, apart, on_floor), [c.name for c in cameras]
     named = camera_covariance.of_network(names, covariance, frame)
     return Found(cameras, named, score, scale, found, places)

@@ -17,8 +17,8 @@ from courtside.geometry.camera import Camera, in_other_picture
 
 NAMED = 3.0  # stated standard deviations by which a number must change to be called wrong
 LENS = ("f_px", "cx_px", "cy_px", "k1")
-# ASSUME: rows of a track, divided by how many in a row err alike. With 2.5 (a person on a treadmill
-# for a second) held-out joints were better and points at rest worse; with 7 both were better.
+# ASSUME: rows of all tracks, divided by how many err alike. With 2.5 (a person on a treadmill for a
+# second) held-out joints were better and points at rest worse; with 7 both were better.
 FEWEST_DIFFERENT = 4.0
 # ASSUME: of how far held-out joints disagree. A network errs alike in all blocks: on development
 # takes, cameras that fitted its errors were better by 1 to 2 %, and worse over the volume.
@@ -148,8 +148,7 @@ def _mended(cameras, calibrated, seen: Seen, found_again) -> tuple[list[str], li
 
 def _alone(seen: Seen, alike: float, gain: float) -> dict[str, str]:
     """Return why joints alone say too little: the network's own errors last through all blocks."""
-    track = seen.thinned().track
-    n_rows = len(track) / len(np.unique(track))
+    n_rows = len(seen.thinned().track)
     advice, found = "click points at rest", {}
     if n_rows < FEWEST_DIFFERENT * alike:
         found["variety of what people do"] = f"not better ({advice})"
