@@ -48,7 +48,8 @@ from courtside.synchronisation import cameras as camera_sync
 
 TAKES = "footwork", "crossing"
 THREE = ("oblique", "mirror", "front")  # not on one line
-MADE = "benchmark", "`python benchmarks/people_alone.py RESULTS`"
+COMMAND = "python benchmarks/people_alone.py RESULTS"
+MADE = "benchmark", f"`{COMMAND}`"
 # Places of a racket (top, butt), m: on the floor, then held by somebody who stands still.
 RACKETS = np.array([
     [[3.674, 4.0, 0.0], [3.0, 4.0, 0.0]],
@@ -66,6 +67,7 @@ KNOWN = {
     "a racket clicked at five places, heights stated": (RACKETS, True),
 }
 CLICK = {key: WEIGHTS[key] for key in ("click_sigma_px", "click_bias_px")}
+DEVELOPED = "benchmark", f"`{COMMAND} --development RESULTS`"
 DRAWS = 20  # of the clicks
 DEVELOPMENT = (  # sessions and persons
     ("players-dev", ("m1", "f1", "m2", "f2")),
@@ -154,7 +156,7 @@ def with_lengths(found, known, heights):
 
 
 def calibrated(results, name, takes, names, offsets):
-    """Return the cameras by people alone, the true ones, some true joints (N, 3), the heights."""
+    """Return the cameras by people alone, the true ones, some true joints (N, 3), the takes."""
     session = yaml_files.read(ROOT / "config" / "sessions" / f"{name}.yaml")
     stated_takes = {take: session["takes"][take] for take in takes}
     everybody = list(session["subjects"])
@@ -218,7 +220,7 @@ def layouts(results):
             )
             row = f"`{session}`, {len(real)} cameras, persons {', '.join(persons)}"
             print(row, part, printed, flush=True)
-            yield ["heights-alone", row, part, printed, "mm", session, len(xyz), 0, *MADE]
+            yield ["heights-alone", row, part, printed, "mm", session, len(xyz), 0, *DEVELOPED]
 
 
 if __name__ == "__main__":

@@ -281,10 +281,11 @@ def test_an_override_of_one_value_in_a_table_keeps_its_other_values(folder, step
     assert study.parameters[step] == yaml_files.read(CONFIG / "config.yaml")[step]
 
 
-def test_a_study_states_whole_tables(folder):
+@pytest.mark.parametrize(("key", "value"), [("attempts", 6), ("colmap", {})])
+def test_a_study_states_whole_tables(folder, key, value):
     block = yaml_files.read(CONFIG / "config.yaml")["map_images"]
-    (line,) = faults(folder, map_images=block | {"attempts": {"global": 6}})
-    assert "config.yaml: map_images.attempts: expected the key 'incremental'" in line
+    (line,) = faults(folder, map_images=block | {key: {"global": value}})
+    assert line.startswith(f"config/config.yaml: map_images.{key}: expected the key 'incremental'")
 
 
 def test_an_override_of_one_value_in_a_table_is_checked(folder):

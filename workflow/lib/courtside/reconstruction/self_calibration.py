@@ -49,11 +49,7 @@ def seen(first: from_nothing.Guess, takes: Sequence[Filmed]) -> Seen:
     parts = []
     for take, rows in first.tracks:
         time_s, by_camera = resampled[take]
-        shape = (len(cameras), len(time_s), len(skeleton.JOINTS))
-        xy, score = np.full((*shape, 2), np.nan), np.full(shape, np.nan)
-        for at, (own, view) in enumerate(zip(rows, by_camera, strict=True)):
-            if view is not None:
-                xy[at], score[at] = (relative_poses.of_rows(values, own) for values in view)
+        xy, score = _of_track(by_camera, rows, len(time_s), len(skeleton.JOINTS))
         height_px = person_height.in_pictures(cameras, xy[:, None], score[:, None], skeleton.JOINTS)
         track = np.zeros(len(time_s), dtype=int)
         parts.append(Seen(xy, score, height_px[:, 0], track, time_s))
@@ -102,9 +98,15 @@ def stretches(
 
     (K,), NaN where a joint that the offsets need is not seen; `cameras` are in metres.
     """
+    every = [list(views[0].joints) for _, views, _ in takes]
+    resampled = [
+        _by_camera(cameras, views, clocks, joints)
+        for (_, views, clocks), joints in zip(takes, every, strict=True)
+    ]
     found = []
     for take, rows in tracks:
-        xy, joints = _whole(cameras, takes[take], rows)
+        (time_s, by_camera), joints = resampled[take], every[take]
+        xy, _ = _of_track(by_camera, rows, len(time_s), len(joints))
         xyz = triangulate_all(cameras, xy)
         accepted = np.moveaxis(np.isfinite(xy[..., 0]), 0, -1)
         moved = joint_correction.of_person(xyz, accepted, joints, offsets, cameras)
@@ -114,20 +116,19 @@ def stretches(
     return np.array(found)
 
 
-def _whole(
-    cameras: Sequence[Camera], take: Filmed, rows: Sequence[Sequence[int]]
-) -> tuple[NDArray, list[str]]:
-    """Return all joints (C, T, J, 2) px of a track, and their names."""
-    _, views, clocks = take
-    time_s, joints = _times(views, clocks), list(views[0].joints)
-    by_name = {view.camera: view for view in views}
-    xy = np.full((len(cameras), len(time_s), len(joints), 2), np.nan)
-    for at, (camera, own) in enumerate(zip(cameras, rows, strict=True)):
-        if camera.name in by_name and own:
-            view = by_name[camera.name]
-            whole, _ = resampling.resample(view, time_s, clocks[view.camera])
-            xy[at] = relative_poses.of_rows(whole, own)
-    return xy, joints
+def _of_track(
+    by_camera: Sequence[tuple[NDArray, NDArray] | None],
+    rows: Sequence[Sequence[int]],
+    n_times: int,
+    n_joints: int,
+) -> tuple[NDArray, NDArray]:
+    """Return a track's xy (C, T, J, 2) px and score (C, T, J), NaN where no camera films it."""
+    shape = (len(by_camera), n_times, n_joints)
+    xy, score = np.full((*shape, 2), np.nan), np.full(shape, np.nan)
+    for at, (own, view) in enumerate(zip(rows, by_camera, strict=True)):
+        if view is not None:
+            xy[at], score[at] = (relative_poses.of_rows(values, own) for values in view)
+    return xy, score
 
 
 def _apart_s(before: Sequence[Filmed], after: Sequence[Filmed]) -> float:
@@ -180,17 +181,22 @@ def _times(views: Sequence[Keypoints2D], clocks: Mapping[str, Clock]) -> NDArray
 
 
 def _resampled(
-    view: Keypoints2D, time_s: NDArray, clocks: Mapping[str, Clock]
+    view: Keypoints2D,
+    time_s: NDArray,
+    clocks: Mapping[str, Clock],
+    joints: Sequence[str] = skeleton.JOINTS,
 ) -> tuple[NDArray, NDArray]:
-    """Return a view's limb joints: xy (R, T, J, 2) and score (R, T, J)."""
-    joints = [list(view.joints).index(name) for name in skeleton.JOINTS]
+    """Return a view's named joints: xy (R, T, J, 2) and score (R, T, J)."""
+    at = [list(view.joints).index(name) for name in joints]
     xy, score = resampling.resample(view, time_s, clocks[view.camera])
-    return xy[:, :, joints], score[:, :, joints]
+    return xy[:, :, at], score[:, :, at]
 
 
-def _by_camera(cameras: Sequence[Camera], views, clocks):
+def _by_camera(
+    cameras: Sequence[Camera], views, clocks, joints: Sequence[str] = skeleton.JOINTS
+) -> tuple[NDArray, list[tuple[NDArray, NDArray] | None]]:
     time_s, found = _times(views, clocks), {view.camera: view for view in views}
     return time_s, [
-        _resampled(found[camera.name], time_s, clocks) if camera.name in found else None
+        _resampled(found[camera.name], time_s, clocks, joints) if camera.name in found else None
         for camera in cameras
     ]
