@@ -67,7 +67,7 @@ SHOWN = {
     "calibration-ways": {
         "way; session": "{row}",
         "trial RMS, median / 95 %": "{median} / {p95}",
-        "95 % of points, median trial": "{points}",
+        "95 % of points, median over trials": "{points}",
         "X_o, Y_o on the floor, median": "{xy}",
         "trials, failed": "{median.n}, {median.n_failed}",
     },
@@ -164,7 +164,9 @@ SHOWN = {
     "body-model": {
         "measure, takes": "{row}",
         **{
-            f"{stage}: median take, worst": f"{{{stage}_median}}, {{{stage}_worst}}"
+            f"{stage}: median take, 95 % of takes (shares: lowest)": (
+                f"{{{stage}_median}}, {{{stage}_worst}}"
+            )
             for stage in ("corrected", "model")
         },
         "takes": "{model_median.n}",
