@@ -26,7 +26,7 @@ import numpy as np
 import scipy
 
 import stated
-from people_seen import CONFIG, LIMITS, WEIGHTS
+from people_seen import CONFIG, LIMITS, WEIGHTS, offsets_of
 from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
@@ -39,7 +39,7 @@ from courtside.evaluation.numbers.players import NETWORK as MODEL
 from courtside.geometry import camera as camera_models
 from courtside.geometry import similarity
 from courtside.geometry.triangulation import triangulate_all
-from courtside.reconstruction import joint_correction, self_calibration
+from courtside.reconstruction import self_calibration
 from courtside.records.keypoints import keypoints
 from courtside.records.truth import session_truth, take_truth
 from courtside.statistics import normal_errors
@@ -174,11 +174,6 @@ def calibrated(results, name, takes, names, offsets):
         [camera.name for camera in real], {}, of_takes, heights_m, LIMITS, offsets=offsets
     )
     return found, real, xyz[np.isfinite(xyz).all(axis=1)], stated_takes
-
-
-def offsets_of(model):
-    """Return the table of a network's joint offsets."""
-    return joint_correction.read(ROOT / "config" / "joint_offsets" / f"{model}.csv")
 
 
 def rows(results, name, takes, names):

@@ -14,7 +14,7 @@ Court lines are compared with 18 clicks in `LINES` and, with `--halls`, in the s
 `other_halls.py`; cameras whose court is not found are clicked in both. Of `walk-4cams` the file as
 shipped is refined by the first half of the take and scored by the second. FOLDER has caliscope's
 recording of a ChArUco board (`camera_array.toml`, `calibration/extrinsic/xy.csv`). Writes
-docs/numbers/ways_to_calibrate.csv; the rows of `hall-markers` are of `hall_markers.py`, in its own file.
+docs/numbers/ways_to_calibrate.csv; `hall_markers.py` writes the rows of its own recording.
 """
 
 import argparse

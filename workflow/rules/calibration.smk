@@ -289,6 +289,7 @@ rule refine_cameras:
         court=of_job(Job.court_file),
         static=lambda w: session_of(w).static_points or [],
         skeleton=of_job(takes.first_skeleton),
+        offsets=of_job(calibration.joint_offsets),
         seen=files_of(calibration.refining, "pose2d", "sync", "people"),
     output:
         cameras_toml=paths.CAMERAS,

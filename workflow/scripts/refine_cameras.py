@@ -10,7 +10,7 @@ from courtside.calibration.people.held_out import Points
 from courtside.calibration.people.views import Limits
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.geometry import camera as camera_models
-from courtside.reconstruction import lost_cameras
+from courtside.reconstruction import joint_correction, lost_cameras
 from courtside.records import tables
 from courtside.records.cameras import clicks, footage, knock_table
 from courtside.records.devices import clocks
@@ -65,7 +65,9 @@ def people_of(paths, base, takes, limits):
         for take in takes
     }
     court = court_files.read(paths.court) if paths.court else None
-    return lost_cameras.recover(base, filmed, limits, skeleton.read(paths.skeleton), court)
+    offsets = joint_correction.read(paths.offsets) if paths.offsets else None
+    joints = skeleton.read(paths.skeleton)
+    return lost_cameras.recover(base, filmed, limits, joints, court, offsets)
 
 
 def expected_cm(court_yaml, cameras, covariance):

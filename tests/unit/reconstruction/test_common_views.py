@@ -8,17 +8,25 @@ from courtside.records.devices import clocks as sync
 from courtside.records.keypoints import keypoints, people, skeleton
 from fixtures.cameras import scene
 from fixtures.people import found as people_found
-from fixtures.people import walker
+from fixtures.people import view_offsets, walker
 
 CAMERAS = scene.ring(3)
 
 
-def written(folder, shown):
-    """Write a take that some of the cameras film, and return its record and its files."""
+def written(folder, shown, off=False):
+    """Write a take that some of the cameras film, and return its record and its files.
+
+    If `off`, the cameras see limbs off as in `view_offsets`.
+    """
     folder.mkdir()
     record = walker.points(n_frames=12, n_persons=2)
     paths = [folder / f"{camera.name}.npz" for camera in shown]
-    for path, view in zip(paths, walker.views(record, shown), strict=True):
+    views = walker.views(record, shown)
+    if off:
+        at = limbs_of(record)
+        for view, xy in zip(views, view_offsets.seen(shown, record.xyz[:, :, at]), strict=True):
+            view.xy[:, :, at] = xy
+    for path, view in zip(paths, views, strict=True):
         keypoints.write_2d(path, view)
     index = {camera.name: np.tile([[0], [1]], (1, 12)) for camera in shown}
     people.write(
@@ -46,6 +54,28 @@ def test_all_takes_are_joined_and_cameras_that_do_not_film_one_see_nobody_there(
     np.testing.assert_allclose(found.xy[1, :24][known], expected[known], atol=1e-6)
     assert np.isnan(found.score[0, 24:]).all() and np.isfinite(found.height_px).all()
     assert np.isfinite(found.score[1:, 24:]).mean() > 0.9
+
+
+def limbs_of(record):
+    return [list(record.joints).index(name) for name in skeleton.JOINTS]
+
+
+def test_offsets_of_a_network_are_taken_from_its_keypoints(tmp_path):
+    camera_models.write_toml(tmp_path / "cameras.toml", CAMERAS, source="made")
+    record, files = written(tmp_path / "a", CAMERAS, off=True)
+    names = [camera.name for camera in CAMERAS]
+    exact = np.stack([
+        camera_models.project(camera, record.xyz[:, :, limbs_of(record)]).reshape(24, 12, 2)
+        for camera in CAMERAS
+    ])  # fmt: skip
+    seen, found = (
+        common_views.of_take(tmp_path / "cameras.toml", names, files, offsets)
+        for offsets in (None, view_offsets.table())
+    )
+    before, after = (np.linalg.norm(one.xy - exact, axis=-1) for one in (seen, found))
+    assert np.nanmax(before) > 4
+    assert np.nanmax(after) < 0.12 * np.nanmax(before)  # the axes of the trunk are off, too
+    np.testing.assert_array_equal(found.score, seen.score)
 
 
 def test_no_take_shows_nobody(tmp_path):

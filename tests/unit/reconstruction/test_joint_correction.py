@@ -15,7 +15,7 @@ from courtside.reconstruction.joint_correction import Clip
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.errors import InputError
 from fixtures.cameras import scene
-from fixtures.people import footwork, walker
+from fixtures.people import footwork, view_offsets, walker
 
 CONFIG = Path(__file__).parents[3] / "config"
 JOINTS = list(skeleton.JOINTS)
@@ -95,6 +95,25 @@ def test_shares_are_found_and_hold_for_bodies_of_another_size():
     assert after[:, [0, 1, 2, 6, 7, 8]].max() < 2e-3
     others = [k for k in range(walker.N_JOINTS) if k not in at]
     assert (corrected.xyz[0][:, others] == 7).all()
+
+
+def test_keypoints_lose_what_each_camera_sees_a_joint_off():
+    """Truth: the true joints, projected. What cannot be known without a trunk stays."""
+    cameras, true = scene.ring(4), bodies(30, seed=5)
+    xy, exact = view_offsets.seen(cameras, true), np.stack([
+        scene.opencv_projection(camera, true.reshape(-1, 3)).reshape(30, 12, 2)
+        for camera in cameras
+    ])  # fmt: skip
+    xyz = triangulation.triangulate_all(cameras, xy)
+    found = joint_correction.in_pictures(cameras, xy, xyz, JOINTS, view_offsets.table())
+    before, after = (np.linalg.norm(one - exact, axis=-1) for one in (xy, found))
+    assert before.max() > 4 and np.median(before[:, :, 1]) > 2
+    assert after.max() < 0.12 * before.max()  # the axes of the trunk are off, too
+    assert np.median(after) < 0.03 * np.median(before)
+    xyz[7, JOINTS.index("left_hip")] = np.nan
+    again = joint_correction.in_pictures(cameras, xy, xyz, JOINTS, view_offsets.table())
+    np.testing.assert_array_equal(again[:, 7], xy[:, 7])
+    np.testing.assert_array_equal(np.delete(again, 7, axis=1), np.delete(found, 7, axis=1))
 
 
 def test_what_remains_is_its_standard_deviation_and_joins_the_covariance():

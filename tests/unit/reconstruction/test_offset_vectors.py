@@ -64,6 +64,28 @@ def test_views_that_were_not_accepted_do_not_count_unless_none_was():
     assert np.abs(seen.gains[2:]).max() < 0.02
 
 
+@pytest.mark.parametrize("joint", skeleton.LIMBS)
+def test_a_vector_of_views_is_what_triangulation_makes_of_those_of_each_camera(joint):
+    """Truth from the triangulation: each camera's picture of a joint is moved by its own vector."""
+    cameras, xyz, share = scene.ring(3), persons(), 1e-3
+    at = JOINTS.index(f"left_{joint}")
+    ways, _ = offset_vectors.directions(cameras, xyz[:, at])
+    each = offset_vectors.of_each_view(xyz, JOINTS, "left", joint, ways)
+    together = every(xyz, joint, "left", cameras)
+    assert set(each) == {name for name in together if name.startswith(offset_vectors.SEEN)}
+    for name, vectors in each.items():
+        pictures = np.stack([
+            scene.opencv_projection(camera, xyz[:, at] + share * own)
+            for camera, own in zip(cameras, vectors, strict=True)
+        ])  # fmt: skip
+        limits = {"max_error_px": 50.0, "fade_px": 1e6}
+        found = triangulation.triangulate_robust(
+            cameras, pictures, np.ones(pictures.shape[:2]), **limits
+        )
+        moved = (found.xyz - xyz[:, at]) / share
+        np.testing.assert_allclose(moved, together[name], atol=0.01, err_msg=name)
+
+
 def test_between_two_cameras_that_face_each_other_no_ray_moves_a_joint_far():
     """On their line the rays cross nowhere: triangulation would multiply an offset without end."""
     cameras = scene.ring(2, radius_m=10.0, height_m=1.0)

@@ -51,9 +51,8 @@ def seen(take, tracks):
 def test_cameras_with_unknown_lenses_are_found_from_two_persons_and_their_heights():
     take = tracks_made.take(TRUE, WALK)
     start = guessed(take)
-    found = from_nothing.adjust(
-        start.cameras, {}, seen(take, start.tracks), start.tracks, HEIGHTS, LIMITS
-    )
+    people = seen(take, start.tracks), lambda _, limbs: limbs
+    found = from_nothing.adjust(start.cameras, {}, *people, start.tracks, HEIGHTS, LIMITS)
     xyz = WALK[:, ::4].reshape(-1, 3)
     placed = triangulate_all(found.cameras, np.stack([cameras.project(c, xyz) for c in TRUE]))
     assert similarity.umeyama(placed, xyz).scale == pytest.approx(1, abs=0.01)

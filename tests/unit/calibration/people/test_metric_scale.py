@@ -27,7 +27,7 @@ CLICK_PX = {"click_sigma_px": 2.0, "click_bias_px": 0.0}
 def body(height_m, frames=100, first=0.0, last=10.0, take=0, tracklets=(), share=SEEN):
     """Return the body of somebody so tall."""
     length = UNITS_PER_M * share.mean * height_m
-    return Body(take, length, frames, first, last, frozenset(tracklets), share)
+    return Body(take, length, frames, first, last, frozenset(tracklets))
 
 
 def named(heights):
@@ -60,7 +60,7 @@ def test_heights_give_metres_the_tallest_to_the_longest():
 def test_bodies_without_the_network_s_offsets_have_a_share_of_their_own():
     heights = named([[1.8, 1.6]])
     seen, corrected = (
-        metric_scale.by_heights([body(1.8, share=share), body(1.6, share=share)], heights)
+        metric_scale.by_heights([body(1.8, share=share), body(1.6, share=share)], heights, share)
         for share in (SEEN, CORRECTED)
     )
     assert corrected.metres == pytest.approx(seen.metres)

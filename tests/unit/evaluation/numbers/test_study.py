@@ -65,7 +65,7 @@ def test_the_summary_repeats_numbers_of_other_tables(source, repository):
     printed = {n.name: n.printed for n in found}
     knee = shown["knee flexion of the same virtual players: RMS error"]
     assert knee.printed == f"{printed['angles/corrected_rmse/knee flexion, `players-b`']} degrees"
-    (joints,) = (n for row, n in shown.items() if row.startswith("joints of virtual players"))
+    (joints,) = (n for row, n in shown.items() if row.startswith("joints of two virtual players"))
     assert joints.printed == "29 / 58 mm in the median take, 34 / 68 mm in the worst"
     with pytest.raises(InputError, match=r"expected corrected_rmse in the row .*knee flexion"):
         study.summary([n for n in found if n.table != "angles"])

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
+from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
 from courtside.kinematics import skeleton_filter
 from courtside.reconstruction import offset_vectors
@@ -150,6 +151,41 @@ def of_person(
         basis = offset_vectors.every(xyz, joints, side, joint, sex, cameras, accepted)
         offset = sum(basis[row.vector] * row.share for row in rows.itertuples())
         found[:, joints.index(f"{side}_{joint}")] = offset
+    return found
+
+
+def in_pictures(
+    cameras: Sequence[Camera],
+    xy: NDArray,
+    xyz: NDArray,
+    joints: Sequence[str],
+    table: pd.DataFrame,
+) -> NDArray:
+    """Return keypoints (C, T, J, 2) px without the offsets with which each camera sees its joints.
+
+    `xy` are distorted px, `xyz` (T, J, 3) m the named joints triangulated from them, of persons
+    whose sex is not known. Keypoints whose offset is not known stay.
+    """
+    found = xy.copy()
+    for at in keypoints.blocks(len(xyz)):
+        moved = _of_each_camera(xyz[at], list(joints), table, cameras)
+        for camera, own, off in zip(cameras, found, moved, strict=True):
+            without = camera_models.project(camera, xyz[at] - off)
+            own[at] += np.nan_to_num(without - camera_models.project(camera, xyz[at]))
+    return found
+
+
+def _of_each_camera(
+    xyz: NDArray, joints: list[str], table: pd.DataFrame, cameras: Sequence[Camera]
+) -> NDArray:
+    """Return the offsets (C, T, J, 3) m with which each camera sees joints, NaN where unknown."""
+    found = np.full((len(cameras), *xyz.shape), np.nan)
+    for (joint, rows), side in product(table.groupby("joint"), SIDES):
+        at = joints.index(f"{side}_{joint}")
+        ways, _ = offset_vectors.directions(cameras, xyz[:, at])
+        basis = offset_vectors.of_body(xyz, joints, side, joint)
+        basis |= offset_vectors.of_each_view(xyz, joints, side, joint, ways)
+        found[:, :, at] = sum(basis[row.vector] * row.share for row in rows.itertuples())
     return found
 
 

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from courtside.calibration.court.court import Court
@@ -34,10 +35,14 @@ def recover(
     limits: Limits,
     joints: Skeleton,
     court: Court | None,
+    offsets: pd.DataFrame | None = None,
 ) -> Recovered:
-    """Recover cameras that agree with nobody in any take, and associate people with them."""
+    """Recover cameras that agree with nobody in any take, and associate people with them.
+
+    The keypoints returned are without the network's `offsets`, where it has some.
+    """
     names = [camera.name for camera in cameras]
-    parts = {take: common_views.of_footage(names, seen) for take, seen in takes.items()}
+    parts = {take: common_views.of_footage(names, seen, offsets) for take, seen in takes.items()}
     which, lines = _lost(cameras, takes, parts, limits)
     found = found_again(cameras, which, takes, parts, limits)
     lines = [] if which else lines  # a wrong camera disturbs the others, too
@@ -56,7 +61,7 @@ def recover(
             again = associated(found, seen, joints, court)
         except InputError:  # nobody is placed: told where all takes are checked together
             continue
-        parts[take] = common_views.of_footage(names, again)
+        parts[take] = common_views.of_footage(names, again, offsets)
     return Recovered(parts, found, which, lines)
 
 

@@ -67,9 +67,7 @@ def views(cameras: Sequence[Camera], xyz: NDArray, accepted: NDArray) -> Views:
 
     NaN where the joint is missing.
     """
-    lines = xyz - np.stack([camera.centre_in_world for camera in cameras])[:, None]
-    away = np.linalg.norm(lines, axis=-1)
-    ways = lines / away[..., None]
+    ways, away = directions(cameras, xyz)
     focal_px = np.array([camera.K[0, 0] for camera in cameras])
     weight = np.where(accepted.T, 1.0, UNUSED) * (focal_px[:, None] / away) ** 2
     flat = weight[..., None, None] * (np.eye(3) - ways[..., :, None] * ways[..., None, :])
@@ -77,6 +75,13 @@ def views(cameras: Sequence[Camera], xyz: NDArray, accepted: NDArray) -> Views:
     strength, axes = np.linalg.eigh(whole)
     strength = np.maximum(strength, LEAST_STRENGTH * strength[:, -1:])
     return Views(ways, axes / strength[:, None] @ np.swapaxes(axes, -2, -1) @ flat)
+
+
+def directions(cameras: Sequence[Camera], xyz: NDArray) -> tuple[NDArray, NDArray]:
+    """Return unit vectors (C, T, 3) from each camera to points `xyz` (T, 3) m, and distances, m."""
+    lines = xyz - np.stack([camera.centre_in_world for camera in cameras])[:, None]
+    away = np.linalg.norm(lines, axis=-1)
+    return lines / away[..., None], away
 
 
 def every(
@@ -137,27 +142,45 @@ def of_views(
 ) -> dict[str, NDArray]:
     """Return the vectors (T, 3) m that depend on the directions of view, by name.
 
-    `xyz` (T, J, 3) m is one person. `seen out up` and the like: the trunk's axis `up` times the
-    component along `out` of the direction of view; `seen out out up` with a product of two
-    components. `seen along hip-knee`: a limb times the cosine to the direction of view, and times
-    its square (`seen square hip-knee`). `seen across hip-knee`: perpendicular to limb and view,
-    alone and times a component (`seen across out hip-knee`); its sign is that of the left side.
+    They are those of each camera (`of_each_view`), times what triangulation makes of its ray.
     """
+    each = _of_each_view(xyz, joints, side, joint, seen.ways)
+    moved = np.einsum("ctij,ctjm->mti", seen.gains, np.stack(list(each.values()), axis=-1))
+    return dict(zip((SEEN + name for name in each), LENGTH_M * moved, strict=True))
+
+
+def of_each_view(
+    xyz: NDArray, joints: Sequence[str], side: str, joint: str, ways: NDArray
+) -> dict[str, NDArray]:
+    """Return the vectors (C, T, 3) m that depend on the direction of view, of each camera, by name.
+
+    `xyz` (T, J, 3) m is one person, `ways` (C, T, 3) are unit vectors from each camera to the
+    joint. `seen out up` and the like: the trunk's axis `up` times the component along `out` of the
+    direction of view; `seen out out up` with a product of two components. `seen along hip-knee`: a
+    limb times the cosine to the direction of view, and times its square (`seen square hip-knee`).
+    `seen across hip-knee`: perpendicular to limb and view, alone and times a component (`seen
+    across out hip-knee`); its sign is that of the left side.
+    """
+    each = _of_each_view(xyz, joints, side, joint, ways)
+    return {SEEN + name: LENGTH_M * vector for name, vector in each.items()}
+
+
+def _of_each_view(xyz, joints, side, joint, ways: NDArray) -> dict[str, NDArray]:
+    """Return the vectors of `of_each_view` without `SEEN` in their names, and without unit."""
     place = dict(zip(joints, np.moveaxis(xyz, -2, 0), strict=True))
     axes, _ = _trunk(place, side)
-    part = {name: _dot(seen.ways, axes[name]) for name in TRUNK}
+    part = {name: _dot(ways, axes[name]) for name in TRUNK}
     each = {f"{a} {name}": part[a] * axes[name] for a, name in product(TRUNK, TRUNK)}
     for (a, b), name in product(SQUARES, TRUNK):
         each[f"{a} {b} {name}"] = part[a] * part[b] * axes[name]
     for name, line in _lines(place, side, BONES[joint]).items():
         limb = rotations.unit(line)
-        cosine = _dot(seen.ways, limb)
+        cosine = _dot(ways, limb)
         each[f"along {name}"], each[f"square {name}"] = cosine * limb, cosine**2 * limb
-        across = np.cross(seen.ways, limb) * (1.0 if side == "left" else -1.0)
+        across = np.cross(ways, limb) * (1.0 if side == "left" else -1.0)
         each[f"across {name}"] = across
         each |= {f"across {a} {name}": part[a] * across for a in TRUNK}
-    moved = np.einsum("ctij,ctjm->mti", seen.gains, np.stack(list(each.values()), axis=-1))
-    return dict(zip((SEEN + name for name in each), LENGTH_M * moved, strict=True))
+    return each
 
 
 def names(joint: str) -> list[str]:

@@ -14,8 +14,7 @@ from courtside.calibration.people.relative_poses import Take
 from courtside.calibration.people.views import Limits, Seen, joined
 from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
-from courtside.geometry.triangulation import triangulate_all
-from courtside.reconstruction import joint_correction, person_height, resampling
+from courtside.reconstruction import common_views, person_height, resampling
 from courtside.records.devices import clocks as camera_clocks
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import skeleton
@@ -43,17 +42,25 @@ def tracks(
 
 
 def seen(first: from_nothing.Guess, takes: Sequence[Filmed]) -> Seen:
-    """Return the keypoints of the persons of the initial tracks, by the initial cameras."""
-    cameras = first.cameras
-    resampled = [_by_camera(cameras, views, clocks) for _, views, clocks in takes]
+    """Return all keypoints of the persons of the initial tracks, by the initial cameras."""
+    cameras, joints = first.cameras, _joints(takes)
+    limbs = [joints.index(name) for name in skeleton.JOINTS]
+    resampled = [_by_camera(cameras, views, clocks, joints) for _, views, clocks in takes]
     parts = []
     for take, rows in first.tracks:
         time_s, by_camera = resampled[take]
-        xy, score = _of_track(by_camera, rows, len(time_s), len(skeleton.JOINTS))
-        height_px = person_height.in_pictures(cameras, xy[:, None], score[:, None], skeleton.JOINTS)
+        xy, score = _of_track(by_camera, rows, len(time_s), len(joints))
+        height_px = person_height.in_pictures(
+            cameras, xy[:, None][..., limbs, :], score[:, None][..., limbs], skeleton.JOINTS
+        )
         track = np.zeros(len(time_s), dtype=int)
         parts.append(Seen(xy, score, height_px[:, 0], track, time_s))
     return joined(parts)
+
+
+def _joints(takes: Sequence[Filmed]) -> list[str]:
+    """Return the joints of the network, which is the same in all takes."""
+    return list(takes[0][1][0].joints)
 
 
 def calibrate(
@@ -69,11 +76,11 @@ def calibrate(
 
     `timed` takes cameras by name, or None, and returns the takes with clocks estimated with them.
     If new cameras change the clocks, the cameras are adjusted again. `offsets` is the table of the
-    network's joint offsets (`joint_correction.read`), without which the lengths of bodies depend on
-    the directions of view. Raises `InputError` if people do not determine the cameras, or if a
-    clock is uncertain.
+    network's joint offsets (`joint_correction.read`); joints with their offsets bend cameras.
+    Raises `InputError` if people do not determine the cameras, or if a clock is uncertain.
     """
     first, last = guess(names, lenses, timed(None), heights_m, known), list[Filmed]()
+    share = metric_scale.SEEN if offsets is None else metric_scale.CORRECTED
     for _ in range(ROUNDS):
         takes = timed({camera.name: camera for camera in first.cameras})
         for name, _, clocks in takes:
@@ -81,39 +88,11 @@ def calibrate(
                 raise InputError(fault)
         if last and _apart_s(last, takes) < SAME_S:
             break
-        people = seen(first, takes), first.tracks, heights_m
-        stretch = None if offsets is None else partial(stretches, first.tracks, takes, offsets)
-        found = from_nothing.adjust(first.cameras, lenses, *people, limits, known, stretch)
+        limbs = partial(common_views.of_limbs, joints=_joints(takes), offsets=offsets)
+        people = seen(first, takes), limbs, first.tracks, heights_m
+        found = from_nothing.adjust(first.cameras, lenses, *people, limits, known, share)
         first, last = replace(first, cameras=found.cameras), list(takes)
     return found
-
-
-def stretches(
-    tracks: Sequence[relative_poses.Track],
-    takes: Sequence[Filmed],
-    offsets: pd.DataFrame,
-    cameras: Sequence[Camera],
-) -> NDArray:
-    """Return for each track the length of leg and trunk without joint offsets, over that with them.
-
-    (K,), NaN where a joint that the offsets need is not seen; `cameras` are in metres.
-    """
-    every = [list(views[0].joints) for _, views, _ in takes]
-    resampled = [
-        _by_camera(cameras, views, clocks, joints)
-        for (_, views, clocks), joints in zip(takes, every, strict=True)
-    ]
-    found = []
-    for take, rows in tracks:
-        (time_s, by_camera), joints = resampled[take], every[take]
-        xy, _ = _of_track(by_camera, rows, len(time_s), len(joints))
-        xyz = triangulate_all(cameras, xy)
-        accepted = np.moveaxis(np.isfinite(xy[..., 0]), 0, -1)
-        moved = joint_correction.of_person(xyz, accepted, joints, offsets, cameras)
-        limbs = [joints.index(name) for name in skeleton.JOINTS]
-        own, corrected = (metric_scale.length(one[:, limbs]) for one in (xyz, xyz - moved))
-        found.append(corrected / own)
-    return np.array(found)
 
 
 def _of_track(

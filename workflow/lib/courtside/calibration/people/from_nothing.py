@@ -50,9 +50,9 @@ STILL = 0.15  # ASSUME: a person with a shorter path over the own extent does no
 LEAST_ACCEPTED = 50.0  # ASSUME: percent of a camera's views, for a usable camera
 
 
-# Takes cameras in metres; returns for each of K tracks the length of leg and trunk without the
-# network's joint offsets, over that of the joints as seen (K,), NaN where unknown.
-Stretch = Callable[[Sequence[Camera]], NDArray]
+# Takes cameras in metres and all joints that a network sees of people; returns those of limbs,
+# without the network's joint offsets where these are known.
+Limbs = Callable[[Sequence[Camera], Seen], Seen]
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,27 +189,30 @@ def _body(track: Track, xyz: NDArray, time_s: NDArray | None = None) -> metric_s
 def adjust(
     start: Sequence[Camera],
     lenses: Mapping[str, Camera],
-    seen: Seen,
+    everything: Seen,
+    limbs: Limbs,
     tracks: Sequence[Track],
     heights_m: metric_scale.Heights,
     limits: Limits,
     known: Sequence[metric_scale.KnownLength] = (),
-    stretch: Stretch | None = None,
+    share: metric_scale.Share = metric_scale.SEEN,
 ) -> Found:
     """Adjust cameras, initially in metres, with the people that they see.
 
-    `tracks` are those of `seen`. Raises `InputError` if there are too few people, if they stay in
-    one place, or if a camera disagrees with the others on held-out joints.
+    `everything` are all joints that the network sees, of the `tracks`; `limbs` returns those that
+    are used, and `share` is that of leg and trunk by them in the height. Raises `InputError` if
+    there are too few people, if they stay in one place, or if a camera disagrees with the others on
+    held-out joints.
     """
-    seen = seen.thinned(MOST_ROWS)
-    views.check(start, seen, limits.score)
-    cameras = list(start)
+    everything, cameras = everything.thinned(MOST_ROWS), list(start)
+    views.check(start, limbs(start, everything), limits.score)
     for _ in range(PASSES):
+        seen = limbs(cameras, everything)
         fitted = _refined(cameras, lenses, seen, limits)
         joints = _joints(fitted.cameras, seen, limits)
         shape = world_frame.of_shape(fitted.cameras, fitted.covariance, _places(joints), 0.0)
-        bodies = _bodies(joints, seen, tracks, stretch(fitted.cameras) if stretch else None)
-        scale = metric_scale.find(fitted.cameras, bodies, heights_m, known, shape)
+        bodies = _bodies(joints, seen, tracks)
+        scale = metric_scale.find(fitted.cameras, bodies, heights_m, known, shape, share)
         cameras = [_scaled(camera, scale.metres) for camera in fitted.cameras]
     joints = _joints(cameras, seen, limits)
     clicked = [triangulate_all(cameras, one.xy) for one in known if one.on_floor]
@@ -281,22 +284,10 @@ def _places(joints: NDArray) -> NDArray:
     return places[np.linspace(0, len(places) - 1, MOST_PLACES).astype(int)]
 
 
-def _bodies(
-    joints: NDArray, seen: Seen, tracks: Sequence[Track], factor: NDArray | None
-) -> list[metric_scale.Body]:
-    """Return the bodies of tracks, where a `factor` (K,) is known without the network's offsets.
-
-    Tracks whose own factor is unknown have the median of the others.
-    """
+def _bodies(joints: NDArray, seen: Seen, tracks: Sequence[Track]) -> list[metric_scale.Body]:
+    """Return the bodies of tracks."""
     each = [(track, seen.track == track) for track in np.unique(seen.track)]
-    bodies = [_body(tracks[track], joints[own], seen.time_s[own]) for track, own in each]
-    if factor is None or not np.isfinite(factor).any():
-        return bodies
-    factor = np.where(np.isfinite(factor), factor, np.nanmedian(factor))
-    return [
-        replace(body, length=body.length * factor[track], share=metric_scale.CORRECTED)
-        for body, (track, _) in zip(bodies, each, strict=True)
-    ]
+    return [_body(tracks[track], joints[own], seen.time_s[own]) for track, own in each]
 
 
 def check(cameras: Sequence[Camera], score: Score) -> None:

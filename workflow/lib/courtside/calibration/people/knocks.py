@@ -322,7 +322,8 @@ def _split(seen: Seen, step: _Step) -> Seen:
         return both
 
     height_px = np.concatenate([seen.height_px, seen.height_px[step.camera : step.camera + 1]])
-    return replace(seen, xy=parted(seen.xy), score=parted(seen.score), height_px=height_px)
+    parts = {"xy": parted(seen.xy), "score": parted(seen.score), "height_px": height_px}
+    return replace(seen, **parts, offset_px=None)
 
 
 def _equations(cameras: Sequence[Camera], seen: Seen, min_score: float) -> Equations:

@@ -55,10 +55,10 @@ class Share:
 
 # ASSUME: by BlazePose heavy with a mirrored second look, for the persons of players-dev,
 # players-dev-stands and players-dev-near: joints as the network sees them, and less its offsets.
-# A network's offsets depend on the direction of view: 0.727, 0.748 and 0.750 in these sessions by
-# their true cameras, without the offsets 0.752, 0.757 and 0.756 (0.747 to 0.757 by people alone).
+# A network's offsets depend on the direction of view: 0.726, 0.745 and 0.750 in these sessions by
+# their true cameras, without the offsets 0.752, 0.756 and 0.756 (0.745 to 0.756 by people alone).
 SEEN = Share(0.743, 0.015)
-CORRECTED = Share(0.753, 0.008)
+CORRECTED = Share(0.752, 0.008)
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,6 @@ class Body:
     first: float  # time of the first joint in the take
     last: float  # time of the last joint
     tracklets: frozenset[tuple[int, int]] = frozenset()  # camera and row of those that it joins
-    share: Share = SEEN  # of the length in the height
 
 
 @dataclass(frozen=True)
@@ -154,16 +153,18 @@ def find(
     heights_m: Heights,
     known: Sequence[KnownLength] = (),
     shape: NDArray | None = None,
+    share: Share = SEEN,
 ) -> Scale:
     """Return the scale from stated heights and known lengths, weighted by their covariance.
 
-    `shape` (K, K) is the covariance of the cameras' columns without their scale. Heights are not
-    needed if a length is known. Contradictions become warnings.
+    `shape` (K, K) is the covariance of the cameras' columns without their scale; `share` is that of
+    the bodies' lengths in their heights. Heights are not needed if a length is known.
+    Contradictions become warnings.
     """
     each, covariance = by_lengths(cameras, known, shape)
-    takes = _takes(bodies, heights_m)
+    takes = _takes(bodies, heights_m, share)
     if takes or not each:
-        each.append(by_heights(bodies, heights_m))
+        each.append(by_heights(bodies, heights_m, share))
         covariance = scipy.linalg.block_diag(covariance, each[-1].sigma ** 2)
     return combined(each, covariance)
 
@@ -255,7 +256,7 @@ def _share(
     return own, variance, by_bias, by_column
 
 
-def by_heights(bodies: Sequence[Body], heights_m: Heights) -> Scale:
+def by_heights(bodies: Sequence[Body], heights_m: Heights, share: Share = SEEN) -> Scale:
     """Return the scale from the stated heights of each take's persons.
 
     Tracks are assigned to persons so that the lengths of all bodies agree best. Tracks with common
@@ -265,7 +266,7 @@ def by_heights(bodies: Sequence[Body], heights_m: Heights) -> Scale:
     about as well and gives another scale, and if heights contradict each other. Raises `InputError`
     if no take can be used.
     """
-    takes = _takes(bodies, heights_m)
+    takes = _takes(bodies, heights_m, share)
     if not takes:
         raise InputError(
             "people: expected a take with `height_m` of every person, and as many tracks that show "
@@ -277,9 +278,8 @@ def by_heights(bodies: Sequence[Body], heights_m: Heights) -> Scale:
     cost, scale, ratios = min(found, key=lambda one: one[0])
     stated = [list(own.values()) for own in heights_m.values()]
     persons = sum(max(own.count(height) for own in stated) for height in ratios)
-    share_sigma = max(one.share.sigma for one in bodies)
-    of_height = np.hypot(share_sigma, STATED_SIGMA_M / min(ratios))
-    learned = share_sigma / np.sqrt(LEARNED_FROM)
+    of_height = np.hypot(share.sigma, STATED_SIGMA_M / min(ratios))
+    learned = share.sigma / np.sqrt(LEARNED_FROM)
     sigma = float(np.linalg.norm([of_height / np.sqrt(persons), learned, BODIES_SIGMA]))
     rivals = [np.expm1(one[1] - scale) for one in found if one[0] < cost + SURE**2]
     warnings = [*_rivals(rivals, sigma), *_disagreeing(ratios, SURE * np.sqrt(2) * of_height)]
@@ -293,7 +293,7 @@ class _Assignments:
 
     height_m: NDArray  # (W, B): of the person of each track; NaN for no person
     stature: NDArray  # (B,): height by the length of the body, in its unit
-    share_sigma: NDArray  # (B,): of the share of this length
+    share_sigma: float  # of the share of this length
     weight: NDArray  # (B,): share of the frames
     n_unseen: NDArray  # (W,): stated persons without a track
 
@@ -310,10 +310,10 @@ class _Assignments:
         return float(cost[at]), self.height_m[at], self.ratio()[at]
 
 
-def _takes(bodies: Sequence[Body], heights_m: Heights) -> list[_Assignments]:
+def _takes(bodies: Sequence[Body], heights_m: Heights, share: Share) -> list[_Assignments]:
     """Return the assignments of all takes that can be used."""
     each = (
-        _assignments([one for one in bodies if one.take == take], stated.values())
+        _assignments([one for one in bodies if one.take == take], stated.values(), share)
         for take, stated in enumerate(heights_m.values())
     )
     return [found for found in each if found is not None]
@@ -331,7 +331,9 @@ def _lacking(bodies: Sequence[Body], heights_m: Heights) -> Iterator[str]:
             yield f"take {take} with {usable} of these tracks for {shown}"
 
 
-def _assignments(bodies: Sequence[Body], stated: Iterable[float | None]) -> _Assignments | None:
+def _assignments(
+    bodies: Sequence[Body], stated: Iterable[float | None], share: Share
+) -> _Assignments | None:
     """Return the assignments of one take; None without all heights, or with fewer tracks."""
     heights = np.array([one or np.nan for one in stated])
     known = sorted((one for one in bodies if np.isfinite(one.length)), key=lambda one: -one.frames)
@@ -339,14 +341,13 @@ def _assignments(bodies: Sequence[Body], stated: Iterable[float | None]) -> _Ass
         return None
     most = int(np.log(MOST_WAYS) / np.log(len(heights) + 1))
     known = known[: max(len(heights), most)]
-    stature = np.array([one.length / one.share.mean for one in known])
-    share_sigma = np.array([one.share.sigma for one in known])
+    stature = np.array([one.length / share.mean for one in known])
     weight = np.array([one.frames for one in known], dtype=float)
     weight *= len(heights) / weight[: len(heights)].sum()
     if len(heights) > MOST_PERSONS:
         order = np.argsort(np.argsort(stature))
         ordered = np.sort(heights)[order][None]
-        return _Assignments(ordered, stature, share_sigma, weight, np.zeros(1))
+        return _Assignments(ordered, stature, share.sigma, weight, np.zeros(1))
     every = np.array(list(product(range(len(heights) + 1), repeat=len(known))))
     fine = (every < len(heights)).any(axis=1)
     for (a, one), (b, other) in combinations(enumerate(known), 2):
@@ -357,7 +358,7 @@ def _assignments(bodies: Sequence[Body], stated: Iterable[float | None]) -> _Ass
     whose = np.append(heights, np.nan)[every[fine]]
     if not len(whose):
         return None
-    return _Assignments(whose, stature, share_sigma, weight, len(heights) - seen)
+    return _Assignments(whose, stature, share.sigma, weight, len(heights) - seen)
 
 
 def _converged(

@@ -58,9 +58,11 @@ def refine(
     """Refine cameras by people, and judge this by what the fit did not see.
 
     Faults that files usually have (`file_check.faults`) are looked for first, where `calibrated`
-    has the cameras of the file, in their own pictures; what is left is adjusted. Cameras that were
-    `found_again` (`resection`) take the place of mended ones. Each step must be better in all
-    `held_out.verdicts`; but cameras found again are a start, and adjusting them must not be worse.
+    has the cameras of the file, in their own pictures; what is left is adjusted. These faults are
+    judged by joints as detected: with a wrong camera a network's offsets are wrong, too. Cameras
+    that were `found_again` (`resection`) take the place of mended ones. Each step must be better in
+    all `held_out.verdicts`; but cameras found again are a start, and adjusting them must not be
+    worse.
     Raises `InputError` of bad input (`views.check`).
     """
     views.check(cameras, seen, limits.score)
@@ -133,7 +135,7 @@ def _mended(cameras, calibrated, seen: Seen, found_again) -> tuple[list[str], li
     pairs = list(zip(calibrated, cameras, strict=True))
     views = [
         in_other_picture(shown, whole, xy)
-        for (whole, shown), xy in zip(pairs, seen.xy, strict=True)
+        for (whole, shown), xy in zip(pairs, seen.detected_xy, strict=True)
     ]
     joints = verdict.Seen(people=residuals.of_people(views))
     said = verdict.judge(calibrated, joints, residuals.height_px(views, seen.height_px))

@@ -29,11 +29,18 @@ class Seen:
     height_px: NDArray  # (C, T): that the person, standing, has in each picture
     track: NDArray  # (T,) int: which person of which take; rows of a track are in order of time
     time_s: NDArray  # (T,): on the reference clock of the take
+    offset_px: NDArray | None = None  # (C, T, J, 2): of a network's joints, subtracted from `xy`
+
+    @property
+    def detected_xy(self) -> NDArray:
+        """Where the network places the joints, offsets included: (C, T, J, 2) px."""
+        return self.xy if self.offset_px is None else self.xy + self.offset_px
 
     def of(self, rows: NDArray) -> "Seen":
         """Return some rows, by number or as (T,) bool."""
         per_view = (self.xy[:, rows], self.score[:, rows], self.height_px[:, rows])
-        return Seen(*per_view, self.track[rows], self.time_s[rows])
+        offset_px = None if self.offset_px is None else self.offset_px[:, rows]
+        return Seen(*per_view, self.track[rows], self.time_s[rows], offset_px)
 
     def thinned(self, most: int = MOST_ROWS) -> "Seen":
         """Return at most so many of the rows that two cameras see, or of all if none; evenly."""
@@ -81,17 +88,19 @@ class Limits:
 
 
 def joined(parts: Sequence[Seen]) -> Seen:
-    """Join what was seen in several takes; the tracks of each are its own."""
+    """Join what one network saw in several takes; the tracks of each are its own."""
     first, found = 0, []
     for part in parts:
         found.append(replace(part, track=part.track + first))
         first += int(part.track.max(initial=-1)) + 1
+    offsets = [part.offset_px for part in found if part.offset_px is not None]
     return Seen(
         xy=np.concatenate([part.xy for part in found], axis=1),
         score=np.concatenate([part.score for part in found], axis=1),
         height_px=np.concatenate([part.height_px for part in found], axis=1),
         track=np.concatenate([part.track for part in found]),
         time_s=np.concatenate([part.time_s for part in found]),
+        offset_px=np.concatenate(offsets, axis=1) if offsets else None,
     )
 
 

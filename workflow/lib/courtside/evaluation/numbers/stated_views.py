@@ -156,7 +156,7 @@ SHOWN = {
     },
     "heights-alone": {
         "people alone, heights stated: development sessions": "{row}",
-        "lengths of joints as seen": "{seen}",
+        "joints as seen": "{seen}",
         "without the joint offsets (used)": "{corrected}",
         **made("corrected"),
     },

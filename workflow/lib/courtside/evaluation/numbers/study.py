@@ -37,8 +37,9 @@ SUMMED_UP = {  # what was measured: table, regular expression of its row, what i
         "^the six halls",
         "{both} (walk and 18 clicks alone in these trials: {clicks})",
     ),
-    "joints of virtual players, four cameras, corrected (joint offsets were fitted in three "
-    "layouts; one of them is that of these players): median / 95 %": (
+    "joints of two virtual players (one of them in four of five takes alone), four cameras, "
+    "corrected (joint offsets were fitted in three layouts; one of them is that of these players): "
+    "median / 95 %": (
         "players-sessions",
         "^`players-b`",
         "{corrected_median} / {corrected_p95} mm in the median take, "
