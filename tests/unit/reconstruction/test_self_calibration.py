@@ -18,6 +18,7 @@ from courtside.calibration.people.views import Limits
 from courtside.geometry import camera as camera_models
 from courtside.geometry import similarity, triangulation
 from courtside.reconstruction import joint_correction, self_calibration
+from courtside.reconstruction.association import rows
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
@@ -54,7 +55,7 @@ def filmed():
 
 
 def test_tracks_are_at_common_times_without_unsure_joints():
-    take = self_calibration.tracks(*filmed(), NAMES)
+    take = self_calibration.tracks(*filmed(), NAMES, is_cut=False)
     exact = tracks_made.take(CAMERAS, WALK, noise_px=0).xy
     unsure = np.isnan(take.xy[0][..., 0])
     assert unsure.sum() == 10
@@ -66,7 +67,7 @@ def test_tracks_are_at_common_times_without_unsure_joints():
 
 def test_persons_are_seen_through_their_tracks():
     first = Guess(CAMERAS, [(0, ((0,), (1,), ())), (0, ((1,), (0,), ()))])
-    seen = self_calibration.seen(first, [filmed()])
+    seen = self_calibration.seen(first, [filmed()], is_cut=False)
     assert seen.xy.shape == (3, 80, 13, 2)
     assert np.bincount(seen.track).tolist() == [40, 40]
     assert np.isnan(seen.xy[2]).all()
@@ -80,7 +81,8 @@ def test_persons_are_seen_through_their_tracks():
 def test_cameras_are_guessed_from_a_take():
     take = "walk", views_of(WALK), dict.fromkeys(NAMES, Clock())
     lenses = {camera.name: camera for camera in CAMERAS}
-    found = self_calibration.guess(NAMES, lenses, [take], HEIGHTS)
+    found, is_cut = self_calibration.guess(NAMES, lenses, [take], HEIGHTS)
+    assert not is_cut
     assert [camera.name for camera in found.cameras] == NAMES
     assert len(found.tracks) == 2
     with pytest.raises(InputError, match="camera c2: expected a take with its video, found none"):
@@ -215,6 +217,29 @@ def test_offsets_that_differ_between_cameras_do_not_bend_them():
         off_m.append(np.median(np.linalg.norm(shape, axis=1)))
     assert off_m[0] > 0.004
     assert off_m[1] < 0.25 * off_m[0]
+
+
+def test_people_whom_a_tracker_exchanges_calibrate_cameras_as_well_as_others():
+    """They walk side by side; one camera loses both for half a second, and exchanges them."""
+    xyz = tracks_made.persons(120) + np.array([[[[-2.0, 0, 0]]], [[[2.0, 0, 0]]]])
+    time_s, xy = np.arange(120) / 10, tracks_made.take(CAMERAS, xyz, noise_px=0.5).xy
+    xy[2][:, 60:] = xy[2][::-1, 60:]
+    xy[2][:, 60:65] = np.nan
+    each = zip(CAMERAS, xy, strict=True)
+    views = [keypoints_made.view(camera, skeleton.JOINTS, time_s, own) for camera, own in each]
+    assert len(rows.separate(views[2])) >= 4
+    take, lenses = ("walk", views, dict.fromkeys(NAMES, Clock())), {c.name: c for c in CAMERAS}
+    _, is_cut = self_calibration.guess(NAMES, lenses, [take], HEIGHTS)
+    assert is_cut
+    found = self_calibration.calibrate(
+        NAMES, lenses, lambda _: [take], HEIGHTS, Limits(score=0.05, limit=0.05, fade=0.067)
+    )
+    points = xyz[:, ::6].reshape(-1, 3)
+    exact = np.stack([camera_models.project(camera, points) for camera in CAMERAS])
+    placed = triangulation.triangulate_all(found.cameras, exact)
+    off = similarity.umeyama(placed, points).points(placed) - points
+    assert np.median(np.linalg.norm(off, axis=1)) < 0.003
+    assert found.score.accepted_percent().min() > 99
 
 
 def test_clocks_that_are_not_sure_are_refused(calibrated):

@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 
 from courtside.reconstruction.association import rows
+from courtside.records.keypoints import skeleton
+from fixtures.cameras import scene
+from fixtures.people import keypoints_made
 
 JOINTS = np.array([[-10, 0], [10, 0], [-10, 100], [10, 100], [0, 50]], float)
 TRUNK = [0, 1, 2, 3]
@@ -66,3 +69,60 @@ def test_an_empty_row_has_nothing():
     found = rows.describe(np.full((1, 3, 5, 2), np.nan), TRUNK)
     assert not found.present.any()
     assert (found.piece == -1).all()
+
+
+# Left shoulder, elbow, wrist, hip, knee, ankle, then the right ones: 100 px tall.
+LIMBS = np.array([(x, y) for x in (10, -10) for y in (0, 20, 40, 45, 70, 100)], float)
+
+
+def seen(*places, rate_hz=30.0):
+    """Return what a camera sees of bodies, each at places x (T,) px, NaN where it is missing."""
+    xy = np.stack([
+        LIMBS + np.stack([np.asarray(x, float), np.full(len(x), 300.0)], axis=-1)[:, None]
+        for x in places
+    ])  # fmt: skip
+    xy[np.isnan(xy[..., 0])] = np.nan
+    time_s = np.arange(xy.shape[1]) / rate_hz
+    return keypoints_made.view(scene.ring(1)[0], skeleton.JOINTS, time_s, xy)
+
+
+def test_pieces_show_one_body_each_whatever_a_tracker_exchanges():
+    """Two people cross; the tracker follows the wrong one afterwards."""
+    one, other = 100 + 4.0 * np.arange(60), 340 - 4.0 * np.arange(60)
+    after = np.arange(60) >= 30
+    view = seen(np.where(after, other, one), np.where(after, one, other))
+    found = rows.separate(view)
+    assert len(found) == 4
+    shown = [frozenset(after[own >= 0]) for own in found]
+    assert set(shown) == {frozenset({False}), frozenset({True})}
+    close = np.abs(one - other) < rows.CLOSE * 100
+    assert (found[:, close] == -1).all()
+    assert (
+        sorted(set(own[own >= 0]) == {row} for own in found for row in (0, 1))
+        == [False] * 4 + [True] * 4
+    )
+
+
+@pytest.mark.parametrize(("rate_hz", "missing", "pieces"), [(30, 2, 1), (30, 3, 2), (10, 1, 1),
+                                                            (10, 2, 2)])  # fmt: skip
+def test_a_row_that_resumes_after_a_gap_is_another_piece(rate_hz, missing, pieces):
+    x = 100 + 0.5 * np.arange(60)
+    x[20 : 20 + missing] = np.nan
+    found = rows.separate(seen(x, rate_hz=rate_hz))
+    assert len(found) == pieces
+    assert ((found >= 0).sum(axis=0) == np.isfinite(x)).all()
+
+
+def test_the_longest_pieces_are_kept():
+    x = np.full(1000, 200.0)
+    for gap in range(20):
+        x[20 + 45 * gap : 30 + 45 * gap - gap // 4] = np.nan
+    found = rows.separate(seen(x))
+    lengths = (found >= 0).sum(axis=1)
+    assert len(found) == rows.MOST_PIECES
+    assert (np.diff(lengths) <= 0).all()
+    assert lengths[0] == 119  # after the last gap
+
+
+def test_nobody_is_in_no_piece():
+    assert rows.separate(seen(np.full(9, np.nan))).shape == (0, 9)

@@ -15,6 +15,7 @@ from courtside.calibration.people.views import Limits, Seen, joined
 from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
 from courtside.reconstruction import common_views, person_height, resampling
+from courtside.reconstruction.association import rows as tracklet_rows
 from courtside.records.devices import clocks as camera_clocks
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import skeleton
@@ -26,26 +27,38 @@ Filmed = tuple[str, Sequence[Keypoints2D], Mapping[str, Clock]]
 ROUNDS = 2  # of clocks and cameras: clocks from rough cameras have errors of some milliseconds
 SAME_S = 1e-3  # smaller differences of clocks do not matter: a walking person moves 1 mm
 MIN_SCORE = 0.5  # ASSUME: of joints for the initial cameras
+MOST_TIMES = 3000  # of a take: more of them add little, and take memory
 
 
 def tracks(
-    name: str, views: Sequence[Keypoints2D], clocks: Mapping[str, Clock], cameras: Sequence[str]
+    name: str,
+    views: Sequence[Keypoints2D],
+    clocks: Mapping[str, Clock],
+    cameras: Sequence[str],
+    *,
+    is_cut: bool,
 ) -> Take:
-    """Return the tracklets of a take at common times; none of a camera that does not film it."""
+    """Return the tracklets of a take at common times; none of a camera that does not film it.
+
+    If `is_cut`, each row is a piece of a tracklet (`rows.separate`).
+    """
     time_s = _times(views, clocks)
     xy = {camera: np.zeros((0, len(time_s), len(skeleton.JOINTS), 2)) for camera in cameras}
     for view in views:
-        found, score = _resampled(view, time_s, clocks)
+        found, score = _resampled(view, time_s, clocks, skeleton.JOINTS, is_cut)
         sure = np.nan_to_num(score) >= MIN_SCORE
         xy[view.camera] = np.where(sure[..., None], found, np.nan)
     return Take(name, list(xy.values()))
 
 
-def seen(first: from_nothing.Guess, takes: Sequence[Filmed]) -> Seen:
-    """Return all keypoints of the persons of the initial tracks, by the initial cameras."""
+def seen(first: from_nothing.Guess, takes: Sequence[Filmed], *, is_cut: bool) -> Seen:
+    """Return all keypoints of the persons of the initial tracks, by the initial cameras.
+
+    `is_cut` as for the tracks.
+    """
     cameras, joints = first.cameras, _joints(takes)
     limbs = [joints.index(name) for name in skeleton.JOINTS]
-    resampled = [_by_camera(cameras, views, clocks, joints) for _, views, clocks in takes]
+    resampled = [_by_camera(cameras, views, clocks, joints, is_cut) for _, views, clocks in takes]
     parts = []
     for take, rows in first.tracks:
         time_s, by_camera = resampled[take]
@@ -79,7 +92,8 @@ def calibrate(
     network's joint offsets (`joint_correction.read`); joints with their offsets bend cameras.
     Raises `InputError` if people do not determine the cameras, or if a clock is uncertain.
     """
-    first, last = guess(names, lenses, timed(None), heights_m, known), list[Filmed]()
+    first, is_cut = guess(names, lenses, timed(None), heights_m, known)
+    last = list[Filmed]()
     share = metric_scale.SEEN if offsets is None else metric_scale.CORRECTED
     for _ in range(ROUNDS):
         takes = timed({camera.name: camera for camera in first.cameras})
@@ -89,7 +103,7 @@ def calibrate(
         if last and _apart_s(last, takes) < SAME_S:
             break
         limbs = partial(common_views.of_limbs, joints=_joints(takes), offsets=offsets)
-        people = seen(first, takes), limbs, first.tracks, heights_m
+        people = seen(first, takes, is_cut=is_cut), limbs, first.tracks, heights_m
         found = from_nothing.adjust(first.cameras, lenses, *people, limits, known, share)
         first, last = replace(first, cameras=found.cameras), list(takes)
     return found
@@ -125,8 +139,13 @@ def guess(
     takes: Sequence[Filmed],
     heights_m: Heights,
     known: Sequence[KnownLength] = (),
-) -> from_nothing.Guess:
-    """Return initial cameras; the arguments are as for `from_nothing.guess`."""
+) -> tuple[from_nothing.Guess, bool]:
+    """Return initial cameras, and whether tracklets were cut for them.
+
+    The other arguments are as for `from_nothing.guess`. Trackers exchange people who cross, so
+    tracklets are cut there; people who are close most of the time leave too little then. Of
+    tracklets cut and whole, those are used by which more of what the cameras see agrees.
+    """
     sizes = _sizes(takes)
     if blind := [name for name in names if name not in sizes]:
         raise InputError(
@@ -135,8 +154,28 @@ def guess(
         )
     for name, lens in lenses.items():
         camera_models.check_size(lens, sizes[name], f"keypoints of camera {name}")
-    found = [tracks(name, views, clocks, names) for name, views, clocks in takes]
-    return from_nothing.guess(names, sizes, lenses, found, heights_m, known)
+    found: list[tuple[from_nothing.Guess, bool]] = []
+    fault: InputError | None = None
+    for is_cut in (False, True) if _any_cut(takes) else (False,):
+        filmed = [
+            tracks(name, views, clocks, names, is_cut=is_cut) for name, views, clocks in takes
+        ]
+        try:
+            one = from_nothing.guess(names, sizes, lenses, filmed, heights_m, known)
+        except InputError as error:
+            fault = fault or error
+            continue
+        found.append((one, is_cut))
+    if fault and not found:
+        raise fault
+    return max(found, key=lambda one: one[0].explained)
+
+
+def _any_cut(takes: Sequence[Filmed]) -> bool:
+    """Return whether a tracklet of the takes has several pieces."""
+    return any(
+        len(tracklet_rows.separate(view)) > len(view.xy) for _, views, _ in takes for view in views
+    )
 
 
 def _sizes(takes: Sequence[Filmed]) -> dict[str, tuple[int, int]]:
@@ -156,26 +195,40 @@ def _sizes(takes: Sequence[Filmed]) -> dict[str, tuple[int, int]]:
 
 
 def _times(views: Sequence[Keypoints2D], clocks: Mapping[str, Clock]) -> NDArray:
-    return resampling.common_times(views, [clocks[view.camera] for view in views])
+    """Return common times of a take, at most `MOST_TIMES`, evenly."""
+    time_s = resampling.common_times(views, [clocks[view.camera] for view in views])
+    return time_s[:: -(-len(time_s) // MOST_TIMES)] if len(time_s) else time_s
 
 
 def _resampled(
     view: Keypoints2D,
     time_s: NDArray,
     clocks: Mapping[str, Clock],
-    joints: Sequence[str] = skeleton.JOINTS,
+    joints: Sequence[str],
+    is_cut: bool,
 ) -> tuple[NDArray, NDArray]:
-    """Return a view's named joints: xy (R, T, J, 2) and score (R, T, J)."""
-    at = [list(view.joints).index(name) for name in joints]
-    xy, score = resampling.resample(view, time_s, clocks[view.camera])
-    return xy[:, :, at], score[:, :, at]
+    """Return a view's named joints: xy (R, T, J, 2) and score (R, T, J).
+
+    If `is_cut`, each of the R rows is a piece of a tracklet that shows one body.
+    """
+    clock, at = clocks[view.camera], [list(view.joints).index(name) for name in joints]
+    xy, score = (part[:, :, at] for part in resampling.resample(view, time_s, clock))
+    if not is_cut:
+        return xy, score
+    row = tracklet_rows.separate(view)[:, resampling.nearest(view, time_s, clock)]
+    missing, times = row < 0, np.arange(len(time_s))
+    xy, score = (part[np.maximum(row, 0), times] for part in (xy, score))
+    xy[missing], score[missing] = np.nan, np.nan
+    return xy, score
 
 
 def _by_camera(
-    cameras: Sequence[Camera], views, clocks, joints: Sequence[str] = skeleton.JOINTS
+    cameras: Sequence[Camera], views, clocks, joints: Sequence[str], is_cut: bool
 ) -> tuple[NDArray, list[tuple[NDArray, NDArray] | None]]:
     time_s, found = _times(views, clocks), {view.camera: view for view in views}
     return time_s, [
-        _resampled(found[camera.name], time_s, clocks, joints) if camera.name in found else None
+        _resampled(found[camera.name], time_s, clocks, joints, is_cut)
+        if camera.name in found
+        else None
         for camera in cameras
     ]

@@ -61,6 +61,7 @@ class Guess:
 
     cameras: list[Camera]
     tracks: list[Track]
+    explained: float = 0.0  # how much of what the cameras see agrees: `_explained`
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,13 +102,13 @@ def guess(
         tried += [(_explained(posed, takes, tracks), posed, tracks) for posed, tracks in ways]
     if fault and not tried:
         raise fault
-    _, cameras, tracks = max(tried, key=lambda one: one[0])
+    explained, cameras, tracks = max(tried, key=lambda one: one[0])
     joints = [_placed(cameras, takes, track) for track in tracks]
     bodies = [_body(track, xyz) for track, xyz in zip(tracks, joints, strict=True)]
     scale = metric_scale.find(cameras, bodies, heights_m, known).metres
     cameras = [_scaled(camera, scale) for camera in cameras]
     world = world_frame.floor(scale * np.concatenate(joints), cameras)
-    return Guess([world.camera(camera) for camera in cameras], tracks)
+    return Guess([world.camera(camera) for camera in cameras], tracks, explained)
 
 
 def _check_ways(takes: Sequence[Take]) -> None:

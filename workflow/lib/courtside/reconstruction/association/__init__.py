@@ -1,7 +1,8 @@
 """Assign tracklets of all cameras to persons, over the whole take.
 
 scale: `check`: whether people have the size of people
-rows: `Rows`, `describe`: one camera's tracklets: body centres, sizes, cuts
+rows: `Rows`, `describe`: one camera's tracklets: body centres, sizes, cuts; `separate`: pieces that
+    show one body
 candidates: `Candidates`, `find`, `rays`: positions on which rows of several views agree; rays
 appearance: `learn`, `Looks`: colours of clothes as evidence of identity
 linking: `link`, `costs`, `follow`: candidates over time to persons, frames of rows to persons

@@ -6,6 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.records.keypoints import skeleton
+from courtside.records.keypoints.keypoints import Keypoints2D
+
 # ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
 # Share of the body's height: a centre that deviates more from its course is another body.
 JUMP = 0.15
@@ -15,6 +18,9 @@ SMOOTHING = 2  # frames before and after that are averaged into a centre
 MIN_SHARE = 0.4  # share of the joints that must be seen for a row to count
 # Standard deviation of a joint: share of the body's height, plus px.
 SIGMA_SHARE, SIGMA_PX = 0.02, 2.0
+GAP_S = 0.1  # ASSUME: after a longer gap, or two missing frames, a row may show another body
+ROUNDING = 0.5  # of frame times, share of a frame
+MOST_PIECES = 16  # of one camera and take: pairs of pieces take time
 
 
 @dataclass(frozen=True)
@@ -29,6 +35,7 @@ class Rows:
     cut: NDArray  # (P, T): true where the row may show another body than in the frame before
     # (P, T): number of the uncut piece, unique within this camera; -1 where absent
     piece: NDArray
+    close: NDArray  # (P, T): whether another body is close enough for a tracker to confuse them
 
 
 def describe(xy: NDArray, trunk: Sequence[int]) -> Rows:
@@ -52,11 +59,38 @@ def describe(xy: NDArray, trunk: Sequence[int]) -> Rows:
     before[:, 1:] = present[:, :-1]
     limit = (JUMP * typical + SIGMA_PX)[:, None]
     broken = present & (~before | (_off_course(centre) > limit))
-    cut = broken | (present & _close_to_another(centre, typical))
+    close = present & _close_to_another(centre, typical)
+    cut = broken | close
     centre = _smoothed(centre, np.where(present, np.cumsum(broken, axis=1), -1))
     number = np.cumsum(cut, axis=1) + np.cumsum(cut.sum(axis=1))[:, None] - cut.sum(axis=1)[:, None]
     piece = np.where(present, number, -1)
-    return Rows(present, centre, height, SIGMA_SHARE * typical + SIGMA_PX, cut, piece)
+    return Rows(present, centre, height, SIGMA_SHARE * typical + SIGMA_PX, cut, piece, close)
+
+
+def separate(view: Keypoints2D) -> NDArray:
+    """Return the row (N, T) int of each piece that shows one body, -1 in other frames.
+
+    A tracker may exchange people where they are close, and resume a row with another body after a
+    gap. Rows are cut there, and frames in which another body is close belong to no piece. The
+    longest pieces come first, at most `MOST_PIECES`.
+    """
+    joints, limbs = list(view.joints), list(skeleton.JOINTS)
+    found = describe(
+        view.xy[:, :, [joints.index(name) for name in limbs]],
+        [limbs.index(name) for name in skeleton.TRUNK],
+    )
+    step_s = float(np.median(np.diff(view.time_s))) if len(view.time_s) > 1 else 0.0
+    longest_s = max(GAP_S, (2 + ROUNDING) * step_s)
+    pieces = []
+    for row, alone in enumerate(found.present & ~found.close):
+        frames = np.flatnonzero(alone)
+        gaps = np.flatnonzero(np.diff(view.time_s[frames]) > longest_s)
+        pieces += [(row, piece) for piece in np.split(frames, gaps + 1) if len(piece)]
+    pieces.sort(key=lambda one: -len(one[1]))
+    index = np.full((len(pieces[:MOST_PIECES]), len(view.time_s)), -1)
+    for own, (row, piece) in zip(index, pieces, strict=False):
+        own[piece] = row
+    return index
 
 
 def _centre(xy: NDArray, seen: NDArray, trunk: Sequence[int]) -> NDArray:
