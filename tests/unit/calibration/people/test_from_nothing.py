@@ -69,8 +69,9 @@ def test_cameras_with_unknown_lenses_are_found_from_two_persons_and_their_height
     summary = from_nothing.summary(found, ["walk"])
     assert min(summary["accepted_percent"].values()) > 95
     assert summary["line"].startswith("people alone: views of held-out joints disagree by ")
-    scale = replace(found.scale, remarks=(metric_scale.ONE_HEIGHT,))
-    told = replace(found, scale=scale, warnings=["floor: it differs"])
+    (remark,) = found.remarks
+    assert remark.startswith(f"lenses of {', '.join(NAMES)}: estimated from people, for lenses of ")
+    told = replace(found, remarks=[metric_scale.ONE_HEIGHT], warnings=["floor: it differs"])
     summary = from_nothing.summary(told, ["walk"])
     assert (summary["remarks"], summary["warnings"]) == (
         [metric_scale.ONE_HEIGHT],
