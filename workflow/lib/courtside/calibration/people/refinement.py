@@ -62,8 +62,7 @@ def refine(
     judged by joints as detected: with a wrong camera a network's offsets are wrong, too. Cameras
     that were `found_again` (`resection`) take the place of mended ones. Each step must be better in
     all `held_out.verdicts`; but cameras found again are a start, and adjusting them must not be
-    worse.
-    Raises `InputError` of bad input (`views.check`).
+    worse. Raises `InputError` of bad input (`views.check`).
     """
     views.check(cameras, seen, limits.score)
     wrong, mended = _mended(cameras, calibrated, seen, found_again)

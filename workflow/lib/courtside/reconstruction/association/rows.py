@@ -18,7 +18,7 @@ SMOOTHING = 2  # frames before and after that are averaged into a centre
 MIN_SHARE = 0.4  # share of the joints that must be seen for a row to count
 # Standard deviation of a joint: share of the body's height, plus px.
 SIGMA_SHARE, SIGMA_PX = 0.02, 2.0
-GAP_S = 0.1  # ASSUME: after a longer gap, or two missing frames, a row may show another body
+GAP_S = 0.1  # ASSUME: after a longer gap, of two frames or more, a row may show another body
 ROUNDING = 0.5  # of frame times, share of a frame
 MOST_PIECES = 16  # of one camera and take: pairs of pieces take time
 
@@ -80,7 +80,7 @@ def separate(view: Keypoints2D) -> NDArray:
         [limbs.index(name) for name in skeleton.TRUNK],
     )
     step_s = float(np.median(np.diff(view.time_s))) if len(view.time_s) > 1 else 0.0
-    longest_s = max(GAP_S, (2 + ROUNDING) * step_s)
+    longest_s = max(GAP_S, 2 * step_s) + ROUNDING * step_s
     pieces = []
     for row, alone in enumerate(found.present & ~found.close):
         frames = np.flatnonzero(alone)
