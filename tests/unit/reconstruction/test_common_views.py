@@ -1,7 +1,9 @@
 """Limb joints of everybody in several takes, at common times, by camera."""
 
 import numpy as np
+import pytest
 
+from courtside.calibration.people.views import joined
 from courtside.geometry import camera as camera_models
 from courtside.reconstruction import common_views
 from courtside.records.devices import clocks as sync
@@ -32,7 +34,8 @@ def written(folder, shown, off=False):
     people.write(
         folder / "people.npz", people_found.people(index, record.person_id, model=record.model)
     )
-    sync.write(folder / "sync.json", "c0", {camera.name: sync.Clock() for camera in CAMERAS})
+    everyone = {camera.name: sync.Clock() for camera in (*CAMERAS, *shown)}
+    sync.write(folder / "sync.json", "c0", everyone)
     return record, {
         "pose2d": paths,
         "people": folder / "people.npz",
@@ -76,6 +79,25 @@ def test_offsets_of_a_network_are_taken_from_its_keypoints(tmp_path):
     assert np.nanmax(before) > 4
     assert np.nanmax(after) < 0.12 * np.nanmax(before)  # the axes of the trunk are off, too
     np.testing.assert_array_equal(found.score, seen.score)
+    assert np.nanmax(np.abs(found.offset_px)) > 4
+    some = joined([found.of(np.arange(5)), found.of(np.arange(5, 24))])
+    np.testing.assert_allclose(some.detected_xy, seen.xy, atol=1e-9)
+    np.testing.assert_array_equal(seen.detected_xy, seen.xy)
+    with pytest.raises(ValueError, match="in all takes or in none"):
+        joined([found, seen])
+
+
+def test_a_view_that_contradicts_the_others_keeps_its_offsets(tmp_path):
+    """By a camera that looks elsewhere, offsets would move keypoints anywhere."""
+    cameras = scene.ring(4)
+    _, files = written(tmp_path / "a", cameras, off=True)
+    names = [camera.name for camera in cameras]
+    cameras[1] = camera_models.turned(cameras[1], np.array([0.3, 0.0, 0.0]))
+    camera_models.write_toml(tmp_path / "cameras.toml", cameras, source="made")
+    found = common_views.of_take(tmp_path / "cameras.toml", names, files, view_offsets.table())
+    of_camera = np.nanmedian(np.abs(found.offset_px), axis=(1, 2, 3))
+    assert of_camera[1] == 0
+    assert of_camera[[0, 2, 3]].min() > 1
 
 
 def test_no_take_shows_nobody(tmp_path):

@@ -226,7 +226,11 @@ def test_people_whom_a_tracker_exchanges_calibrate_cameras_as_well_as_others():
     xy[2][:, 60:] = xy[2][::-1, 60:]
     xy[2][:, 60:65] = np.nan
     each = zip(CAMERAS, xy, strict=True)
-    views = [keypoints_made.view(camera, skeleton.JOINTS, time_s, own) for camera, own in each]
+    nobody = np.full((1, 120, 12, 2), np.nan)  # rows without a piece hide no cut
+    views = [
+        keypoints_made.view(camera, skeleton.JOINTS, time_s, np.concatenate([own, *[nobody] * 4]))
+        for camera, own in each
+    ]
     assert len(rows.separate(views[2])) >= 4
     take, lenses = ("walk", views, dict.fromkeys(NAMES, Clock())), {c.name: c for c in CAMERAS}
     _, is_cut = self_calibration.guess(NAMES, lenses, [take], HEIGHTS)

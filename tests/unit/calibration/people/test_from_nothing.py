@@ -70,7 +70,7 @@ def test_cameras_with_unknown_lenses_are_found_from_two_persons_and_their_height
     assert min(summary["accepted_percent"].values()) > 95
     assert summary["line"].startswith("people alone: views of held-out joints disagree by ")
     (remark,) = found.remarks
-    assert remark.startswith(f"lenses of {', '.join(NAMES)}: estimated from people, for lenses of ")
+    assert remark.startswith(f"lenses of {', '.join(NAMES)} are estimated from people; this ")
     told = replace(found, remarks=[metric_scale.ONE_HEIGHT], warnings=["floor: it differs"])
     summary = from_nothing.summary(told, ["walk"])
     assert (summary["remarks"], summary["warnings"]) == (

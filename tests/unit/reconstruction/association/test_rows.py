@@ -75,14 +75,14 @@ def test_an_empty_row_has_nothing():
 LIMBS = np.array([(x, y) for x in (10, -10) for y in (0, 20, 40, 45, 70, 100)], float)
 
 
-def seen(*places, rate_hz=30.0):
+def seen(*places):
     """Return what a camera sees of bodies, each at places x (T,) px, NaN where it is missing."""
     xy = np.stack([
         LIMBS + np.stack([np.asarray(x, float), np.full(len(x), 300.0)], axis=-1)[:, None]
         for x in places
     ])  # fmt: skip
     xy[np.isnan(xy[..., 0])] = np.nan
-    time_s = np.arange(xy.shape[1]) / rate_hz
+    time_s = np.arange(xy.shape[1]) / 30
     return keypoints_made.view(scene.ring(1)[0], skeleton.JOINTS, time_s, xy)
 
 
@@ -97,20 +97,15 @@ def test_pieces_show_one_body_each_whatever_a_tracker_exchanges():
     assert set(shown) == {frozenset({False}), frozenset({True})}
     close = np.abs(one - other) < rows.CLOSE * 100
     assert (found[:, close] == -1).all()
-    assert (
-        sorted(set(own[own >= 0]) == {row} for own in found for row in (0, 1))
-        == [False] * 4 + [True] * 4
-    )
+    assert sorted(own.max() for own in found) == [0, 0, 1, 1]
 
 
-@pytest.mark.parametrize(("rate_hz", "missing", "pieces"), [(30, 2, 1), (30, 3, 2), (10, 1, 1),
-                                                            (10, 2, 2)])  # fmt: skip
-def test_a_row_that_resumes_after_a_gap_is_another_piece(rate_hz, missing, pieces):
+def test_a_row_that_resumes_after_a_gap_is_another_piece():
     x = 100 + 0.5 * np.arange(60)
-    x[20 : 20 + missing] = np.nan
-    found = rows.separate(seen(x, rate_hz=rate_hz))
-    assert len(found) == pieces
-    assert ((found >= 0).sum(axis=0) == np.isfinite(x)).all()
+    x[20] = np.nan
+    first, second = (np.flatnonzero(own >= 0) for own in rows.separate(seen(x)))
+    np.testing.assert_array_equal(first, np.arange(21, 60))
+    np.testing.assert_array_equal(second, np.arange(20))
 
 
 def test_the_longest_pieces_are_kept():

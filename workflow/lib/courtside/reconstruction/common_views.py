@@ -85,18 +85,20 @@ def of_limbs(
 ) -> Seen:
     """Return the joints of limbs, of all `joints` that a network sees, without its offsets.
 
-    A network sees joints off by what a body and the direction of view make of it. Cameras that are
-    fitted to joints as seen are bent by that.
+    A network places joints wrongly, by amounts that depend on the body and on the direction of view
+    (`joint_correction`); they would bend cameras. Views that contradict the others keep theirs: in
+    px of a camera that is far off, an offset means nothing.
     """
     limbs = [list(joints).index(name) for name in skeleton.JOINTS]
     xy = seen.xy[:, :, limbs]
     if offsets is not None:
-        for block in keypoints.blocks(len(seen.track)):
-            at = np.arange(len(seen.track))[block]
+        for at in keypoints.blocks(len(seen.track)):
             some = seen.of(at)
-            xyz = placed(cameras, some, WIDE).xyz.reshape(*some.score.shape[1:], 3)
+            found = placed(cameras, some, WIDE)
+            xyz = found.xyz.reshape(*some.score.shape[1:], 3)
             without = joint_correction.in_pictures(cameras, some.xy, xyz, joints, offsets)
-            xy[:, at] = without[:, :, limbs]
+            agrees = found.accepted.reshape(some.score.shape)[..., None]
+            xy[:, at] = np.where(agrees, without, some.xy)[:, :, limbs]
     offset_px = None if offsets is None else seen.xy[:, :, limbs] - xy
     return replace(seen, xy=xy, score=seen.score[:, :, limbs], offset_px=offset_px)
 

@@ -167,11 +167,10 @@ def in_pictures(
     whose sex is not known. Keypoints whose offset is not known stay.
     """
     found = xy.copy()
-    for at in keypoints.blocks(len(xyz)):
-        moved = _of_each_camera(xyz[at], list(joints), table, cameras)
-        for camera, own, off in zip(cameras, found, moved, strict=True):
-            without = camera_models.project(camera, xyz[at] - off)
-            own[at] += np.nan_to_num(without - camera_models.project(camera, xyz[at]))
+    moved = _of_each_camera(xyz, list(joints), table, cameras)
+    for camera, own, off in zip(cameras, found, moved, strict=True):
+        without = camera_models.project(camera, xyz - off)
+        own += np.nan_to_num(without - camera_models.project(camera, xyz))
     return found
 
 

@@ -94,6 +94,7 @@ def calibrate(
     """
     first, is_cut = guess(names, lenses, timed(None), heights_m, known)
     last = list[Filmed]()
+    # Keypoints whose offset is not known keep it: rare, where shoulders or hips are not seen.
     share = metric_scale.SEEN if offsets is None else metric_scale.CORRECTED
     for _ in range(ROUNDS):
         takes = timed({camera.name: camera for camera in first.cameras})
@@ -173,9 +174,8 @@ def guess(
 
 def _any_cut(takes: Sequence[Filmed]) -> bool:
     """Return whether a tracklet of the takes has several pieces."""
-    return any(
-        len(tracklet_rows.separate(view)) > len(view.xy) for _, views, _ in takes for view in views
-    )
+    each = (tracklet_rows.separate(view).max(axis=1) for _, views, _ in takes for view in views)
+    return any(len(np.unique(rows)) < len(rows) for rows in each)
 
 
 def _sizes(takes: Sequence[Filmed]) -> dict[str, tuple[int, int]]:
@@ -195,9 +195,18 @@ def _sizes(takes: Sequence[Filmed]) -> dict[str, tuple[int, int]]:
 
 
 def _times(views: Sequence[Keypoints2D], clocks: Mapping[str, Clock]) -> NDArray:
-    """Return common times of a take, at most `MOST_TIMES`, evenly."""
+    """Return common times of a take; of a long one, some at which two cameras see somebody."""
     time_s = resampling.common_times(views, [clocks[view.camera] for view in views])
-    return time_s[:: -(-len(time_s) // MOST_TIMES)] if len(time_s) else time_s
+    if len(time_s) <= MOST_TIMES:
+        return time_s
+    seeing = [
+        np.isfinite(view.xy[..., 0]).any(axis=(0, 2))[
+            resampling.nearest(view, time_s, clocks[view.camera])
+        ]
+        for view in views
+    ]
+    time_s = time_s[np.sum(seeing, axis=0) >= 2]
+    return time_s[:: max(1, -(-len(time_s) // MOST_TIMES))]
 
 
 def _resampled(

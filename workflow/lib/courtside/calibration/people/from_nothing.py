@@ -202,14 +202,15 @@ def adjust(
     """Adjust cameras, initially in metres, with the people that they see.
 
     `everything` are all joints that the network sees, of the `tracks`; `limbs` returns those that
-    are used, and `share` is that of leg and trunk by them in the height. Raises `InputError` if
+    are used; `share` is the length of leg and trunk by them over the height. Raises `InputError` if
     there are too few people, if they stay in one place, or if a camera disagrees with the others on
     held-out joints.
     """
     everything, cameras = everything.thinned(MOST_ROWS), list(start)
-    views.check(start, limbs(start, everything), limits.score)
-    for _ in range(PASSES):
+    for number in range(PASSES):
         seen = limbs(cameras, everything)
+        if not number:
+            views.check(start, seen, limits.score)
         fitted = _refined(cameras, lenses, seen, limits)
         joints = _joints(fitted.cameras, seen, limits)
         shape = world_frame.of_shape(fitted.cameras, fitted.covariance, _places(joints), 0.0)
@@ -245,9 +246,9 @@ def _of_lenses(names: Sequence[str], lenses: Mapping[str, Camera]) -> Iterator[s
     """
     if unknown := [name for name in names if name not in lenses]:
         yield (
-            f"lenses of {', '.join(unknown)}: estimated from people, for lenses of similar focal "
-            "length and little distortion; if these are wide or differ much, the stated errors are "
-            "too small: film a chessboard with each camera"
+            f"lenses of {', '.join(unknown)} are estimated from people; this works for lenses with "
+            "little distortion and similar focal lengths; for others errors are larger than "
+            "stated: film a chessboard with each camera"
         )
 
 

@@ -70,7 +70,7 @@ class Body:
     frames: int
     first: float  # time of the first joint in the take
     last: float  # time of the last joint
-    tracklets: frozenset[tuple[int, int]] = frozenset()  # camera and row of those that it joins
+    tracklets: frozenset[tuple[int, int]] = frozenset()  # camera and row, of pieces if cut
 
 
 @dataclass(frozen=True)

@@ -35,7 +35,7 @@ Rays = list[list[NDArray]]  # by take and camera: tracks (R, T, J, 2) on the z =
 
 @dataclass(frozen=True, eq=False)
 class Take:
-    """The tracklets of one take at common times: R rows, T times, J joints."""
+    """The tracklets of one take, or their pieces, at common times: R rows, T times, J joints."""
 
     name: str
     xy: list[NDArray]  # by camera (R, T, J, 2): distorted px, NaN if missing or of low confidence

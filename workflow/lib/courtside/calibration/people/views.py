@@ -36,8 +36,8 @@ class Seen:
         """Where the network places the joints, offsets included: (C, T, J, 2) px."""
         return self.xy if self.offset_px is None else self.xy + self.offset_px
 
-    def of(self, rows: NDArray) -> "Seen":
-        """Return some rows, by number or as (T,) bool."""
+    def of(self, rows: NDArray | slice) -> "Seen":
+        """Return some rows, by number, as (T,) bool or a slice."""
         per_view = (self.xy[:, rows], self.score[:, rows], self.height_px[:, rows])
         offset_px = None if self.offset_px is None else self.offset_px[:, rows]
         return Seen(*per_view, self.track[rows], self.time_s[rows], offset_px)
@@ -94,6 +94,8 @@ def joined(parts: Sequence[Seen]) -> Seen:
         found.append(replace(part, track=part.track + first))
         first += int(part.track.max(initial=-1)) + 1
     offsets = [part.offset_px for part in found if part.offset_px is not None]
+    if 0 < len(offsets) < len(found):
+        raise ValueError("expected offsets subtracted in all takes or in none")
     return Seen(
         xy=np.concatenate([part.xy for part in found], axis=1),
         score=np.concatenate([part.score for part in found], axis=1),

@@ -18,8 +18,6 @@ SMOOTHING = 2  # frames before and after that are averaged into a centre
 MIN_SHARE = 0.4  # share of the joints that must be seen for a row to count
 # Standard deviation of a joint: share of the body's height, plus px.
 SIGMA_SHARE, SIGMA_PX = 0.02, 2.0
-GAP_S = 0.1  # ASSUME: after a longer gap, of two frames or more, a row may show another body
-ROUNDING = 0.5  # of frame times, share of a frame
 MOST_PIECES = 16  # of one camera and take: pairs of pieces take time
 
 
@@ -72,20 +70,18 @@ def separate(view: Keypoints2D) -> NDArray:
 
     A tracker may exchange people where they are close, and resume a row with another body after a
     gap. Rows are cut there, and frames in which another body is close belong to no piece. The
-    longest pieces come first, at most `MOST_PIECES`.
+    longest pieces come first, at most `MOST_PIECES`. A row may have none.
     """
     joints, limbs = list(view.joints), list(skeleton.JOINTS)
     found = describe(
         view.xy[:, :, [joints.index(name) for name in limbs]],
         [limbs.index(name) for name in skeleton.TRUNK],
     )
-    step_s = float(np.median(np.diff(view.time_s))) if len(view.time_s) > 1 else 0.0
-    longest_s = max(GAP_S, 2 * step_s) + ROUNDING * step_s
     pieces = []
     for row, alone in enumerate(found.present & ~found.close):
         frames = np.flatnonzero(alone)
-        gaps = np.flatnonzero(np.diff(view.time_s[frames]) > longest_s)
-        pieces += [(row, piece) for piece in np.split(frames, gaps + 1) if len(piece)]
+        each = np.split(frames, np.flatnonzero(np.diff(frames) > 1) + 1)
+        pieces += [(row, piece) for piece in each if len(piece)]
     pieces.sort(key=lambda one: -len(one[1]))
     index = np.full((len(pieces[:MOST_PIECES]), len(view.time_s)), -1)
     for own, (row, piece) in zip(index, pieces, strict=False):
