@@ -227,8 +227,7 @@ def adjust(
     check(cameras, score)
     cameras = [world.camera(camera) for camera in cameras]
     joints, on_floor = world.points(joints), world.points(on_floor)
-    half = seen.blocks(2) % 2 == 1
-    apart = world_frame.halves_apart(joints, cameras, half, on_floor)
+    apart = world_frame.halves_apart(joints, cameras, seen.blocks(2) % 2 == 1, on_floor)
     found = [*scale.warnings, *warnings.find(cameras, seen, joints, score, limits, apart)]
     places = _places(joints)
     covariance = world_frame.of_shape(cameras, fitted.covariance, places, scale.sigma)
