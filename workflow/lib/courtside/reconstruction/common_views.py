@@ -16,8 +16,7 @@ from courtside.records.cameras.footage import Footage
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.errors import StrPath
 
-# Of views that tell how a body stands, by cameras that are a little wrong.
-WIDE = Limits(score=0.05, limit=0.2, fade=0.25)
+WIDE = Limits.wide(0.05)  # of views that tell how a body stands
 
 
 def of_takes(

@@ -82,6 +82,11 @@ class Limits:
         """Return those of the step `triangulate` of the configuration."""
         return cls(views["min_score"], views["max_error_share"], views["fade_share"])
 
+    @classmethod
+    def wide(cls, score: float) -> "Limits":
+        """Return limits for cameras that are a little wrong."""
+        return cls(score, 0.2, 0.25)
+
     def times(self, factor: float) -> "Limits":
         """Return limits of views that are wider by a factor."""
         return replace(self, limit=factor * self.limit, fade=factor * self.fade)
@@ -155,7 +160,7 @@ def longest_way(cameras: Sequence[Camera], seen: Seen, min_score: float) -> floa
 
     A place is the median of a row's joints; limits are wide, for cameras that are a little wrong.
     """
-    found = placed(cameras, seen, Limits(min_score, 0.2, 0.25))
+    found = placed(cameras, seen, Limits.wide(min_score))
     xyz = np.ma.masked_invalid(found.xyz.reshape(len(seen.track), -1, 3))
     middle = np.ma.median(xyz, axis=1).filled(np.nan)
     middle = middle[np.isfinite(middle).all(axis=1)]
