@@ -247,7 +247,7 @@ def _of_lenses(names: Sequence[str], lenses: Mapping[str, Camera]) -> Iterator[s
         yield (
             f"lenses of {', '.join(unknown)} are estimated from people; this works for lenses with "
             "little distortion and similar focal lengths; for others errors are larger than "
-            "stated: film a chessboard with each camera"
+            "stated: film a chessboard with each camera (`chessboard` in the session's file)"
         )
 
 
