@@ -16,8 +16,10 @@ def made():
                 held = {f"held_{level}": int(n * level / 100) for level in counting.LEVELS}
                 held["held_90"] = 50 if session == "a" else 290
                 flags = {"n_large": 10, "n_flagged": 5, "n_flagged_large": 4}
-                about = {"session": session, "model": "first", "stage": stage}
-                rows.append({**about, "by": by, "group": group, "n": n, **held, **flags})
+                about = {"session": session, "calibration": "file", "model": "first"}
+                rows.append(
+                    {**about, "stage": stage, "by": by, "group": group, "n": n, **held, **flags}
+                )
     return pd.DataFrame(rows)
 
 
@@ -30,6 +32,15 @@ def test_a_second_network_of_a_session_does_not_count_its_joints_twice():
     assert held.to_dict() == pytest.approx(expected)
     left, _, *_ = reliability.draw(rows).axes
     assert sum(line.get_color() == "#cccccc" for line in left.lines) == 3
+
+
+def test_a_second_calibration_of_a_session_does_not_count_its_joints_twice():
+    again = made().query("session == 'b'").assign(calibration="known18", held_90=0)
+    rows = reliability.table(pd.concat([made(), again]))
+    whole = rows[rows["by"] == "all"].fillna({"calibration": ""})
+    held = whole.groupby(["session", "calibration"])["held_90_percent"].first()
+    expected = {("a", "file"): 50, ("all", ""): 85, ("b", "file"): 290 / 3, ("b", "known18"): 0}
+    assert held.to_dict() == pytest.approx(expected)
 
 
 def test_all_sessions_together_are_weighted_by_their_joints():

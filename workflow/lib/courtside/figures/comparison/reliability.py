@@ -11,18 +11,19 @@ from courtside.figures.style import style
 
 ROWS = {"joint": "by joint", "views": "by number of views", "error": "by size of the error (mm)"}
 WORDS = {"0": "below 50", "50": "50 to 100", "100": "100 to 300", "300": "above 300"}
+WAY = ["calibration", "model"]
 EVERY = "all"  # the label of all sessions together
 
 
 def table(rows: pd.DataFrame) -> pd.DataFrame:
-    """Add up the tables of `evaluate_reliability` by session and network, and over all sessions.
+    """Add up the tables of `evaluate_reliability` by session and way, and over all sessions.
 
-    Shares in percent (`evaluation.reliability.pooled`), by session, model, stage and group. The
-    session `EVERY`, without a model, counts each session by its first network, the one of its first
-    row: other networks see the same joints again.
+    A way is a calibration and a network. Shares in percent (`evaluation.reliability.pooled`), by
+    session, way, stage and group. The session `EVERY`, without a way, counts each session by the
+    way of its first row: the others are of the same joints.
     """
-    one = reliability.pooled(rows, ["session", "model", "stage"])
-    first = rows["model"] == rows.groupby("session")["model"].transform("first")
+    one = reliability.pooled(rows, ["session", *WAY, "stage"])
+    first = (rows[WAY] == rows.groupby("session")[WAY].transform("first")).all(axis=1)
     together = reliability.pooled(rows[first].assign(session=EVERY), ["session", "stage"])
     return pd.concat([together, one], ignore_index=True)
 
@@ -49,7 +50,7 @@ def _panel(axis: Axes, rows: pd.DataFrame, by: str) -> None:
     axis.plot([0, 100], [0, 100], color="#999999", linewidth=0.6)
     if by == "joint":
         single = rows[(rows["session"] != EVERY) & (rows["by"] == "all")]
-        for _, whole in single.groupby(["session", "model"]):
+        for _, whole in single.groupby(["session", *WAY]):
             axis.plot(reliability.LEVELS, _held(whole), color="#cccccc", linewidth=0.8)
     axis.plot(reliability.LEVELS, _held(together[together["by"] == "all"]), "k-", label="all")
     groups = together[together["by"] == by].sort_values("group", key=_order)
