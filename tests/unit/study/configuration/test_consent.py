@@ -158,4 +158,6 @@ def test_no_static_picture_is_made_of_a_video_of_somebody_who_withdrew():
     every = {"a": "1.mp4", "b": "empty.mp4", "c": "3.mp4"}
     assert static({}, agreed("analysis")) == every
     assert static({}, agreed()) == {**every, "a": None}  # p2 is not in take alone
+    cameras["a"]["static"], every["a"] = "./day/../1.mp4", "./day/../1.mp4"
+    assert static({}, agreed()) == {**every, "a": None}  # the same file, by another path
     assert static(agreed(), {}) == {**every, "a": None, "c": None}

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from itertools import product
+from os.path import normpath
 from pathlib import Path
 from typing import Any
 
@@ -83,9 +84,13 @@ def filled(content: Content) -> Content:
     takes = [
         take for take in content.get("takes", {}).values() if consent.is_withheld(content, take)
     ]
-    gone = {path for take in takes for path in take.get("videos", {}).values()}
+    gone = {normpath(path) for take in takes for path in take.get("videos", {}).values()}
     cameras = {
-        name: {key: value for key, value in said.items() if key != "static" or value not in gone}
+        name: {
+            key: value
+            for key, value in said.items()
+            if key != "static" or normpath(value) not in gone
+        }
         for name, said in content["cameras"].items()
     }
     return content | {"cameras": cameras}
