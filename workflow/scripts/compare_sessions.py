@@ -13,9 +13,10 @@ def main(
 ):
     rows = longitudinal.of_study(study_table.read(study_csv), ways)
     rows = longitudinal.of_subject(rows, subject, measures, allow_mixed=allow_mixed)
-    (model,) = rows["model"].unique()
-    table = tables.read(agreement_csv, "a table of agreement") if agreement_csv else None
-    known = None if table is None else agreement.detectable_of(table, networks, model)
+    models, known = rows["model"].unique(), None
+    if agreement_csv and len(models) == 1:  # of several networks, their own repeats tell the errors
+        table = tables.read(agreement_csv, "a table of agreement")
+        known = agreement.detectable_of(table, networks, models[0])
     values = longitudinal.over_sessions(rows)
     changes = longitudinal.changes(values, longitudinal.errors_of_measurement(rows, known))
     log.logger.info("%s: %s", subject, changes["verdict"].value_counts().to_dict())

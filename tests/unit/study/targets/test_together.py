@@ -1,5 +1,7 @@
 """What the study makes of several takes: written out for the tiny study."""
 
+from dataclasses import replace
+
 from courtside.study.targets import takes, together
 
 SHOT = "results/players-tiny/takes/shot"
@@ -49,6 +51,18 @@ def test_takes_of_one_subject_are_compared_over_sessions(study, studies):
     assert "model" not in found[0].joint_labels
     other = {**study.parameters["compare_sessions"], "subject": "p2"}
     assert together.archived_takes(studies(compare_sessions=other)) == []
+
+
+def test_sessions_are_compared_by_their_own_networks(studies):
+    """The table of the study has no rows of another network."""
+    one = studies()
+    own = one.sessions["players-tiny"]
+    own = replace(own, parameters=own.parameters | {"models": ["blazepose-lite"]})
+    other = replace(one, sessions=one.sessions | {"players-tiny": own})
+    measured = {row["measures_csv"] for row in together.tabulated_takes(other)}
+    found = together.archived_takes(other)
+    assert {row.labels["model"] for row in found} == {"blazepose-lite"}
+    assert measured.issuperset(row.measures for row in found)
 
 
 def test_the_table_of_the_study_has_measures_of_motion_and_of_feet(study):

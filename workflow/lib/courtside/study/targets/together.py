@@ -1,6 +1,6 @@
 """What the study makes of several takes: the figures and tables that draw or compare them."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -76,16 +76,17 @@ def fig05_layouts(study: Study) -> dict[str, list]:
 
 
 def measured_takes(
-    study: Study, sessions: Iterable[str], models: Iterable[str]
+    study: Study, sessions: Iterable[str], models: Sequence[str] | None = None
 ) -> list[MeasuredTake]:
     """Return every take of some sessions, with its first calibration and each of some networks.
 
-    A take that is measured with two calibrations is one repeat. Takes whose views are not fused are
-    left out.
+    Without `models` with the first network of its session. A take that is measured with two
+    calibrations is one repeat. Takes whose views are not fused are left out.
     """
-    found, models = [], list(models)
+    found = []
     for session in (study.sessions[name] for name in sessions if name in study.sessions):
-        for take, way, model in product(session.takes, session.take_calibrations()[:1], models):
+        own = session.parameters["models"][:1] if models is None else models
+        for take, way, model in product(session.takes, session.take_calibrations()[:1], own):
             labels = {"session": session.name, "take": take, "calibration": way, "model": model}
             for fusion in session.fusions_of(session.takes[take])[:1]:
                 known = {**labels, "fusion": fusion}
@@ -159,7 +160,7 @@ def evaluated_takes(study: Study) -> list[EvaluatedTake]:
 def archived_takes(study: Study) -> list[MeasuredTake]:
     """Return the takes of a subject that are compared over sessions."""
     step = study.parameters["compare_sessions"]
-    rows = measured_takes(study, step["sessions"], study.parameters["models"][:1])
+    rows = measured_takes(study, step["sessions"])
     named = [row for row in rows if row.labels["take"].startswith(tuple(step["takes"]))]
     of = {(session.name, take.name): take.subjects for session, take in study.takes()}
     return [r for r in named if step["subject"] in of[r.labels["session"], r.labels["take"]]]
