@@ -13,14 +13,15 @@ PARAMETERS = yaml.safe_load(Path("config/config.yaml").read_text(encoding="utf-8
 COMPARED = PARAMETERS["compare_sessions"] | {"takes": ["pre", "post"], "measures": None}
 
 
-def session(name, persons, takes):
+def session(name, persons, takes, cameras=("left",), file=None):
     content = {
         "description": "a hall",
         "court": "none",
         "subjects": {person: {} for person in persons},
-        "cameras": {"left": {}},
-        "takes": {take: {"videos": {"left": "a.mp4"}} for take in takes},
+        "cameras": {camera: {} for camera in cameras},
+        "takes": {take: {"videos": dict.fromkeys(cameras, "a.mp4")} for take in takes},
     }
+    content |= {"calibration": {"file": file}} if file else {}
     return session_files.session(name, f"{name}.yaml", content, PARAMETERS)
 
 
@@ -62,6 +63,36 @@ def test_a_recorded_session_that_is_to_be_compared_with_the_truth_is_told():
     one = study(**drawn, **measured)
     virtual = {name: replace(each, virtual={"seed": 1}) for name, each in one.sessions.items()}
     assert said(replace(one, sessions=virtual)) == []
+
+
+def test_a_take_without_any_set_of_cameras_of_table_1_is_told():
+    step = PARAMETERS["evaluate_round_trip"] | {"takes": {"spring/pre1": None, "winter/pre1": None}}
+    (line,) = said(study(evaluate_round_trip=step | {"fusions": ["three-robust"]}))
+    assert line == (
+        "season.yaml: evaluate_round_trip.takes: expected takes that one of "
+        "evaluate_round_trip.fusions, ['three-robust'], can be made of, found spring/pre1; name "
+        "one of its sets of cameras there (`views` of the session), or remove the take"
+    )
+    one = study(evaluate_round_trip=step | {"fusions": ["three-robust", "all-dlt"]})
+    spring = session("spring", ["alma"], ["pre1"], cameras=("left", "right"))
+    assert said(replace(one, sessions={"spring": spring})) == []
+
+
+def test_takes_whose_networks_cannot_be_compared_are_told():
+    """BlazePose looks in videos; keypoints of another program are those of the take."""
+    spring = session("spring", ["alma"], ["pre1", "pre2"], ("left", "right"), file="Calib.toml")
+    imported = {"coco17": {"left": "a", "right": "b"}}
+    spring.takes["pre1"] = replace(spring.takes["pre1"], videos={}, pose2d=imported)
+    step = PARAMETERS["compare_networks"] | {"sessions": ["spring", "winter"]}
+    one = study(compare_networks=step | {"networks": ["coco17", "blazepose-full"]})
+    one = replace(one, sessions={"spring": spring}, models={"blazepose-full": None})
+    key = "season.yaml: compare_networks.sessions: expected takes with"
+    assert said(one) == [
+        f"{key} videos, found none in spring/pre1; remove the session, or blazepose-full from "
+        "compare_networks.networks",
+        f"{key} `pose2d: coco17`, found none in spring/pre2; remove the session, or coco17 from "
+        "compare_networks.networks",
+    ]
 
 
 def test_a_take_without_the_sources_of_the_thesis_figures_is_told():

@@ -1,6 +1,7 @@
 """Names of takes, persons, sessions and measures in the steps of a study that nothing has."""
 
 from collections.abc import Iterator
+from itertools import product
 from typing import Any
 
 from courtside.study import measure_names
@@ -33,7 +34,8 @@ def find(config_file: str, study: Study) -> Iterator[str]:
                 f"{config_file}: {key}: expected one of the takes of session {session_name}, "
                 f"{_takes(session)}, found {name}; correct the name, or remove it"
             )
-    for key, told in (*_without_truth(study), *_without_sources(study)):
+    checks = (_without_truth, _without_sources, _without_views, _without_networks)
+    for key, told in (fault for check in checks for fault in check(study)):
         if is_own(key):
             yield f"{config_file}: {told}"
     faults = list(_faults_of_comparison(f"{config_file}: compare_sessions", study))
@@ -65,6 +67,37 @@ def _without_truth(study: Study) -> Iterator[tuple[str, str]]:
                     f"{key}: expected names of virtual sessions, whose truth is known, found "
                     f"{name}; remove it",
                 )
+
+
+def _without_views(study: Study) -> Iterator[tuple[str, str]]:
+    """Yield the key and a fault of each take of table 1 that lacks all its sets of cameras."""
+    step, key = study.parameters["evaluate_round_trip"], "evaluate_round_trip.takes"
+    for session, take in study.named_takes(step["takes"]):
+        if not any(session.fused_cameras_of(take, name) for name in step["fusions"]):
+            yield (
+                key,
+                f"{key}: expected takes that one of evaluate_round_trip.fusions, "
+                f"{step['fusions']}, can be made of, found {session.name}/{take.name}; name one of "
+                "its sets of cameras there (`views` of the session), or remove the take",
+            )
+
+
+def _without_networks(study: Study) -> Iterator[tuple[str, str]]:
+    """Yield the key and a fault of each take whose networks cannot be compared.
+
+    A network looks in videos; keypoints of another program are those of the take.
+    """
+    step, key = study.parameters["compare_networks"], "compare_networks.sessions"
+    named = [pair for pair in study.takes() if pair[0].name in step["sessions"]]
+    for (session, take), model in product(named, step["networks"]):
+        known = model in take.pose2d or (model in study.models and take.videos)
+        if session.measures(take) and not known:
+            wanted = "videos" if model in study.models else f"`pose2d: {model}`"
+            yield (
+                key,
+                f"{key}: expected takes with {wanted}, found none in {session.name}/{take.name}; "
+                f"remove the session, or {model} from compare_networks.networks",
+            )
 
 
 def _without_sources(study: Study) -> Iterator[tuple[str, str]]:
