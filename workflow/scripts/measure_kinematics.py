@@ -34,12 +34,13 @@ def main(paths, frames_csv, summary_csv, *, max_gap_s, stage, sex_of):
 
 def field_of_cameras(paths, names):
     seen = {one.name: one for one in camera.read_toml(paths.cameras)}
-    network = conversion.network_of([seen[name] for name in names])
+    used = [seen[name] for name in names]
     known = covariance.read(paths.covariance).of(names)
     columns = known.of_columns()
     if not np.isfinite(columns).all():
         return None
-    return shared_errors.with_frame(point_covariance.field(network, columns), known.frame)
+    field = point_covariance.field(conversion.network_of(used), columns, used)
+    return shared_errors.with_frame(field, known.frame)
 
 
 if __name__ == "__main__":

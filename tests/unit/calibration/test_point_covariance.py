@@ -6,9 +6,9 @@ import numpy as np
 from scipy import optimize
 
 from courtside.calibration import point_covariance
-from courtside.calibration.bundle import selection
+from courtside.calibration.bundle import conversion, selection
 from courtside.calibration.court import sfm_alignment
-from fixtures.cameras import networks_made
+from fixtures.cameras import networks_made, scene
 from fixtures.cameras.scene import opencv_projection
 
 XYZ = np.array([[3.0, 6.7, 1.0], [0.5, 2.0, 0.0], [5.0, 12.0, 2.5]])
@@ -118,6 +118,22 @@ def test_the_field_of_errors_correlates_places_as_the_cameras_do():
         np.testing.assert_allclose(
             found[one] @ found[other].T, expected, atol=1e-9 + 1e-6 * expected.max()
         )
+
+
+def test_places_outside_of_a_picture_are_placed_by_the_other_cameras():
+    cameras = scene.ring(3)
+    places = np.array([[0.3, 0.2, 1.0], [-0.5, 0.1, 0.2]])
+    narrow = replace(cameras[2], size=np.array([8, 8]))  # it shows none of the places
+    assert point_covariance.shown(cameras, places).all()
+    assert not point_covariance.shown([narrow], places).any()
+    network = conversion.network_of(cameras)
+    covariance = np.diag(np.full(network.n_columns, 1e-6))
+    found = point_covariance.field(network, covariance, [*cameras[:2], narrow])(places)
+    seen = np.tile([True, True, False], (len(places), 1))
+    expected = point_covariance.point_covariance(network, covariance, places, seen)
+    np.testing.assert_allclose(found @ found.swapaxes(1, 2), expected, rtol=1e-6)
+    alone = point_covariance.views([cameras[0], narrow, narrow], places)  # of one picture only
+    assert alone.all()
 
 
 def test_certain_cameras_give_certain_points():

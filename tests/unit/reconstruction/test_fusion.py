@@ -210,6 +210,24 @@ def test_spread_is_that_of_points_triangulated_with_cameras_moved_at_random():
     )
 
 
+def test_a_camera_that_does_not_see_the_person_does_not_make_the_spread_smaller():
+    """A third camera nearby, turned away, counts for nothing."""
+    points, names = walker.points(6, n_cameras=2), ["c0", "c1", "c2"]
+    wide = scene.ring(3, radius_m=8)[2]
+    spread = camera_covariance.CameraCovariance(names, np.diag(np.tile(SIGMA, 3) ** 2))
+    nobody = np.zeros((*points.accepted.shape[:-1], 1), dtype=bool)
+    three = replace(
+        points,
+        cameras=np.array(names),
+        accepted=np.concatenate([points.accepted, nobody], axis=-1),
+        swapped=np.concatenate([points.swapped, nobody], axis=-1),
+        reproj_error_px=np.concatenate([points.reproj_error_px, np.full(nobody.shape, np.nan)], -1),
+    )
+    found = fusion.with_cameras(three, [*CAMERAS, wide], spread.of_columns())
+    expected = fusion.with_cameras(points, CAMERAS, covariance().of_columns())
+    np.testing.assert_allclose(found.covariance_camera, expected.covariance_camera, rtol=1e-9)
+
+
 def walker_at(points, xyz):
     return type(points)(**{**vars(points), "xyz": xyz})
 

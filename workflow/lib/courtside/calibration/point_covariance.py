@@ -1,14 +1,30 @@
 """Covariance of triangulated points that the uncertainty of the cameras causes."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from courtside.calibration.bundle import problem
 from courtside.calibration.bundle.problem import Network
+from courtside.geometry.camera import Camera, in_picture, project
 
 PLACES = 4096  # at once, for the memory that their derivatives need
+
+
+def shown(cameras: Sequence[Camera], xyz: NDArray) -> NDArray:
+    """Return which places (N, 3) m are in which camera's picture, (N, cameras) bool."""
+    return np.stack([in_picture(c, project(c, xyz)) for c in cameras], axis=1)
+
+
+def views(cameras: Sequence[Camera], xyz: NDArray) -> NDArray:
+    """Return the cameras that may place points (N, 3) m, (N, cameras) bool: those that show them.
+
+    Where fewer than two do, such as for points between the frames that show them, all cameras.
+    """
+    seen = shown(cameras, xyz)
+    seen[seen.sum(axis=1) < 2] = True
+    return seen
 
 
 def sensitivity(network: Network, xyz: ArrayLike, seen: NDArray | None = None) -> NDArray:
@@ -53,8 +69,12 @@ def point_covariance(
     return np.concatenate([by @ covariance @ by.transpose(0, 2, 1) for by in found])
 
 
-def field(network: Network, covariance: NDArray) -> Callable[[NDArray], NDArray]:
+def field(
+    network: Network, covariance: NDArray, cameras: Sequence[Camera] | None = None
+) -> Callable[[NDArray], NDArray]:
     """Return a function from places (N, 3) m to how far errors of the cameras move points there.
+
+    With the `cameras` of the network, points are placed by those that show them (`views`).
 
     The result is (N, 3, R) m. The R errors are independent, each of one standard deviation, and the
     same for all places: those at two places are correlated as the covariance says. Parameters as
@@ -66,7 +86,9 @@ def field(network: Network, covariance: NDArray) -> Callable[[NDArray], NDArray]
     root = unit[:, None] * (axes * np.sqrt(np.maximum(extent, 0.0)))[:, extent > 0]
 
     def at(xyz: NDArray) -> NDArray:
-        return np.concatenate([sensitivity(network, part) @ root for part in _parts(xyz)])
+        seen = [None if cameras is None else views(cameras, part) for part in _parts(xyz)]
+        each = zip(_parts(xyz), seen, strict=True)
+        return np.concatenate([sensitivity(network, part, own) @ root for part, own in each])
 
     return at
 

@@ -246,8 +246,8 @@ def with_cameras(
 
     `covariance` (K, K) is of the columns of the network of these cameras
     (`CameraCovariance.of_columns` of `courtside.calibration.records.covariance`).
-    `covariance_camera` becomes that at a person's middle in each frame, the same for all joints;
-    NaN where the person is missing.
+    `covariance_camera` becomes that at a person's middle in each frame, by the views that one of
+    the joints rests on, the same for all joints; NaN where the person is missing.
 
     # ASSUME: the error of a calibration varies little over a body, and little if single joints use
     fewer views than the person does.
@@ -257,9 +257,10 @@ def with_cameras(
     middle = np.where(placed, points.xyz, 0).sum(axis=2) / np.where(count, count, np.nan)
     flat = middle.reshape(-1, 3)
     known = np.isfinite(flat).all(axis=1)
+    seen = points.accepted.any(axis=2).reshape(len(flat), -1)
     found = np.full((len(flat), 3, 3), np.nan)
     network = conversion.network_of(cameras)
-    found[known] = point_covariance.point_covariance(network, covariance, flat[known])
+    found[known] = point_covariance.point_covariance(network, covariance, flat[known], seen[known])
     found = found.reshape(*middle.shape, 3)[:, :, None]
     there = placed.all(axis=-1)[..., None, None]
     return replace(points, covariance_camera=np.where(there, found, np.nan))

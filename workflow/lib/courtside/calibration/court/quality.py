@@ -13,7 +13,7 @@ from courtside.calibration.court import click_checks, joint_adjustment
 from courtside.calibration.court.court import ClickedPoints, Court, to_line_centres
 from courtside.calibration.records.covariance import CameraCovariance
 from courtside.calibration.records.support import Support
-from courtside.geometry.camera import Camera, in_picture, project
+from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError
 
 # Of the verified matches of a pair of images. Chosen on small halls with ten images
@@ -197,13 +197,8 @@ def place_covariance(
     NaN where fewer than two do.
     """
     spread = covariance.of([camera.name for camera in cameras]).of_columns()
-    network, seen = conversion.network_of(cameras), shown(cameras, xyz)
+    network, seen = conversion.network_of(cameras), point_covariance.shown(cameras, xyz)
     return point_covariance.point_covariance(network, spread, xyz, seen)
-
-
-def shown(cameras: Sequence[Camera], xyz: NDArray) -> NDArray:
-    """Return which places (N, 3) m are in which camera's picture, (N, cameras) bool."""
-    return np.stack([in_picture(c, project(c, xyz)) for c in cameras], axis=1)
 
 
 def expected_cm(

@@ -161,7 +161,8 @@ def of_shape(
         for one in moved
     ], axis=1) / TINY_STEP  # fmt: skip
     of_points = np.stack([(one.points(xyz) - xyz).ravel() for one in moved], axis=1) / TINY_STEP
-    by_column = point_covariance.sensitivity(network, xyz).reshape(xyz.size, -1)
+    seen = point_covariance.views(cameras, xyz)
+    by_column = point_covariance.sensitivity(network, xyz, seen).reshape(xyz.size, -1)
     keep = np.eye(len(covariance)) - of_cameras @ (np.linalg.pinv(of_points) @ by_column)
     scale = of_cameras[:, -1:] * (scale_sigma or 0.0)
     return keep @ covariance @ keep.T + scale @ scale.T

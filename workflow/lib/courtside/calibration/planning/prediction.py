@@ -138,7 +138,7 @@ def error_quantiles_cm(
     two have are left out.
     """
     grid = quality.volume(court)
-    seen = quality.shown(fixed, grid)
+    seen = point_covariance.shown(fixed, grid)
     by_column = point_covariance.sensitivity(solution.network, grid, seen)
     by_column = by_column[np.isfinite(by_column).all(axis=(1, 2))]
     n_places, by_column = len(by_column), by_column.reshape(-1, by_column.shape[2])
