@@ -225,6 +225,31 @@ def test_opencv_one_camera(tmp_path, suffix, values):
     assert_is_the_camera(camera, "left")
 
 
+def test_a_fisheye_lens_of_opencv_is_not_taken_for_an_ordinary_one(tmp_path):
+    """OpenCV's own calibration sample writes `fisheye_model` beside k1 to k4."""
+    dist = np.array([0.01, -0.002, 0.0005, -0.0001])
+    values = {
+        "distortion_coefficients": dist,
+        "camera_matrix": K * [[3, 3, 1], [3, 3, 1], [1, 1, 1]],
+    }
+    long = values["camera_matrix"]
+    path = write_opencv(tmp_path / "left.yml", fisheye_model=1, **values)
+    (camera,) = file_formats.read(path)
+    ideal = np.array([[[-0.1, 0.05], [0.12, -0.08], [0.0, 0.02]]])
+    expected = cv2.fisheye.distortPoints(ideal, long, dist)[0]
+    found = cv2.projectPoints(
+        np.append(ideal[0], np.ones((3, 1)), 1), np.zeros(3), np.zeros(3), camera.K, camera.dist
+    )
+    np.testing.assert_allclose(found[0][:, 0], expected, atol=0.02)
+
+
+def test_a_matrix_of_infinite_columns_is_told_in_one_line(tmp_path):
+    path = write_opencv(tmp_path / "left.yml")
+    path.write_text(path.read_text().replace("cols: 3", "cols: .Inf", 1))
+    with pytest.raises(InputError, match="left: expected matrix"):
+        file_formats.read(path)
+
+
 def test_opencv_folder_has_one_camera_per_file(tmp_path):
     for name in ("right.yml", "left.xml"):
         write_opencv(tmp_path / name)
@@ -263,6 +288,7 @@ def test_opencv_several_cameras_in_one_file(tmp_path):
         ({"T": np.array([np.nan, 0, 0])}, "left: expected translation"),
         ({"unit": "inch"}, "left: expected unit"),
         ({"unit": 3}, "left: expected unit"),
+        ({"fisheye_model": 1}, r"left: expected distortions k1 k2 k3 k4 of a fisheye lens"),
         ({"distortion_coefficients": np.arange(8.0)}, "left: .*five coefficients"),
     ],
 )
@@ -349,8 +375,12 @@ def test_a_unit_is_that_of_a_file_that_states_none(tmp_path, unit, metres):
             file_formats.read(other, unit)
     toml = tmp_path / "ours.toml"
     cameras.write_toml(toml, named("left"), source="test")
-    with pytest.raises(InputError, match=r"the file or its format states it, found .*; remove"):
-        file_formats.read(toml, unit)
+    inline = re.sub(r"(?s)\[metadata\].*?(?=\n\[|$)", "", toml.read_text())
+    short = write(tmp_path / "short.toml", f'metadata = {{unit = "m"}}\n{inline}')
+    assert_is_the_camera(file_formats.read(short)[0], "left")
+    for other in (toml, short):
+        with pytest.raises(InputError, match=r"the file or its format states it, found .*; remove"):
+            file_formats.read(other, unit)
 
 
 @pytest.mark.parametrize("apart", [0.02, 400.0])

@@ -27,7 +27,7 @@ from courtside.study.errors import InputError, StrPath, about, reading
 
 LARGEST_BYTES = 1 << 24  # ASSUME: far above any calibration: a larger file is another one
 APART_M = (0.1, 150.0)  # ASSUME: of the two cameras of a hall that are farthest apart
-UNIT_STATED = re.compile(r"(?m)^\s*<?[\"']?unit[\"']?\s*[=:>]")
+UNIT_STATED = re.compile(r"(?m)(?:^|[{,])\s*<?[\"']?unit[\"']?\s*[=:>]")
 CORRECT_UNIT = (
     "if its lengths have another unit, correct the one that the file states or, where it states "
     "none, write `unit: mm` (or cm, in, ft) under calibration in the session file"

@@ -72,6 +72,8 @@ def _camera(path: Path, node: Any, name: str, root: Any) -> Camera:
     name = name_node.string() if name_node is not None and name_node.isString() else name
     where = f"{path}: camera {name}"
     table = {ours: value(child(node, keys)) for ours, keys in KEYS.items()}
+    fisheye = child(node, ("fisheye_model",)) or child(root, ("fisheye_model",))
+    table["fisheye"] = bool(value(fisheye))
     table["size"] = [value(child(node, (key,))) for key in ("image_width", "image_height")]
     unit = child(node, ("unit",)) or child(root, ("unit",))
     # ASSUME: metres where the file names no unit; OpenCV has none of its own.
@@ -106,6 +108,6 @@ def _rows(node: Any) -> Any:
     columns, data = (value(child(node, (key,))) for key in ("cols", "data"))
     if not isinstance(data, list) or not isinstance(columns, float):
         return data
-    if columns in (1, len(data)) or columns < 1:
+    if not 1 < columns < len(data):
         return data
     return [data[at : at + int(columns)] for at in range(0, len(data), int(columns))]
