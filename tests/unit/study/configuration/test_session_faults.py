@@ -286,6 +286,8 @@ def test_good_sessions_have_no_fault(root, content):
             | {"subjects": {"p1": {}}},
             ["cameras: expected two or more, found 1"],
         ),
+        (BOARDED | {"cameras": {"a": {}}}, ["cameras: expected two or more, found 1"]),
+        (SWUNG | {"cameras": {"a": {}}}, ["cameras: expected two or more, found 1"]),
         (
             RECORDED | {"cameras": {"a": {"static": "a.mp4", "chessboard": {"images": "boards"}}}},
             ["cameras.a.chessboard.images: expected a file", "boards"],

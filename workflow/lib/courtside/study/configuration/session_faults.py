@@ -255,7 +255,8 @@ def _recorded_faults(file: Path, content: Content, root: Path) -> Iterator[str]:
         )
     yield from _board_faults(file, content)
     yield from _wand_faults(file, content)
-    if len(cameras) < 2 and ("calibration" in content or any(map(take_faults.cameras_of, takes))):
+    placed = {"calibration", "board", "wand"} & set(content)
+    if len(cameras) < 2 and (placed or any(map(take_faults.cameras_of, takes))):
         yield (
             f"{file}: cameras: expected two or more, found {len(cameras)}; one camera sees no depth"
         )
