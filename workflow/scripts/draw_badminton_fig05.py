@@ -21,7 +21,7 @@ def main(paths, pdf, png, csv, *, layouts, sources, blur_faces):
     for example in chosen:
         pose2d, film = files[example["session"], example["take"], example["camera"]]
         view, at = keypoints.read_2d(pose2d), example["frame_idx"]
-        persons = [view.xy[:, at]]
+        persons = [fig05.person_of(example, view)]
         near = privacy.around(view.time_s, view.xy, at)
         image = picture_crops.read(
             film, view.time_s[at], persons, joints, others=near, hidden=blur_faces

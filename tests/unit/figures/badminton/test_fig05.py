@@ -5,6 +5,8 @@ import pandas as pd
 import pytest
 
 from courtside.figures.badminton import fig05
+from fixtures.cameras import scene
+from fixtures.people import keypoints_made
 
 JOINTS = ["left_shoulder", "right_shoulder", "left_hip", "right_hip", "left_wrist", "right_wrist"]
 LAYOUTS = {"a": ("gym-a", "shot", ["side", "back"]), "b": ("gym-b", "shot", ["oblique", "back"])}
@@ -155,6 +157,17 @@ def test_examples_are_of_the_worst_camera_one_good_and_one_bad():
     assert works["camera"] == fails["camera"] == "back"
     assert works["rows"].placed.all()
     assert fails["frame_idx"] == 20 and fails["rows"].placed.sum() == 2
+
+
+def test_an_example_shows_its_own_person_and_nobody_else():
+    """A bystander nearby, and one whose joints are not known, stay unrecognisable."""
+    rows = both()
+    for example in fig05.examples(rows, LAYOUTS):
+        own = example["rows"].set_index("joint").loc[JOINTS, ["x_px", "y_px"]].to_numpy()
+        xy = np.full((3, 30, len(JOINTS) + 1, 2), np.nan)
+        xy[0, :, 1:], xy[2, example["frame_idx"], 1:] = own + 8, own + 1e-5
+        view = keypoints_made.view(scene.ring(1)[0], ["nose", *JOINTS], np.arange(30) / 30, xy)
+        np.testing.assert_allclose(fig05.person_of(example, view)[0, 1:], own, atol=1e-4)
 
 
 def test_nobody_found_gives_no_example():

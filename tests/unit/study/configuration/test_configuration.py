@@ -655,6 +655,20 @@ def test_layouts_of_figure_5_show_cameras_of_takes_that_are_compared_with_someth
     where = "config/config.yaml: draw_badminton_fig05.layouts.a"
     assert strange == f"{where}.cameras: expected one of ['left', 'right'], found 'middle'"
     assert unseen.startswith(f"{where}.take: expected a virtual take, or one of evaluate_networks")
+    (folder.parent / "openpose").mkdir()
+    take = SESSION["takes"]["t1"] | {
+        "pose2d": {"coco17": dict.fromkeys(("left", "right"), "openpose")}
+    }
+    compared = yaml_files.read(CONFIG / "config.yaml")["evaluate_networks"]
+    steps = changed_step(
+        "draw_badminton_fig05", layouts={"a": {"take": "hall/t1", "cameras": ["left"]}}
+    )
+    steps |= {"evaluate_networks": compared | {"takes": {"hall/t1": "coco17"}}}
+    (unpaired,) = faults(folder, changed("takes", value={"t1": take}), **steps)
+    assert unpaired.startswith(
+        f"{where}.take: expected a take of one person by cameras on one clock"
+    )
+    load(folder, changed("takes", value={"t1": take | {"synchronised": True}}), **steps)
     layouts = {"a": {"take": "elsewhere/t1", "cameras": ["left"]}}
     load(folder, **changed_step("draw_badminton_fig05", layouts=layouts))
 

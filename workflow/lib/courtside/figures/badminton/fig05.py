@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from courtside.evaluation.tables import calibration
 from courtside.figures.style import bars, picture_crops, style
+from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.statistics import autocorrelation
 
 # By name session, take and the cameras that reconstruct together.
@@ -117,6 +118,18 @@ def examples(rows: pd.DataFrame, layouts: Layouts) -> list[dict]:
             one = {"works": works, "rows": calibration.pick(part, **where)}
             found.append({"layout": layout, "session": session, "take": take, **where, **one})
     return found
+
+
+def person_of(example: dict, view: Keypoints2D) -> NDArray:
+    """Return the joints (1, J, 2) px of the tracklet that an example of `examples` shows.
+
+    Other tracklets of its camera's `view` may be of people who did not agree to pictures.
+    """
+    rows, names = example["rows"], list(map(str, view.joints))
+    places = [names.index(joint) for joint in rows["joint"]]
+    every = view.xy[:, example["frame_idx"]]
+    off = np.linalg.norm(every[:, places] - rows[["x_px", "y_px"]].to_numpy(), axis=2)
+    return every[[int(np.nan_to_num(off, nan=np.inf).min(axis=1).argmin())]]
 
 
 def draw(

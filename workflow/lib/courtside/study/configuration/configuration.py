@@ -194,6 +194,12 @@ def _layout_faults(study: Study, config_file: str) -> Iterator[str]:
                     f"{where}.take: expected a virtual take, or one of evaluate_networks.takes, "
                     f"found {place['take']}; name it there with its imported keypoints"
                 )
+            elif not session.virtual and not (take.synchronised and len(take.subjects) == 1):
+                yield (
+                    f"{where}.take: expected a take of one person by cameras on one clock "
+                    "(`synchronised: true`), whose pictures are of the same moments, found "
+                    f"{place['take']}; name another one"
+                )
 
 
 def _used(config: Content, found: dict[str, tuple]) -> list[str]:
