@@ -25,6 +25,15 @@ SHOWN = {
         "joints": "{used.n}",
         "with": "{used.command}",
     },
+    "sides": {
+        "raw limb joints, median / 95 %, mm; above 150 mm": "{row}",
+        "robust, as detected": "{detected}",
+        "robust, exchanged (used)": "{robust}",
+        "plain DLT, as detected": "{plain}",
+        "plain DLT, exchanged": "{plain_exchanged}",
+        "joints": "{robust.n}",
+        "with": "{robust.command}",
+    },
     "true-cameras": {
         "corrected, median / 95 %, mm": "{row}",
         "cameras of the study": "{study}",
