@@ -38,7 +38,7 @@ def opened(open_page, tmp_path):
             for c in range(n_cameras)
         ]
         about = {"session": "hall", "take": to, "subjects": ["a", "b"], "target": "data/p.csv"}
-        about |= {"takes": ["walk", "run", "jump"], "file_ms": 0}
+        about |= {"takes": ["walk", "run", "jump"], "file_ms": 0, "meet_m": 0.8}
         columns = dict.fromkeys(range(n_people), COLUMNS)
         built = people_page.build(
             {**about, **(words or {})}, take.found, take.seen, columns, shots, **given
@@ -368,3 +368,22 @@ def test_the_keyboard_alone_chooses_a_name_and_goes_on_from_there(opened):
     assert page.input_value("article[data-person=person-9] input") == "1.20"
     page.keyboard.press("Enter")
     assert page.evaluate(focused) == "Name of person-9"
+
+
+def test_a_name_of_two_persons_at_one_time_is_told_with_their_distance(opened):
+    page = opened()
+    name(page, "person-1", "a")
+    assert page.locator(".part .bad").count() == 0
+    name(page, "person-2", "a")
+    told = page.locator(".part .bad").all_inner_texts()
+    assert told == [
+        "a is also person-2, 3.0 m away at 0.0 s: correct one of them.",
+        "a is also person-1, 3.0 m away at 0.0 s: correct one of them.",
+    ]
+    assert page.inner_text("#clashes") == "Two persons at one time: a."
+    page.click("article[data-person=person-1] >> text=Split here >> nth=2")
+    page.click("article[data-person=person-2] >> text=Split here >> nth=2")
+    name(page, "person-1", "", part=1)
+    name(page, "person-2", "")  # one before the cut, the other after it
+    name(page, "person-2", "a", part=1)
+    assert page.locator(".part .bad").count() == 0 and page.inner_text("#clashes") == ""

@@ -60,6 +60,20 @@
     return [...new Set(state.parts[person.index].map((part) => part.subject).filter(Boolean))];
   }
 
+  // Where one name is given to two persons at one time, further apart than two tracks of one body.
+  function clash(person, at) {
+    const own = state.parts[person.index], { subject } = own[at], found = { far: given.meet_m, words: "" };
+    for (const other of subject ? given.persons.filter((one) => one !== person && namesOf(one).includes(subject)) : []) {
+      const theirs = state.parts[other.index], places = new Map(other.path.map(([time_s, x, y]) => [time_s, [x, y]]));
+      for (const [time_s, x, y] of person.path.filter((row) => within(own, at)({ time_s: row[0] }) && places.has(row[0]))) {
+        const there = theirs.some((part, n) => part.subject === subject && within(theirs, n)({ time_s }));
+        const far = there ? Math.hypot(x - places.get(time_s)[0], y - places.get(time_s)[1]) : 0;
+        if (far > found.far) Object.assign(found, { far, words: `${subject} is also ${other.name}, ${far.toFixed(1)} m away at ${time_s.toFixed(1)} s` });
+      }
+    }
+    return found.words;
+  }
+
   // ---- changing names ----
   function keep() {
     work.keep({ ...state, past: past.slice(-UNDOS), time: new Date().toISOString() });
@@ -129,6 +143,8 @@
     byId("missing").textContent = !open.length ? "Every subject has a person."
       : alone ? "One subject and one person: no name is needed." : `Not named yet: ${open.join(", ")}.`;
     byId("missing").className = open.length && !alone ? "warn" : "good";
+    const twice = given.persons.flatMap((person) => state.parts[person.index].filter((_, at) => clash(person, at)).map((part) => part.subject));
+    byId("clashes").textContent = twice.length ? `Two persons at one time: ${[...new Set(twice)].join(", ")}.` : "";
     const kept = others().map(({ take, rows, where }) => `${take} (${counted(rows)} ${where})`);
     byId("where").textContent = `The workflow reads ${given.target}, where the session's file says people: ${given.target}. `
       + (given.takes.length < 2 ? "" : `The file holds all takes: ${kept.length ? `beside ${given.take}, ${kept.join(", ")}` : "no names of other takes are known here"}. `
@@ -177,6 +193,8 @@
     choice.addEventListener("change", () => change(() => { part.subject = choice.value; }));
     const pictured = person.columns.filter(within(own, at)).some((column) => column.views.length);
     if (part.subject && !pictured) element(row, "span", { className: "bad", textContent: "There is no picture in this part: it cannot be saved." });
+    const twice = clash(person, at);
+    if (twice) element(row, "span", { className: "bad", textContent: `${twice}: correct one of them.` });
   }
 
   function renderBounds(row, person, part, at) {
