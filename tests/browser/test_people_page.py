@@ -119,7 +119,9 @@ def test_twelve_people_are_found_by_number_on_the_floor_and_in_the_largest_pictu
     page.check("#all")
     assert page.locator(shown).all_inner_texts() == [f"c{k}" for k in range(8)]
     page.locator("#floor .label").nth(8).click()
-    until(page, "Math.abs(document.getElementById('person-9').getBoundingClientRect().top) < 2")
+    below = "document.getElementById('person-9').getBoundingClientRect().top - "
+    below += "document.querySelector('header').getBoundingClientRect().bottom"
+    until(page, f"{below} >= 0 && {below} < 10")
     name(page, "person-9", "a")
     assert page.locator("#floor .label").all_text_contents()[8] == "a"
     options = page.locator("article[data-person=person-1] option").all_inner_texts()
@@ -387,3 +389,25 @@ def test_a_name_of_two_persons_at_one_time_is_told_with_their_distance(opened):
     name(page, "person-2", "")  # one before the cut, the other after it
     name(page, "person-2", "a", part=1)
     assert page.locator(".part .bad").count() == 0 and page.inner_text("#clashes") == ""
+
+
+def test_messages_and_saving_stay_in_sight(opened):
+    page = opened(n_people=12)
+    page.click("article[data-person=person-12] >> text=Split here >> nth=2")
+    page.fill("article[data-person=person-12] input", "99")
+    page.keyboard.press("Tab")
+    until(page, "document.getElementById('message').textContent.includes('the one before')")
+    assert page.evaluate("scrollY") > 1000
+    for shown in ("#message", "#save", "#undo"):
+        assert 0 <= page.locator(shown).bounding_box()["y"] < 200
+
+
+@pytest.mark.parametrize(("n_people", "length_m"), [(2, 1), (12, 5)])
+def test_the_floor_has_a_scale(opened, n_people, length_m):
+    page = opened(n_people=n_people)
+    assert page.locator("#floor .scale-label").text_content() == f"{length_m} m"
+    ends = [float(page.get_attribute("#floor .scale", key)) for key in ("x1", "x2")]
+    assert ends[1] - ends[0] == pytest.approx(length_m)
+    floor = page.locator("#floor").bounding_box()
+    bar = page.locator("#floor .scale").bounding_box()
+    assert floor["x"] <= bar["x"] and bar["x"] + bar["width"] <= floor["x"] + floor["width"]

@@ -271,6 +271,9 @@
       label.textContent = words;
       label.addEventListener("click", () => byId(person.name).scrollIntoView());
     }
+    const bar = size[0] < 10 ? 1 : 5, left = low[0] + 2 * wide, down = -low[1] - 2 * wide; // m
+    draw("line", { class: "scale", x1: left, y1: down, x2: left + bar, y2: down, "stroke-width": wide / 2 });
+    draw("text", { class: "scale-label", x: left + bar / 2, y: down - wide, "font-size": 3 * wide }).textContent = `${bar} m`;
   }
 
   // ---- files ----
@@ -337,6 +340,8 @@
     action(event.shiftKey);
   });
   window.addEventListener("storage", (event) => { if (event.key === SAVED) renderSide(); });
+  const bar = document.querySelector("header");
+  new ResizeObserver(() => document.documentElement.style.setProperty("--bar", `${bar.offsetHeight}px`)).observe(bar);
 
   // ---- start ----
   function start() {
