@@ -271,6 +271,7 @@ def clicked(court, views, rng, wrong=None, points=None):
 def test_the_point_that_fits_worst_is_named(open_page, make, court, views, wrong):
     rng = np.random.default_rng(1)
     page = open_page(make(clicks=clicked(court, views, rng, wrong)))
+    until(page, "document.getElementById('fit').textContent")  # once the picture is there
     message = page.inner_text("#fit")
     assert f"Look again at {wrong}:" in message
     off = float(re.search(r"([\d.]+) px from where", message).group(1))
@@ -381,6 +382,9 @@ def test_each_table_counts_as_unsaved_until_it_is_saved(open_page, make, picture
     page.click("text=smash1 back 12")
     waiting["after"] = page.inner_text("#where")
     page.reload()
+    assert "Not saved yet" not in page.inner_text("#where")
+    page.click("text=smash1 back 12")
+    until(page, "document.querySelector('#tabs [aria-selected=true]').innerText.includes('smash')")
     waiting["restored"] = page.inner_text("#where")
     assert all("Not saved yet" in words for words in waiting.values())
 
@@ -473,3 +477,40 @@ def test_the_page_is_light_without_its_pictures(make, pictures):
     path = make()
     held = sum(len(base64.b64encode(picture)) for picture in pictures.values())
     assert path.stat().st_size - held < 200_000
+
+
+def test_a_page_in_two_tabs_keeps_the_marks_of_the_first_to_change_it(open_page, make):
+    one = open_page(make())
+    two = one.context.new_page()
+    two.goto(one.url)
+    one.keyboard.press("Space")
+    until(two, "document.getElementById('unkept').textContent.includes('reload before you go on')")
+    two.keyboard.press("n")
+    two.keyboard.press("Space")
+    assert two.is_visible("#unkept") and not one.is_visible("#unkept")
+    one.reload()
+    assert list(marked(one)) == [("back", "p01")]
+    one.click("#help summary")
+    one.click("#afresh")
+    one.keyboard.press("h")  # and keeps on where its work was deleted
+    assert not one.is_visible("#unkept")
+
+
+def test_a_browser_that_keeps_nothing_says_so_and_asks_before_marks_are_lost(
+    open_page, make, tmp_path
+):
+    page = open_page(make())
+    page.add_init_script(
+        "Object.defineProperty(window, 'localStorage', { get() { throw new Error('forbidden'); } })"
+    )
+    page.reload()
+    asked = []
+    page.on("dialog", lambda dialog: (asked.append(dialog.type), dialog.accept()))
+    page.keyboard.press("Space")
+    assert "This browser keeps nothing: save" in page.inner_text("#unkept")
+    saved(page, tmp_path)
+    page.reload()
+    assert asked == []
+    page.click("#view")
+    page.reload()
+    assert asked == ["beforeunload"]

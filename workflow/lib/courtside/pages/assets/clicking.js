@@ -5,18 +5,21 @@
   const given = courtside.data("clicking");
   const { court, frames, ends } = given;
   const { byId, button, element, say } = courtside;
-  const KEEP = `courtside clicks ${given.stamp}`;
   const NEAR = 12; // screen px per picture px when the view goes to a point
   const LOOKED = 5; // of them, from which a proposal can be confirmed
   const FINE_PX = 0.1;
+  const UNDOS = 50; // changes that can be undone after a reload
 
   let marks = Object.fromEntries(frames.map((frame) => [frame.id, {}]));
   let past = [], future = [];
   let at = 0, chosen = "", fits = {}, turns = {}, views = {}, shownFrame = "";
-  const unsaved = new Set(); // tables that differ from their files
+  const savedTexts = {}; // by table: what its file holds
+  const unsaved = (table) => table.text() !== savedTexts[table.name];
+  const work = courtside.keeper(`courtside clicks ${given.stamp}`, () => used.some(unsaved));
 
   const frame = () => frames[at];
   const isTake = (one) => one.take !== null;
+  const label = (one) => (isTake(one) ? `${one.take} ${one.camera} ${one.frame_idx}` : one.camera);
   const items = (one) => (isTake(one) ? ends : court.points);
   const markOf = (one, name) => marks[one.id][name] || null;
   const placed = (mark) => mark && !mark.hidden;
@@ -76,7 +79,6 @@
       const mark = direction > 0 ? change.after : change.before;
       if (mark) marks[change.frame][change.name] = mark;
       else delete marks[change.frame][change.name];
-      unsaved.add(tableOf(frames.find((one) => one.id === change.frame)));
     }
     fits = {};
     keep();
@@ -193,7 +195,7 @@
 
   // ---- keeping, saving, loading ----
   function keep() {
-    byId("afresh").disabled = !courtside.storage.set(KEEP, { marks, time: new Date().toISOString() });
+    byId("afresh").disabled = !work.keep({ marks, past: past.slice(-UNDOS), saved: savedTexts, time: new Date().toISOString() });
   }
 
   function rows(takes) {
@@ -207,12 +209,12 @@
     racket: { name: "racket.csv", columns: clickTables.RACKET, takes: true, text: () => clickTables.racket(rows(true)) },
   };
   const used = Object.values(tables).filter((table) => frames.some((one) => isTake(one) === table.takes));
-  const tableOf = (one) => used.find((table) => table.takes === isTake(one));
-  const current = () => tableOf(frame());
+  const current = () => used.find((table) => table.takes === isTake(frame()));
 
   function save(table) {
-    courtside.download(table.name, table.text(), "text/csv");
-    unsaved.delete(table);
+    savedTexts[table.name] = table.text();
+    courtside.download(table.name, savedTexts[table.name], "text/csv");
+    keep();
     say(`Saved ${table.name}: ${rows(table.takes).length} rows. Put it where the session's file says: ${given.targets[table.name]}`);
     render();
   }
@@ -266,7 +268,7 @@
     byId("undo").disabled = !past.length;
     byId("redo").disabled = !future.length;
     byId("text").value = current().text();
-    byId("where").textContent = `${unsaved.has(current()) ? "Not saved yet. " : ""}The workflow reads ${given.targets[current().name]}.`;
+    byId("where").textContent = `${unsaved(current()) ? "Not saved yet. " : ""}The workflow reads ${given.targets[current().name]}.`;
   }
 
   function renderTabs() {
@@ -393,14 +395,14 @@
   const actions = {
     "zoom-in": () => zoom(1.5), "zoom-out": () => zoom(1 / 1.5), whole: () => view.whole(), near, undo, redo, confirm, hide,
     delete: remove, next: () => step(1), previous: () => step(-1), "loupe-toggle": magnify, turn,
-    afresh: () => { courtside.storage.remove(KEEP); say("This browser has deleted the saved work of this session; the marks stay until the page is closed."); },
+    afresh: () => { work.forget(); say("This browser has deleted the saved work of this session; the marks stay until the page is closed."); },
   };
   for (const [id, action] of Object.entries(actions)) byId(id).addEventListener("click", action);
 
   // ---- start ----
   function start() {
     frames.forEach((one, index) => {
-      const tab = button(byId("tabs"), isTake(one) ? `${one.take} ${one.camera} ${one.frame_idx} ` : `${one.camera} `, () => {
+      const tab = button(byId("tabs"), `${label(one)} `, () => {
         open(index);
         byId("view").focus({ preventScroll: true }); // so that keys go to the picture
       });
@@ -413,11 +415,12 @@
       button(byId("files"), "Copy", () => copy(table), { title: `Copy ${table.name}` });
     }
     button(byId("files"), "Load…", () => byId("chooser").click(), { id: "load" });
-    const kept = courtside.storage.get(KEEP);
+    for (const table of used) savedTexts[table.name] = table.text();
+    const kept = work.read();
     if (kept && kept.marks) {
-      const ofFiles = used.map((table) => table.text());
       for (const one of frames) if (kept.marks[one.id]) marks[one.id] = kept.marks[one.id];
-      used.forEach((table, index) => { if (table.text() !== ofFiles[index]) unsaved.add(table); });
+      past = kept.past || [];
+      Object.assign(savedTexts, kept.saved);
       const time = new Date(kept.time);
       say(`Your work of ${Number.isNaN(time.getTime()) ? "last time" : time.toLocaleString()} is here again.`);
     } else if (frames.some(eitherEnd)) say("The court was found, but not which end is which: mark one point in each picture, then the others are proposed.");
