@@ -242,6 +242,8 @@ def test_a_table_of_the_workflow_is_loaded_and_saved_as_it_was(open_page, make, 
         ("camera,point,frame_idx,x_px,y_px\nfront,p01,0,1,2\n", 'no picture of camera "front"'),
         ("camera,point,frame_idx,x_px,y_px\nback,p99,0,1,2\n",
          'line 2: the court has no point "p99"'),
+        ("camera,point,frame_idx,x_px,y_px\nback,p01,0,99999,-50\n",
+         "line 2: expected a place in the picture of 960 x 540 px, found 99999, -50"),
         ("camera,point,frame_idx,x_px,y_px\nback,p01,0,one,2\n", 'x_px as a number, found "one"'),
         ("camera,point,frame_idx,x_px,y_px\n\nback,p01,0,1\n", "line 3: expected 5 cells, found 4"),
         ("camera,point,frame_idx,x_px,y_px\nback,p01,0,1,2\nback,p01,0,1,2\n",
@@ -477,6 +479,25 @@ def test_the_page_is_light_without_its_pictures(make, pictures):
     path = make()
     held = sum(len(base64.b64encode(picture)) for picture in pictures.values())
     assert path.stat().st_size - held < 200_000
+
+
+def test_a_file_of_one_camera_leaves_the_marks_of_the_others(open_page, make, tmp_path):
+    given = {"back": {"p01": (5.0, 6.0), "p02": (7.0, 8.0)}, "oblique": {"p01": (1.0, 2.0)}}
+    page = open_page(make(clicks=given))
+    path = tmp_path / "one.csv"
+    path.write_text("camera,point,frame_idx,x_px,y_px\noblique,p02,0,10,-5\n")  # 5 px: not exact
+    page.set_input_files("#chooser", path)
+    until(page, "document.getElementById('message').textContent.startsWith('Loaded 1 row of')")
+    assert "marks of oblique. Those of back stay." in page.inner_text("#message")
+    of_back = {("back", point): xy for point, xy in given["back"].items()}
+    assert marked(page) == {**of_back, ("oblique", "p02"): (10.0, -5.0)}
+    page.reload()
+    page.click("#undo")
+    assert marked(page) == {**of_back, ("oblique", "p01"): (1.0, 2.0)}
+    path.write_text("camera,point,frame_idx,x_px,y_px\n")
+    page.set_input_files("#chooser", path)
+    until(page, "document.getElementById('message').textContent.includes('nothing has changed')")
+    assert len(marked(page)) == 3
 
 
 def test_a_page_in_two_tabs_keeps_the_marks_of_the_first_to_change_it(open_page, make):

@@ -8,6 +8,7 @@
   const NEAR = 12; // screen px per picture px when the view goes to a point
   const LOOKED = 5; // of them, from which a proposal can be confirmed
   const FINE_PX = 0.1;
+  const SLACK = 0.01; // of a picture's size: what is not exact may lie outside by less, as for the workflow
   const UNDOS = 50; // changes that can be undone after a reload
 
   let marks = Object.fromEntries(frames.map((frame) => [frame.id, {}]));
@@ -233,17 +234,26 @@
       const one = frames.find((f) => f.camera === row.camera && (table.takes ? f.take === row.take : !isTake(f)) && f.frame_idx === row.frame_idx);
       if (!one) throw new Error(`${where}: this page has no picture of camera "${row.camera}", frame ${row.frame_idx}; nothing was loaded`);
       if (!items(one).some((item) => item.name === point)) throw new Error(`${where}: the court has no point "${point}"; nothing was loaded`);
+      const xy = [row.x_px, row.y_px], wide = one.size.map((length) => SLACK * length);
+      if (!xy.every((value, axis) => value > -wide[axis] && value < one.size[axis] + wide[axis])) {
+        throw new Error(`${where}: expected a place in the picture of ${one.size.join(" x ")} px, found ${xy.join(", ")}; nothing was loaded`);
+      }
       const key = `${one.id} ${point}`;
       if (key in wanted) throw new Error(`${where}: ${point} is there twice for camera ${row.camera}; nothing was loaded`);
       wanted[key] = { frame: one.id, name: point, after: { x: row.x_px, y: row.y_px } };
     }
-    const changes = frames.filter((one) => isTake(one) === table.takes).flatMap((one) => items(one).map((item) => {
+    const named = new Set(Object.values(wanted).map((one) => one.frame));
+    const [replaced, others] = [true, false].map((yes) => frames.filter((one) => isTake(one) === table.takes && named.has(one.id) === yes));
+    const changes = replaced.flatMap((one) => items(one).map((item) => {
       const before = markOf(one, item.name), found = wanted[`${one.id} ${item.name}`];
       if (!found && !placed(before)) return null; // what is marked as not visible stays
       return { frame: one.id, name: item.name, before, after: found ? found.after : null };
     })).filter(Boolean);
-    if (changes.length) change(changes);
-    say(`Loaded ${Object.keys(wanted).length} rows of ${name}; Undo brings back what was here.`);
+    const n = Object.keys(wanted).length, kept = others.filter((one) => items(one).some((item) => placed(markOf(one, item.name))));
+    if (!n) return say(`${name} has no rows: nothing has changed.`);
+    change(changes);
+    return say(`Loaded ${n} ${n === 1 ? "row" : "rows"} of ${name}, the marks of ${replaced.map(label).join(", ")}. `
+      + `${kept.length ? `Those of ${kept.map(label).join(", ")} stay. ` : ""}Undo brings back what was here.`);
   }
 
   byId("chooser").addEventListener("change", async (event) => {
