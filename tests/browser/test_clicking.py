@@ -535,3 +535,30 @@ def test_a_browser_that_keeps_nothing_says_so_and_asks_before_marks_are_lost(
     page.click("#view")
     page.reload()
     assert asked == ["beforeunload"]
+
+
+def test_arrows_change_the_tab_where_it_has_the_focus_and_move_no_mark(open_page, make):
+    page = open_page(make(clicks={"back": {"p01": (100.0, 50.0)}}))
+    chosen = "document.querySelector('#tabs [aria-selected=true]').innerText.split(' ')[0]"
+    page.click('#list [data-point="p01"]')
+    page.focus("#tabs button >> nth=0")
+    for key, camera in (
+        ("ArrowRight", "oblique"),
+        ("ArrowRight", "back"),
+        ("ArrowLeft", "oblique"),
+    ):
+        page.keyboard.press(key)
+        until(
+            page,
+            f"{chosen} === '{camera}' && document.activeElement.innerText.startsWith('{camera}')",
+        )
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.press("ArrowDown")
+    page.focus("#zoom-in")
+    page.keyboard.press("ArrowRight")
+    assert marked(page) == {("back", "p01"): (100.0, 50.0)}
+    page.keyboard.press("Enter")
+    assert page.evaluate("document.activeElement.id") == "zoom-in"
+    page.click("#zoom-in")  # with the mouse: keys go to the picture again
+    page.keyboard.press("ArrowRight")
+    assert marked(page) == {("back", "p01"): (100.1, 50.0)}

@@ -379,6 +379,12 @@
     byId("loupe-toggle").setAttribute("aria-pressed", String(shown));
     view.setLoupe(shown);
   };
+  const tab = (by) => {
+    if (!by) return;
+    const next = (at + by + frames.length) % frames.length;
+    open(next);
+    byId("tabs").children[next].focus();
+  };
   const near = () => { if (!visit(true)) say(`The place of ${chosen} is unknown: mark four points on the floor first.`); };
   const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
   const keys = {
@@ -394,7 +400,8 @@
     const onButton = target.closest("button") && (key === "Enter" || key === " ");
     let action = null;
     if (event.ctrlKey || event.metaKey) action = chords[key] && (() => chords[key](event.shiftKey));
-    else if (arrows[key]) action = () => nudge(...arrows[key].map((value) => value * (event.shiftKey ? 1 : FINE_PX)));
+    else if (arrows[key] && target.closest("#tabs")) action = () => tab(arrows[key][0]);
+    else if (arrows[key]) action = !target.closest(".tools") && (() => nudge(...arrows[key].map((value) => value * (event.shiftKey ? 1 : FINE_PX))));
     else if (/^[1-9]$/.test(key)) action = frames[Number(key) - 1] && (() => open(Number(key) - 1));
     else if (!onButton) action = keys[key];
     if (!action) return;
@@ -407,6 +414,10 @@
     delete: remove, next: () => step(1), previous: () => step(-1), "loupe-toggle": magnify, turn,
     afresh: () => { work.forget(); say("This browser has deleted the saved work of this session; the marks stay until the page is closed."); },
   };
+  // After a click on a tool, keys go to the picture again; whoever uses a tool by keys stays there.
+  document.querySelector(".tools").addEventListener("click", (/** @type {MouseEvent} */ event) => {
+    if (event.detail) byId("view").focus({ preventScroll: true });
+  });
   for (const [id, action] of Object.entries(actions)) byId(id).addEventListener("click", action);
 
   // ---- start ----
