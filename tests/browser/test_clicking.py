@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
-from browser.waiting import until
+from browser.waiting import second_tab, until
 from courtside.geometry import camera as projection
 from courtside.pages import page as pages
 from courtside.pages.clicking import page as clicking_page
@@ -502,8 +502,7 @@ def test_a_file_of_one_camera_leaves_the_marks_of_the_others(open_page, make, tm
 
 def test_a_page_in_two_tabs_keeps_the_marks_of_the_first_to_change_it(open_page, make):
     one = open_page(make())
-    two = one.context.new_page()
-    two.goto(one.url)
+    two = second_tab(one.context, one.url)
     one.keyboard.press("Space")
     until(two, "document.getElementById('unkept').textContent.includes('reload before you go on')")
     two.keyboard.press("n")

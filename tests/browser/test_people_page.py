@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from browser.waiting import until
+from browser.waiting import second_tab, until
 from courtside.pages import page as pages
 from courtside.pages.people import page as people_page
 from courtside.pages.people.strips import Shot
@@ -46,9 +46,7 @@ def opened(open_page, tmp_path):
         pages.write(tmp_path / f"{to}.html", built)
         if context is None:
             return open_page(tmp_path / f"{to}.html")
-        page = context.new_page()
-        page.goto((tmp_path / f"{to}.html").as_uri())
-        return page
+        return second_tab(context, (tmp_path / f"{to}.html").as_uri())
 
     return made
 
@@ -290,8 +288,7 @@ def test_a_row_that_the_workflow_refuses_is_refused_by_its_line(opened, tmp_path
 
 def test_a_page_in_two_tabs_keeps_the_work_of_the_first_to_change_it(opened):
     one = opened()
-    two = one.context.new_page()
-    two.goto(one.url)
+    two = second_tab(one.context, one.url)
     name(one, "person-1", "a")
     until(two, "document.getElementById('unkept').textContent.includes('reload before you go on')")
     name(two, "person-2", "b")
