@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
-from browser.waiting import until
+from browser.waiting import second_tab, until
 from courtside.geometry import camera as projection
 from courtside.pages import page as pages
 from courtside.pages.clicking import page as clicking_page
@@ -242,6 +242,8 @@ def test_a_table_of_the_workflow_is_loaded_and_saved_as_it_was(open_page, make, 
         ("camera,point,frame_idx,x_px,y_px\nfront,p01,0,1,2\n", 'no picture of camera "front"'),
         ("camera,point,frame_idx,x_px,y_px\nback,p99,0,1,2\n",
          'line 2: the court has no point "p99"'),
+        ("camera,point,frame_idx,x_px,y_px\nback,p01,0,99999,-50\n",
+         "line 2: expected a place in the picture of 960 x 540 px, found 99999, -50"),
         ("camera,point,frame_idx,x_px,y_px\nback,p01,0,one,2\n", 'x_px as a number, found "one"'),
         ("camera,point,frame_idx,x_px,y_px\n\nback,p01,0,1\n", "line 3: expected 5 cells, found 4"),
         ("camera,point,frame_idx,x_px,y_px\nback,p01,0,1,2\nback,p01,0,1,2\n",
@@ -271,6 +273,7 @@ def clicked(court, views, rng, wrong=None, points=None):
 def test_the_point_that_fits_worst_is_named(open_page, make, court, views, wrong):
     rng = np.random.default_rng(1)
     page = open_page(make(clicks=clicked(court, views, rng, wrong)))
+    until(page, "document.getElementById('fit').textContent")  # once the picture is there
     message = page.inner_text("#fit")
     assert f"Look again at {wrong}:" in message
     off = float(re.search(r"([\d.]+) px from where", message).group(1))
@@ -381,6 +384,9 @@ def test_each_table_counts_as_unsaved_until_it_is_saved(open_page, make, picture
     page.click("text=smash1 back 12")
     waiting["after"] = page.inner_text("#where")
     page.reload()
+    assert "Not saved yet" not in page.inner_text("#where")
+    page.click("text=smash1 back 12")
+    until(page, "document.querySelector('#tabs [aria-selected=true]').innerText.includes('smash')")
     waiting["restored"] = page.inner_text("#where")
     assert all("Not saved yet" in words for words in waiting.values())
 
@@ -473,3 +479,85 @@ def test_the_page_is_light_without_its_pictures(make, pictures):
     path = make()
     held = sum(len(base64.b64encode(picture)) for picture in pictures.values())
     assert path.stat().st_size - held < 200_000
+
+
+def test_a_file_of_one_camera_leaves_the_marks_of_the_others(open_page, make, tmp_path):
+    given = {"back": {"p01": (5.0, 6.0), "p02": (7.0, 8.0)}, "oblique": {"p01": (1.0, 2.0)}}
+    page = open_page(make(clicks=given))
+    path = tmp_path / "one.csv"
+    path.write_text("camera,point,frame_idx,x_px,y_px\noblique,p02,0,10,-5\n")  # 5 px: not exact
+    page.set_input_files("#chooser", path)
+    until(page, "document.getElementById('message').textContent.startsWith('Loaded 1 row of')")
+    assert "marks of oblique. Those of back stay." in page.inner_text("#message")
+    of_back = {("back", point): xy for point, xy in given["back"].items()}
+    assert marked(page) == {**of_back, ("oblique", "p02"): (10.0, -5.0)}
+    page.reload()
+    page.click("#undo")
+    assert marked(page) == {**of_back, ("oblique", "p01"): (1.0, 2.0)}
+    path.write_text("camera,point,frame_idx,x_px,y_px\n")
+    page.set_input_files("#chooser", path)
+    until(page, "document.getElementById('message').textContent.includes('nothing has changed')")
+    assert len(marked(page)) == 3
+
+
+def test_a_page_in_two_tabs_keeps_the_marks_of_the_first_to_change_it(open_page, make):
+    one = open_page(make())
+    two = second_tab(one.context, one.url)
+    one.keyboard.press("Space")
+    until(two, "document.getElementById('unkept').textContent.includes('reload before you go on')")
+    two.keyboard.press("n")
+    two.keyboard.press("Space")
+    assert two.is_visible("#unkept") and not one.is_visible("#unkept")
+    one.reload()
+    assert list(marked(one)) == [("back", "p01")]
+    one.click("#help summary")
+    one.click("#afresh")
+    one.keyboard.press("h")  # and keeps on where its work was deleted
+    assert not one.is_visible("#unkept")
+
+
+def test_a_browser_that_keeps_nothing_says_so_and_asks_before_marks_are_lost(
+    open_page, make, tmp_path
+):
+    page = open_page(make())
+    page.add_init_script(
+        "Object.defineProperty(window, 'localStorage', { get() { throw new Error('forbidden'); } })"
+    )
+    page.reload()
+    asked = []
+    page.on("dialog", lambda dialog: (asked.append(dialog.type), dialog.accept()))
+    page.keyboard.press("Space")
+    assert "This browser keeps nothing: save" in page.inner_text("#unkept")
+    saved(page, tmp_path)
+    page.reload()
+    assert asked == []
+    page.click("#view")
+    page.reload()
+    assert asked == ["beforeunload"]
+
+
+def test_arrows_change_the_tab_where_it_has_the_focus_and_move_no_mark(open_page, make):
+    page = open_page(make(clicks={"back": {"p01": (100.0, 50.0)}}))
+    chosen = "document.querySelector('#tabs [aria-selected=true]').innerText.split(' ')[0]"
+    page.click('#list [data-point="p01"]')
+    page.focus("#tabs button >> nth=0")
+    for key, camera in (
+        ("ArrowRight", "oblique"),
+        ("ArrowRight", "back"),
+        ("ArrowLeft", "oblique"),
+    ):
+        page.keyboard.press(key)
+        until(
+            page,
+            f"{chosen} === '{camera}' && document.activeElement.innerText.startsWith('{camera}')",
+        )
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.press("ArrowDown")
+    page.focus("#zoom-in")
+    page.keyboard.press("ArrowRight")
+    assert marked(page) == {("back", "p01"): (100.0, 50.0)}
+    page.keyboard.press("Enter")
+    assert page.evaluate("document.activeElement.id") == "zoom-in"
+    page.click("#zoom-in")  # with the mouse: keys go to the picture again
+    page.keyboard.press("ArrowRight")
+    assert marked(page) == {("back", "p01"): (100.1, 50.0)}

@@ -13,3 +13,15 @@ def until(page, expression, arg=None):
             return
         page.wait_for_timeout(EVERY_MS)
     raise AssertionError(f"not true after {TRIES * EVERY_MS / 1000:g} s: {expression}")
+
+
+def second_tab(context, address):
+    """Open a page in another tab, and wait until it hears of what others write into the storage.
+
+    Chromium tells a page nothing of what is written in the moment in which it opens.
+    """
+    context.pages[0].wait_for_timeout(500)
+    page = context.new_page()
+    page.goto(address)
+    page.wait_for_timeout(500)
+    return page

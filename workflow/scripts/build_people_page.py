@@ -1,10 +1,12 @@
 """Build the page to name people on: people found, videos, earlier names -> one HTML file."""
 
+from pathlib import Path
+
 from courtside.calibration.court import court
 from courtside.pages import page
 from courtside.pages.people import page as people_page
 from courtside.pages.people import strips
-from courtside.reconstruction.association import marks
+from courtside.reconstruction.association import identity, marks
 from courtside.records.cameras import footage
 from courtside.records.keypoints import people, sightings, skeleton
 from courtside.study.errors import InputError
@@ -25,7 +27,9 @@ def main(paths, page_html, *, session, take, takes, subjects, stated, target):
         cameras = [one.camera.name for one in seen]
         sighted += sightings.read(paths.people_csv, take, subjects, cameras)
     named = earlier(sighted, found, seen, subjects)
-    words = {"session": session, "take": take, "subjects": subjects, "target": target}
+    written_s = Path(paths.people_csv).stat().st_mtime if paths.people_csv else 0.0
+    words = {"session": session, "take": take, "takes": takes, "subjects": subjects}
+    words |= {"target": target, "file_ms": 1000 * written_s, "meet_m": identity.MEET_M}
     lines = court.read(paths.court) if paths.court else None
     built = people_page.build(
         words, found, seen, columns, shots, court=lines, named=named, rows=rows

@@ -5,18 +5,22 @@
   const given = courtside.data("clicking");
   const { court, frames, ends } = given;
   const { byId, button, element, say } = courtside;
-  const KEEP = `courtside clicks ${given.stamp}`;
   const NEAR = 12; // screen px per picture px when the view goes to a point
   const LOOKED = 5; // of them, from which a proposal can be confirmed
   const FINE_PX = 0.1;
+  const SLACK = 0.01; // of a picture's size: what is not exact may lie outside by less, as for the workflow
+  const UNDOS = 50; // changes that can be undone after a reload
 
   let marks = Object.fromEntries(frames.map((frame) => [frame.id, {}]));
   let past = [], future = [];
   let at = 0, chosen = "", fits = {}, turns = {}, views = {}, shownFrame = "";
-  const unsaved = new Set(); // tables that differ from their files
+  const savedTexts = {}; // by table: what its file holds
+  const unsaved = (table) => table.text() !== savedTexts[table.name];
+  const work = courtside.keeper(`courtside clicks ${given.stamp}`, () => used.some(unsaved));
 
   const frame = () => frames[at];
   const isTake = (one) => one.take !== null;
+  const label = (one) => (isTake(one) ? `${one.take} ${one.camera} ${one.frame_idx}` : one.camera);
   const items = (one) => (isTake(one) ? ends : court.points);
   const markOf = (one, name) => marks[one.id][name] || null;
   const placed = (mark) => mark && !mark.hidden;
@@ -76,7 +80,6 @@
       const mark = direction > 0 ? change.after : change.before;
       if (mark) marks[change.frame][change.name] = mark;
       else delete marks[change.frame][change.name];
-      unsaved.add(tableOf(frames.find((one) => one.id === change.frame)));
     }
     fits = {};
     keep();
@@ -193,7 +196,7 @@
 
   // ---- keeping, saving, loading ----
   function keep() {
-    byId("afresh").disabled = !courtside.storage.set(KEEP, { marks, time: new Date().toISOString() });
+    byId("afresh").disabled = !work.keep({ marks, past: past.slice(-UNDOS), saved: savedTexts, time: new Date().toISOString() });
   }
 
   function rows(takes) {
@@ -207,12 +210,12 @@
     racket: { name: "racket.csv", columns: clickTables.RACKET, takes: true, text: () => clickTables.racket(rows(true)) },
   };
   const used = Object.values(tables).filter((table) => frames.some((one) => isTake(one) === table.takes));
-  const tableOf = (one) => used.find((table) => table.takes === isTake(one));
-  const current = () => tableOf(frame());
+  const current = () => used.find((table) => table.takes === isTake(frame()));
 
   function save(table) {
-    courtside.download(table.name, table.text(), "text/csv");
-    unsaved.delete(table);
+    savedTexts[table.name] = table.text();
+    courtside.download(table.name, savedTexts[table.name], "text/csv");
+    keep();
     say(`Saved ${table.name}: ${rows(table.takes).length} rows. Put it where the session's file says: ${given.targets[table.name]}`);
     render();
   }
@@ -231,17 +234,26 @@
       const one = frames.find((f) => f.camera === row.camera && (table.takes ? f.take === row.take : !isTake(f)) && f.frame_idx === row.frame_idx);
       if (!one) throw new Error(`${where}: this page has no picture of camera "${row.camera}", frame ${row.frame_idx}; nothing was loaded`);
       if (!items(one).some((item) => item.name === point)) throw new Error(`${where}: the court has no point "${point}"; nothing was loaded`);
+      const xy = [row.x_px, row.y_px], wide = one.size.map((length) => SLACK * length);
+      if (!xy.every((value, axis) => value > -wide[axis] && value < one.size[axis] + wide[axis])) {
+        throw new Error(`${where}: expected a place in the picture of ${one.size.join(" x ")} px, found ${xy.join(", ")}; nothing was loaded`);
+      }
       const key = `${one.id} ${point}`;
       if (key in wanted) throw new Error(`${where}: ${point} is there twice for camera ${row.camera}; nothing was loaded`);
       wanted[key] = { frame: one.id, name: point, after: { x: row.x_px, y: row.y_px } };
     }
-    const changes = frames.filter((one) => isTake(one) === table.takes).flatMap((one) => items(one).map((item) => {
+    const named = new Set(Object.values(wanted).map((one) => one.frame));
+    const [replaced, others] = [true, false].map((yes) => frames.filter((one) => isTake(one) === table.takes && named.has(one.id) === yes));
+    const changes = replaced.flatMap((one) => items(one).map((item) => {
       const before = markOf(one, item.name), found = wanted[`${one.id} ${item.name}`];
       if (!found && !placed(before)) return null; // what is marked as not visible stays
       return { frame: one.id, name: item.name, before, after: found ? found.after : null };
     })).filter(Boolean);
-    if (changes.length) change(changes);
-    say(`Loaded ${Object.keys(wanted).length} rows of ${name}; Undo brings back what was here.`);
+    const n = Object.keys(wanted).length, kept = others.filter((one) => items(one).some((item) => placed(markOf(one, item.name))));
+    if (!n) return say(`${name} has no rows: nothing has changed.`);
+    change(changes);
+    return say(`Loaded ${n} ${n === 1 ? "row" : "rows"} of ${name}, the marks of ${replaced.map(label).join(", ")}. `
+      + `${kept.length ? `Those of ${kept.map(label).join(", ")} stay. ` : ""}Undo brings back what was here.`);
   }
 
   byId("chooser").addEventListener("change", async (event) => {
@@ -266,7 +278,7 @@
     byId("undo").disabled = !past.length;
     byId("redo").disabled = !future.length;
     byId("text").value = current().text();
-    byId("where").textContent = `${unsaved.has(current()) ? "Not saved yet. " : ""}The workflow reads ${given.targets[current().name]}.`;
+    byId("where").textContent = `${unsaved(current()) ? "Not saved yet. " : ""}The workflow reads ${given.targets[current().name]}.`;
   }
 
   function renderTabs() {
@@ -367,6 +379,12 @@
     byId("loupe-toggle").setAttribute("aria-pressed", String(shown));
     view.setLoupe(shown);
   };
+  const tab = (by) => {
+    if (!by) return;
+    const next = (at + by + frames.length) % frames.length;
+    open(next);
+    byId("tabs").children[next].focus();
+  };
   const near = () => { if (!visit(true)) say(`The place of ${chosen} is unknown: mark four points on the floor first.`); };
   const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
   const keys = {
@@ -382,7 +400,8 @@
     const onButton = target.closest("button") && (key === "Enter" || key === " ");
     let action = null;
     if (event.ctrlKey || event.metaKey) action = chords[key] && (() => chords[key](event.shiftKey));
-    else if (arrows[key]) action = () => nudge(...arrows[key].map((value) => value * (event.shiftKey ? 1 : FINE_PX)));
+    else if (arrows[key] && target.closest("#tabs")) action = () => tab(arrows[key][0]);
+    else if (arrows[key]) action = !target.closest(".tools") && (() => nudge(...arrows[key].map((value) => value * (event.shiftKey ? 1 : FINE_PX))));
     else if (/^[1-9]$/.test(key)) action = frames[Number(key) - 1] && (() => open(Number(key) - 1));
     else if (!onButton) action = keys[key];
     if (!action) return;
@@ -393,14 +412,18 @@
   const actions = {
     "zoom-in": () => zoom(1.5), "zoom-out": () => zoom(1 / 1.5), whole: () => view.whole(), near, undo, redo, confirm, hide,
     delete: remove, next: () => step(1), previous: () => step(-1), "loupe-toggle": magnify, turn,
-    afresh: () => { courtside.storage.remove(KEEP); say("This browser has deleted the saved work of this session; the marks stay until the page is closed."); },
+    afresh: () => { work.forget(); say("This browser has deleted the saved work of this session; the marks stay until the page is closed."); },
   };
+  // After a click on a tool, keys go to the picture again; whoever uses a tool by keys stays there.
+  document.querySelector(".tools").addEventListener("click", (/** @type {MouseEvent} */ event) => {
+    if (event.detail) byId("view").focus({ preventScroll: true });
+  });
   for (const [id, action] of Object.entries(actions)) byId(id).addEventListener("click", action);
 
   // ---- start ----
   function start() {
     frames.forEach((one, index) => {
-      const tab = button(byId("tabs"), isTake(one) ? `${one.take} ${one.camera} ${one.frame_idx} ` : `${one.camera} `, () => {
+      const tab = button(byId("tabs"), `${label(one)} `, () => {
         open(index);
         byId("view").focus({ preventScroll: true }); // so that keys go to the picture
       });
@@ -413,11 +436,12 @@
       button(byId("files"), "Copy", () => copy(table), { title: `Copy ${table.name}` });
     }
     button(byId("files"), "Load…", () => byId("chooser").click(), { id: "load" });
-    const kept = courtside.storage.get(KEEP);
+    for (const table of used) savedTexts[table.name] = table.text();
+    const kept = work.read();
     if (kept && kept.marks) {
-      const ofFiles = used.map((table) => table.text());
       for (const one of frames) if (kept.marks[one.id]) marks[one.id] = kept.marks[one.id];
-      used.forEach((table, index) => { if (table.text() !== ofFiles[index]) unsaved.add(table); });
+      past = kept.past || [];
+      Object.assign(savedTexts, kept.saved);
       const time = new Date(kept.time);
       say(`Your work of ${Number.isNaN(time.getTime()) ? "last time" : time.toLocaleString()} is here again.`);
     } else if (frames.some(eitherEnd)) say("The court was found, but not which end is which: mark one point in each picture, then the others are proposed.");

@@ -4,18 +4,22 @@
 (() => {
   const given = courtside.data("people");
   const { byId, button, say } = courtside;
-  const KEEP = `courtside people ${given.stamp}`;
+  const SAVED = `courtside people saved ${given.session} ${given.target}`; // by take: rows that this session's pages saved
+  const UNDOS = 20;
   const COLOURS = ["#0b62b0", "#d1495b", "#1d7a3e", "#9a5400", "#7b4fb5", "#00838f", "#b0306a", "#5f6b00"];
   const FEW = 4; // cameras whose pictures are shown of each person, unless all are wanted
   const colour = (person) => COLOURS[given.persons.indexOf(person) % COLOURS.length];
   const rounded = (value) => Math.round(value * 1000) / 1000;
 
-  let rows = given.rows; // of other takes
-  // By person: parts of the take, [{from, subject}], the first from its start.
-  let parts = first();
+  // By person: parts of the take, [{from, subject}], the first from its start. By take: {rows, time} of loaded files.
+  // What other pages saved before `since` does not count.
+  let state = { parts: partsOf(given.named), loaded: {}, since: 0 };
+  let past = [], future = []; // states as text
+  let savedText = ""; // of the file
+  const work = courtside.keeper(`courtside people ${given.stamp}`, () => text() !== savedText);
 
-  function first() {
-    const named = (person) => given.named.filter((one) => one.person === person.index);
+  function partsOf(names) {
+    const named = (person) => names.filter((one) => one.person === person.index);
     return Object.fromEntries(given.persons.map((person) => [person.index, peopleTable.parts(named(person), given)]));
   }
 
@@ -37,7 +41,7 @@
   }
 
   function rowsOf(person) {
-    const own = parts[person.index], found = [];
+    const own = state.parts[person.index], found = [];
     own.forEach((part, at) => {
       if (!part.subject) return;
       const shown = person.columns.filter(within(own, at)).filter((column) => column.views.length);
@@ -53,22 +57,61 @@
 
   /** Returns the names of a person in all parts. */
   function namesOf(person) {
-    return [...new Set(parts[person.index].map((part) => part.subject).filter(Boolean))];
+    return [...new Set(state.parts[person.index].map((part) => part.subject).filter(Boolean))];
   }
 
-  function change(index, edit) {
-    edit(parts[index]);
-    courtside.storage.set(KEEP, parts);
+  // Where one name is given to two persons at one time, further apart than two tracks of one body.
+  function clash(person, at) {
+    const own = state.parts[person.index], { subject } = own[at], found = { far: given.meet_m, words: "" };
+    for (const other of subject ? given.persons.filter((one) => one !== person && namesOf(one).includes(subject)) : []) {
+      const theirs = state.parts[other.index], places = new Map(other.path.map(([time_s, x, y]) => [time_s, [x, y]]));
+      for (const [time_s, x, y] of person.path.filter((row) => within(own, at)({ time_s: row[0] }) && places.has(row[0]))) {
+        const there = theirs.some((part, n) => part.subject === subject && within(theirs, n)({ time_s }));
+        const far = there ? Math.hypot(x - places.get(time_s)[0], y - places.get(time_s)[1]) : 0;
+        if (far > found.far) Object.assign(found, { far, words: `${subject} is also ${other.name}, ${far.toFixed(1)} m away at ${time_s.toFixed(1)} s` });
+      }
+    }
+    return found.words;
+  }
+
+  // ---- changing names ----
+  function keep() {
+    work.keep({ ...state, past: past.slice(-UNDOS), time: new Date().toISOString() });
     render();
   }
 
+  function change(edit) {
+    past.push(JSON.stringify(state));
+    future = [];
+    edit();
+    keep();
+  }
+
+  function travel(from, to, done) {
+    if (!from.length) return say(`Nothing to be ${done}.`);
+    const before = state;
+    to.push(JSON.stringify(state));
+    state = JSON.parse(from.pop());
+    keep();
+    const changed = given.persons.filter(({ index }) => JSON.stringify(before.parts[index]) !== JSON.stringify(state.parts[index]));
+    return say(`The last change is ${done}${changed.length ? `: ${changed.map((person) => person.name).join(", ")}` : ""}.`);
+  }
+  const undo = () => travel(past, future, "undone");
+  const redo = () => travel(future, past, "done again");
+
   function split(person, column) {
-    change(person.index, (own) => {
-      const at = person.columns.indexOf(column);
-      const from = rounded((person.columns[at - 1].time_s + column.time_s) / 2);
-      own.push({ from, subject: "" });
+    const own = state.parts[person.index], at = person.columns.indexOf(column);
+    const part = { from: rounded((person.columns[at - 1].time_s + column.time_s) / 2), subject: "" };
+    change(() => {
+      own.push(part);
       own.sort((a, b) => a.from - b.from);
     });
+    control(person, `name ${own.indexOf(part)}`).focus();
+  }
+
+  function afresh() {
+    change(() => { state = { parts: partsOf(given.named), loaded: {}, since: Date.now() }; });
+    say("Names are as the workflow has them; Undo brings back yours.");
   }
 
   // ---- showing ----
@@ -78,20 +121,38 @@
     return made;
   }
 
+  const control = (person, name) => byId(person.name).querySelector(`[data-control="${name}"]`);
+
   function render() {
-    byId("persons").replaceChildren();
-    for (const person of given.persons) renderPerson(person);
+    const { activeElement } = document, active = given.persons.find((person) => byId(person.name).contains(activeElement));
+    const name = active && /** @type {HTMLElement} */ (activeElement).dataset.control;
+    given.persons.forEach(renderPerson);
+    if (active && !byId(active.name).contains(document.activeElement)) {
+      (control(active, name) || control(active, "name 0")).focus({ preventScroll: true });
+    }
     renderFloor();
-    const named = new Set(Object.values(parts).flat().map((part) => part.subject));
+    renderSide();
+    byId("undo").disabled = !past.length;
+    byId("redo").disabled = !future.length;
+  }
+
+  function renderSide() {
+    const named = new Set(Object.values(state.parts).flat().map((part) => part.subject));
     const open = given.subjects.filter((name) => !named.has(name));
     const alone = given.subjects.length === 1 && given.persons.length === 1;
     byId("missing").textContent = !open.length ? "Every subject has a person."
       : alone ? "One subject and one person: no name is needed." : `Not named yet: ${open.join(", ")}.`;
     byId("missing").className = open.length && !alone ? "warn" : "good";
+    const twice = given.persons.flatMap((person) => state.parts[person.index].filter((_, at) => clash(person, at)).map((part) => part.subject));
+    byId("clashes").textContent = twice.length ? `Two persons at one time: ${[...new Set(twice)].join(", ")}.` : "";
+    const kept = others().map(({ take, rows, where }) => `${take} (${counted(rows)} ${where})`);
+    byId("where").textContent = `The workflow reads ${given.target}, where the session's file says people: ${given.target}. `
+      + (given.takes.length < 2 ? "" : `The file holds all takes: ${kept.length ? `beside ${given.take}, ${kept.join(", ")}` : "no names of other takes are known here"}. `
+      + "If you named others elsewhere since, load people.csv first.");
     byId("text").value = text();
   }
 
-  function renderPerson(person) {
+  function addCard(person) {
     const card = element(byId("persons"), "article", { className: "person" });
     card.style.setProperty("--own", colour(person));
     card.dataset.person = card.id = person.name;
@@ -101,13 +162,24 @@
       className: doubts.length ? "about warn" : "about soft",
       textContent: `Placed in ${Math.round(person.placed * 100)} % of the take; one person throughout with probability ${person.confidence.toFixed(2)}.${doubts.join("")}`,
     });
-    const own = parts[person.index], list = element(card, "div", { className: "parts" });
+    element(card, "div", { className: "parts" });
+    element(card, "div", { className: "strip" });
+  }
+
+  // Pictures are drawn again only where parts begin elsewhere than before.
+  function renderPerson(person) {
+    const [list, strip] = ["parts", "strip"].map((name) => byId(person.name).querySelector(`.${name}`));
+    const own = state.parts[person.index], drawn = JSON.stringify([own.map((part) => part.from), byId("all").checked]);
+    list.replaceChildren();
     own.forEach((part, at) => renderPart(list, person, part, at));
-    renderStrip(element(card, "div", { className: "strip" }), person);
+    if (strip.dataset.drawn === drawn) return;
+    strip.replaceChildren();
+    renderStrip(strip, person);
+    strip.dataset.drawn = drawn;
   }
 
   function renderPart(list, person, part, at) {
-    const own = parts[person.index], row = element(list, "div", { className: "part" });
+    const own = state.parts[person.index], row = element(list, "div", { className: "part" });
     if (own.length > 1) renderBounds(row, person, part, at);
     const label = element(row, "label", { textContent: "is " });
     const choice = element(label, "select", { ariaLabel: `Name of ${person.name}${own.length > 1 ? ` from ${part.from.toFixed(1)} s` : ""}` });
@@ -117,29 +189,37 @@
       element(choice, "option", { value: name, textContent: words });
     }
     choice.value = part.subject;
-    choice.addEventListener("change", () => change(person.index, () => { part.subject = choice.value; }));
+    choice.dataset.control = `name ${at}`;
+    choice.addEventListener("change", () => change(() => { part.subject = choice.value; }));
     const pictured = person.columns.filter(within(own, at)).some((column) => column.views.length);
     if (part.subject && !pictured) element(row, "span", { className: "bad", textContent: "There is no picture in this part: it cannot be saved." });
+    const twice = clash(person, at);
+    if (twice) element(row, "span", { className: "bad", textContent: `${twice}: correct one of them.` });
   }
 
   function renderBounds(row, person, part, at) {
-    const own = parts[person.index];
+    const own = state.parts[person.index];
     if (!at) element(row, "span", { textContent: `to ${endOf(own, at).toFixed(2)} s` });
     else {
       const label = element(row, "label", { textContent: "from " });
       const field = element(label, "input", { type: "number", step: "0.01", value: part.from.toFixed(2), ariaLabel: `Part ${at + 1} of ${person.name} begins, s` });
-      field.addEventListener("change", () => {
+      field.dataset.control = `from ${at}`;
+      const moved = () => {
         const value = Number(field.value);
         if (!(value > own[at - 1].from && value < endOf(own, at))) { render(); return say("A part begins after the one before and before the next one.", true); }
-        return change(person.index, () => { part.from = value; });
-      });
+        return change(() => { part.from = value; });
+      };
+      field.addEventListener("change", () => setTimeout(moved)); // once Tab has moved the focus on
       element(row, "span", { textContent: "s" });
-      button(row, "Join to the part before", () => change(person.index, () => { own.splice(at, 1); }));
+      button(row, "Join to the part before", () => {
+        change(() => { own.splice(at, 1); });
+        control(person, `name ${at - 1}`).focus();
+      }).dataset.control = `join ${at}`;
     }
   }
 
   function renderStrip(box, person) {
-    const table = element(box, "table"), own = parts[person.index];
+    const table = element(box, "table"), own = state.parts[person.index];
     const head = element(element(table, "thead"), "tr"), body = element(table, "tbody");
     const cuts = own.slice(1).map((part) => person.columns.find((column) => column.time_s >= part.from));
     element(head, "td");
@@ -191,16 +271,54 @@
       label.textContent = words;
       label.addEventListener("click", () => byId(person.name).scrollIntoView());
     }
+    const bar = size[0] < 10 ? 1 : 5, left = low[0] + 2 * wide, down = -low[1] - 2 * wide; // m
+    draw("line", { class: "scale", x1: left, y1: down, x2: left + bar, y2: down, "stroke-width": wide / 2 });
+    draw("text", { class: "scale-label", x: left + bar / 2, y: down - wide, "font-size": 3 * wide }).textContent = `${bar} m`;
   }
 
   // ---- files ----
+  const counted = (rows) => `${rows.length} ${rows.length === 1 ? "row" : "rows"}`;
+  const ownRows = () => given.persons.flatMap(rowsOf);
+
+  // Returns the rows of every other take, the newest of people.csv, of a loaded file and of what other pages saved.
+  function others() {
+    const known = Math.max(given.file_ms, state.since), saved = courtside.storage.get(SAVED) || {};
+    return given.takes.filter((take) => take !== given.take).map((take) => {
+      const ways = [{ rows: given.rows.filter((row) => row[0] === take), time: known, where: "of people.csv when this page was made" }];
+      if (take in state.loaded) ways.push({ ...state.loaded[take], where: "of a loaded file" });
+      if (take in saved) ways.push({ ...saved[take], where: `saved in this browser ${new Date(saved[take].time).toLocaleString()}` });
+      return { take, ...ways.reduce((newest, way) => (way.time > newest.time ? way : newest)) };
+    }).filter((one) => one.rows.length);
+  }
+
   function text() {
-    return peopleTable.written([...rows, ...given.persons.flatMap(rowsOf)]);
+    return peopleTable.written([...others().flatMap((one) => one.rows), ...ownRows()]);
   }
 
   function save() {
-    courtside.download("people.csv", text(), "text/csv");
-    say(`Put the file where the workflow reads it: ${given.target}.`);
+    const rows = ownRows(), more = others();
+    savedText = text();
+    courtside.download("people.csv", savedText, "text/csv");
+    courtside.storage.set(SAVED, { ...courtside.storage.get(SAVED), [given.take]: { rows, time: Date.now() } });
+    const held = [{ take: given.take, rows }, ...more].map((one) => `${counted(one.rows)} of ${one.take}`).join(", ");
+    say(`Saved ${held}. Put the file where the workflow reads it: ${given.target}.`
+      + (more.length || given.takes.length < 2 ? "" : " If that file has names of other takes by now, load it here first, then save again."));
+  }
+
+  function load(name, content) {
+    const { [given.take]: own = [], ...found } = peopleTable.read(name, content, given);
+    const names = peopleTable.named(own, given), taken = own.length && names.every(Boolean);
+    const before = Object.fromEntries(others().map((one) => [one.take, one.rows]));
+    const takes = Object.entries(found).map(([take, rows]) => `${take}: ${rows.length}${before[take] ? ` in place of ${before[take].length}` : ""}`);
+    change(() => {
+      for (const [take, rows] of Object.entries(found)) state.loaded[take] = { rows, time: Date.now() };
+      if (taken) state.parts = partsOf(names);
+    });
+    const ofOthers = Object.values(found).flat(), left = names.filter((one) => !one).length;
+    say(`Loaded ${name}: ${counted(ofOthers)} of other takes${takes.length ? ` (${takes.join(", ")})` : ""}${own.length ? `, ${counted(own)} of ${given.take}` : ""}. `
+      + (taken ? `The names of ${given.take} are those of the file. ` : own.length
+        ? `Names given here stay and those of ${given.take} in the file are left out, for ${left} of them ${left === 1 ? "is" : "are"} of no picture of this page. ` : "")
+      + "Undo brings back what was here.", Boolean(own.length && !taken));
   }
 
   byId("save").addEventListener("click", save);
@@ -211,26 +329,34 @@
     const [file] = event.target.files;
     event.target.value = "";
     if (!file) return;
-    try {
-      rows = peopleTable.others(file.name, await file.text(), given.take);
-      say(`${rows.length} rows of other takes are kept and will be saved again.`);
-      render();
-    } catch (error) { say(error.message, true); }
+    try { load(file.name, await file.text()); } catch (error) { say(error.message, true); }
   });
-  byId("afresh").addEventListener("click", () => {
-    courtside.storage.remove(KEEP);
-    parts = first();
-    render();
-    say("Names are as the workflow has them.");
-  });
+  for (const [id, action] of Object.entries({ afresh, undo, redo })) byId(id).addEventListener("click", action);
+  const chords = { s: () => save(), z: (shift) => (shift ? redo() : undo()), y: () => redo() };
   document.addEventListener("keydown", (event) => {
-    if ((event.ctrlKey || event.metaKey) && event.key === "s") { event.preventDefault(); save(); }
+    const action = (event.ctrlKey || event.metaKey) && !event.altKey && chords[event.key.toLowerCase()];
+    if (!action || (event.key !== "s" && /** @type {Element} */ (event.target).closest("input[type=number], textarea"))) return;
+    event.preventDefault();
+    action(event.shiftKey);
   });
+  window.addEventListener("storage", (event) => { if (event.key === SAVED) renderSide(); });
+  const bar = document.querySelector("header");
+  new ResizeObserver(() => document.documentElement.style.setProperty("--bar", `${bar.offsetHeight}px`)).observe(bar);
 
-  parts = courtside.storage.get(KEEP) || parts;
-  const takes = new Set(rows.map((row) => row[0])).size;
-  byId("where").textContent = `The workflow reads ${given.target}, where the session's file says people: ${given.target}. `
-    + `The file holds all takes: ${takes ? `the names of ${takes} other takes` : "no names of other takes"} were there when this page was made. If you named others since, load people.csv first.`;
-  byId("left-out").textContent = given.left_out ? `${given.left_out} more, seen in less than 2 % of the take, are not shown.` : "";
-  render();
+  // ---- start ----
+  function start() {
+    given.persons.forEach(addCard);
+    byId("left-out").textContent = given.left_out ? `${given.left_out} more, seen in less than 2 % of the take, are not shown.` : "";
+    savedText = text();
+    const kept = work.read(), before = JSON.stringify([state.parts, state.loaded]);
+    if (kept && kept.parts) {
+      ({ past } = kept);
+      state = { parts: kept.parts, loaded: kept.loaded, since: kept.since };
+    }
+    render();
+    if (JSON.stringify([state.parts, state.loaded]) === before) return;
+    const rows = others().flatMap((one) => one.rows);
+    say(`Your work of ${new Date(kept.time).toLocaleString()} is here again${rows.length ? `, with ${counted(rows)} of other takes` : ""}.`);
+  }
+  start();
 })();

@@ -78,8 +78,8 @@ def judged_takes(job: Job) -> list[dict[str, Any]]:
 
 
 def known_takes(job: Job) -> list[str]:
-    """Return the takes that a saved file with names may name; nothing without such a file."""
-    return [*job.session.takes, *job.session.withheld] if takes.people_csv(job) else []
+    """Return the takes that a file with names may name."""
+    return [*job.session.takes, *job.session.withheld]
 
 
 def _first(job: Job) -> dict[str, str]:
