@@ -18,7 +18,7 @@ def page(tmp_path, **changes):
     take = session["takes"][0]
     known = report_facts.of_take(take["files"]) | changes
     facts = report_facts.of_session(session["files"])
-    found = [warnings.Warned(warnings.LOOK, "Calibration: odd.")]
+    found = [warnings.Warned(warnings.DOUBTFUL, "Calibration: odd.")]
     return quality.session(session, facts, found, [(take, known, [])])
 
 
@@ -106,7 +106,7 @@ def test_verdicts_are_stated_with_their_limits(tmp_path):
     html = page(tmp_path)
     assert "<td>It is 0.064 off.</td>" in html and "of another calibration" not in html
     assert re.search(r"0\.035</td>\s*<td[^>]*>0\.100</td>\s*<td>doubtful</td>", html)
-    assert "The take is <b>doubtful</b>, likelier cause: clock" in html
+    assert "Agreement of the cameras: <b>doubtful</b>, likelier cause: clock. " in html
 
 
 def test_unknown_numbers_are_a_dash():

@@ -114,7 +114,7 @@ def limits() -> Markup:
         (words, f"{look:g}", f"{doubtful:g}") for look, doubtful, words in warned.LIMITS.values()
     ]
     table = page.macro("report_parts.html", "table")
-    return table(("what", "Look from", "Doubt from"), rows, "limits of the lights")
+    return table(("what", "doubtful from", "failed from"), rows, "limits of the lights")
 
 
 def number(value: float | None, digits: int = 2) -> str:
