@@ -43,6 +43,7 @@ def test_a_mark_has_a_shape_and_a_word_beside_its_colour():
 def test_a_take_says_distance_speeds_and_angles():
     measures = {
         "neck_distance": (29.3274, 0.376, "m"),
+        "neck_ground_distance": (28.6521, 0.371, "m"),
         "neck_speed_mean": (1.2254, 0.0155, "m/s"),
         "left_knee_flexion_min": (12.8, 9.5, "degrees"),
         "left_knee_flexion_max": (89.7, 9.4, "degrees"),
@@ -57,6 +58,9 @@ def test_a_take_says_distance_speeds_and_angles():
     for words in ("29.33 &plusmn; 0.38 m", "in 24.0 s", "from 94 of 100 frames", "left knee, bend"):
         assert words in html
     assert 'href="a/viewer.html"' in html and "Camera left moved." in html
+    space, ground = "29.33 &plusmn; 0.38 m", "28.65 &plusmn; 0.37 m"
+    text = " ".join(html.split())
+    assert f"{space}</b> in 24.0 s, up and down included, on the ground <b>{ground}" in text
     assert html.index("doubtful") < html.index("29.33")
 
 
