@@ -116,6 +116,19 @@ def test_it_opens_at_the_first_frame_that_shows_a_person(open_page, tmp_path):
     assert page.evaluate("courtside.viewer.drawn()") == []
 
 
+def test_the_clock_tells_the_time_alone(open_page, tmp_path):
+    late = long_take()
+    later = replace(late, time_s=late.time_s + 1)  # the page begins before these frames
+    names = {"raw": later, "filtered": late}
+    layers = [viewer_layers.of_points(n, one, walker.SKELETON) for n, one in names.items()]
+    path = tmp_path / "viewer.html"
+    pages.write(path, viewer.build("A take", layers))
+    page = open_page(path)
+    page.evaluate("courtside.viewer.ready")
+    assert page.evaluate("courtside.viewer.state()")["frame"] == RATE_HZ
+    assert page.inner_text("#clock") == "1.000 s"
+
+
 def test_positions_and_covariances_are_the_inputs(opened):
     page, points = opened
     ask = "([person, joint, frame]) => courtside.viewer.NAME('raw', person, joint, frame)"

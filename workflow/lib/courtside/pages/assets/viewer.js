@@ -132,7 +132,7 @@ class Viewer {
     const by = courtside.byId;
     by("slider").value = this.frame;
     by("slider").setAttribute("aria-valuetext", `${this.view.time_s.toFixed(2)} seconds`);
-    by("clock").textContent = `${this.view.time_s.toFixed(3)} s, frame ${this.frame}`;
+    by("clock").textContent = `${this.view.time_s.toFixed(3)} s`;
     by("play").textContent = this.playing ? "Pause" : "Play";
     by("play").setAttribute("aria-pressed", String(this.playing));
     by("readout").replaceChildren(...readout(this.view));
