@@ -326,6 +326,19 @@ def test_it_fits_the_window(made, open_page, width, scheme):
     assert picture(page).std() > 5
 
 
+def test_on_paper_the_picture_is_light_and_has_the_proportions_of_its_place(made, open_page):
+    page = open_page(made[0], color_scheme="dark")
+    page.evaluate("courtside.viewer.ready")
+    page.select_option("#view", "above")
+    floor = "canvas.getContext('2d').getImageData(canvas.width / 2, canvas.height / 2, 1, 1).data"
+    page.set_viewport_size({"width": 700, "height": 900})
+    page.emulate_media(media="print")
+    page.wait_for_timeout(100)
+    assert page.evaluate(f"Math.max(...Array.from({floor}).slice(0, 3))") > 200
+    shape = "canvas.width / canvas.height / (canvas.clientWidth / canvas.clientHeight)"
+    assert page.evaluate(shape) == pytest.approx(1, abs=0.01)
+
+
 def test_a_browser_too_old_is_told_so(made, browser):
     page = browser.new_page()
     page.add_init_script("delete window.DecompressionStream")

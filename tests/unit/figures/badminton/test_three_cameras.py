@@ -46,7 +46,7 @@ def made(takes=("footwork",), stages=("pose3d", "pose3d_corrected"), n_persons=1
 
 
 def test_no_two_fusions_have_the_same_words_although_they_have_the_same_cameras():
-    three = dict.fromkeys(("halfbody", "three-robust", "all-robust"), ["c0", "c1", "c2"])
+    three = {way: ["c0", "c1", "c2"] for way in ("halfbody", "three-robust", "all-robust")}
     drawing = three_cameras.draw(made(), CAMERAS | three)
     words = [text.get_text() for text in drawing.legends[0].get_texts()]
     assert len(set(words)) == len(words) == len(OFFSET_M)

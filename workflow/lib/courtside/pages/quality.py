@@ -102,7 +102,9 @@ def build(
     found, others = _of_cameras(**cameras) if cameras else (None, [])
     told = {"found": found, "others": others, "level": warnings.worst(found or [])}
     body = page.render("quality.html", title=title, takes=takes, all=ALL, order=ORDER, **told)
-    return page.build(title, body, css=["report.css", "quality.css"], images=pictures)
+    return page.build(
+        title, body, css=["report.css", "quality.css"], js=["report.js"], images=pictures
+    )
 
 
 def _of_cameras(

@@ -357,6 +357,8 @@ async function start() {
   const adapt = () => { viewer.painter.adapt(); viewer.changed(); };
   new ResizeObserver(adapt).observe(viewer.painter.canvas);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", adapt);
+  // Paper has another size and is light; it does not wait for the next frame.
+  matchMedia("print").addEventListener("change", () => { adapt(); viewer.show(); });
   viewer.relabel = true;
   viewer.show();
   Object.assign(courtside.viewer, hook(viewer));
