@@ -261,6 +261,37 @@ def test_errors_are_coloured_with_a_legend(opened):
     assert page.evaluate("courtside.viewer.state()")["scale_end"] == 50
 
 
+def luminance(colour):
+    rgb = np.array(colour.removeprefix("rgb(").removesuffix(")").split(","), float) / 255
+    linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+    return float(linear @ [0.2126, 0.7152, 0.0722])
+
+
+def test_the_scale_of_errors_grows_lighter_from_end_to_end(opened):
+    page, _ = opened
+    found = [luminance(page.evaluate("(value) => shade(value, 60)", at)) for at in range(61)]
+    assert (np.diff(found) > 0).all()
+    assert found[-1] > 5 * found[0]  # also apart in grey print
+
+
+def test_several_methods_are_told_apart(opened):
+    page, _ = opened
+    swatch = page.locator("#layers .swatch").first
+    assert page.evaluate("courtside.viewer.state()")["colour"] == "side"
+    assert not swatch.is_visible()
+    page.locator("#layers input").nth(1).check()
+    page.wait_for_timeout(60)
+    assert page.evaluate("courtside.viewer.state()")["colour"] == "layer"
+    assert page.locator("#colour").input_value() == "layer" and swatch.is_visible()
+    assert page.locator("#legend .swatch").count() == 2
+    page.select_option("#colour", "side")
+    page.locator("#layers input").nth(0).uncheck()
+    page.locator("#layers input").nth(2).check()
+    page.select_option("#colour", "side")
+    page.wait_for_timeout(60)
+    assert "filtered: thick; corrected: thin, dashed" in page.locator("#legend").inner_text()
+
+
 def test_every_switch_works_and_a_layer_can_be_switched_off(opened):
     page, _ = opened
     for view in ("hall", "above", "x", "y", "camera c2", "all"):

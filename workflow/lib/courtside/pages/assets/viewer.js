@@ -72,6 +72,16 @@ class Viewer {
     return shade((ends[0] + ends[1]) / 2, this.view.end[this.view.colour]);
   }
 
+  /** Show a layer or not; two in the colours of the body's sides could not be told apart. */
+  switchLayer(layer, on) {
+    layer.shown = on;
+    if (on && this.view.colour === "side" && this.view.layers.filter((one) => one.shown).length > 1) {
+      courtside.byId("colour").value = "layer";
+      this.chooseColour("layer");
+    }
+    this.changed();
+  }
+
   chooseColour(colour) {
     this.view.colour = colour;
     const measure = MEASURES[colour];
@@ -136,7 +146,10 @@ class Viewer {
     by("play").textContent = this.playing ? "Pause" : "Play";
     by("play").setAttribute("aria-pressed", String(this.playing));
     by("readout").replaceChildren(...readout(this.view));
-    if (this.relabel) by("legend").replaceChildren(...legend(this.view, this.scene));
+    if (this.relabel) {
+      by("legend").replaceChildren(...legend(this.view, this.scene));
+      by("layers").classList.toggle("unpainted", this.view.colour === "side");
+    }
     this.relabel = false;
   }
 
@@ -201,7 +214,7 @@ function wirePanel(viewer) {
   const by = courtside.byId;
   const set = (key) => (value) => { view[key] = value; viewer.changed(); };
   by("layers").replaceChildren(...view.layers.map((layer) =>
-    box(layer.name, layer.shown, (on) => { layer.shown = on; viewer.changed(); }, view.layerColour(layer))));
+    box(layer.name, layer.shown, (on) => viewer.switchLayer(layer, on), view.layerColour(layer))));
   const colours = [["side", "body side"], ["layer", "method"]];
   if (view.layers.some((layer) => layer.ellipsoid)) colours.push(["sigma", "expected error σ (mm)"]);
   if (view.layers.some((layer) => layer.error_px)) colours.push(["reprojection", "reprojection error (px)"]);
