@@ -2,6 +2,8 @@
 
 import json
 
+import cv2
+import numpy as np
 import pytest
 
 from browser.waiting import until
@@ -114,6 +116,26 @@ def test_the_page_for_quality_unfolds_before_printing(open_page, tmp_path):
     assert not page.locator("text=cam03: not judged").is_visible()
     page.evaluate("dispatchEvent(new Event('beforeprint'))")
     assert page.locator("text=cam03: not judged").is_visible()
+
+
+def test_pictures_of_the_page_for_quality_are_in_sight_in_a_narrow_window(open_page, tmp_path):
+    picture = bytes(cv2.imencode(".jpg", np.zeros((160, 320, 3), np.uint8))[1])
+    lines = [quality.Line("c1", "good", "It agrees with the other cameras.", ())]
+    take = {"name": "smash", "lines": lines, "pictures": {"c1": picture}, "left_out": ""}
+    pages.write(tmp_path / "quality.html", quality.build("hall", [take]))
+    page = open_page(tmp_path / "quality.html", width=400)
+    shown, reason = (
+        page.locator("img").bounding_box(),
+        page.locator("tbody td").nth(1).bounding_box(),
+    )
+    assert shown["x"] + shown["width"] <= 400
+    assert shown["y"] >= reason["y"] + reason["height"]
+    page.set_viewport_size({"width": 1280, "height": 900})
+    shown, reason = (
+        page.locator("img").bounding_box(),
+        page.locator("tbody td").nth(1).bounding_box(),
+    )
+    assert shown["x"] >= reason["x"] + reason["width"]
 
 
 def test_the_dark_page_is_dark(open_page, path):

@@ -261,6 +261,22 @@ def test_errors_are_coloured_with_a_legend(opened):
     assert page.evaluate("courtside.viewer.state()")["scale_end"] == 50
 
 
+@pytest.mark.parametrize("width", [400, 1280])
+def test_numbers_of_four_methods_are_in_sight(open_page, tmp_path, width):
+    names = ("d415-depth", "d415-rgb", "mocopi", "mocopi-corrected")
+    points = walker.points(n_frames=20)
+    layers = [viewer_layers.of_points(name, points, walker.SKELETON) for name in names]
+    path = tmp_path / "viewer.html"
+    pages.write(path, viewer.build("A take", layers))
+    page = open_page(path, width=width)
+    page.evaluate("courtside.viewer.ready")
+    page.select_option("#joint", "nose")
+    page.wait_for_timeout(60)
+    wide = "(one) => [one.scrollWidth, one.clientWidth, one.querySelectorAll('thead th').length]"
+    needed, given, columns = page.locator("#readout").evaluate(wide)
+    assert needed <= given and columns == 1 + len(names)
+
+
 def luminance(colour):
     rgb = np.array(colour.removeprefix("rgb(").removesuffix(")").split(","), float) / 255
     linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
