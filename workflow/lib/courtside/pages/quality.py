@@ -99,7 +99,7 @@ def build(
         for camera, picture in take["pictures"].items()
     }
     title = f"Quality of the takes: {session}"
-    found, others = _of_cameras(**cameras) if cameras else (None, [])
+    found, others = _of_cameras(**cameras) if cameras else (None, {})
     told = {"found": found, "others": others, "level": warnings.worst(found or [])}
     body = page.render("quality.html", title=title, takes=takes, all=ALL, order=ORDER, **told)
     return page.build(
@@ -109,8 +109,8 @@ def build(
 
 def _of_cameras(
     calibration: str, others: Sequence[str], files: dict, limits: dict
-) -> tuple[list[warnings.Warned], list[warnings.Warned]]:
+) -> tuple[list[warnings.Warned], dict[str, list[warnings.Warned]]]:
     """Return the warnings of the session as the report has them, and of its other calibrations."""
     known = facts.of_session(files)
-    more = [one for way in others for one in warnings.calibration(way, known["quality"][way])]
+    more = {way: warnings.calibration(way, known["quality"][way]) for way in others}
     return warnings.of_session(known, calibration, **limits), more

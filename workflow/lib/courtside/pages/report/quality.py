@@ -120,10 +120,11 @@ def clicked(qualities: dict[str, dict]) -> bool:
 def limits() -> Markup:
     """Return how the marks are set, as an HTML table."""
     rows = [
-        (words, f"{look:g}", f"{doubtful:g}") for look, doubtful, words in warned.LIMITS.values()
+        (words, f"{doubtful:g}", f"{failed:g}")
+        for doubtful, failed, words in warned.LIMITS.values()
     ]
     table = page.macro("report_parts.html", "table")
-    return table(("what", "doubtful from", "failed from"), rows, "limits of the lights")
+    return table(("what", "doubtful from", "failed from"), rows, "limits of the marks")
 
 
 def limit(row: dict, key: str) -> str:

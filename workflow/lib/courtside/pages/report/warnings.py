@@ -40,8 +40,8 @@ def _level_of(quantity: str, value: float | None) -> int:
     """Return the level of a quantity of `LIMITS`; `DOUBTFUL` if its value is unknown."""
     if value is None or math.isnan(value):
         return DOUBTFUL
-    look, doubtful, _ = LIMITS[quantity]
-    return FAILED if value >= doubtful else DOUBTFUL if value >= look else GOOD
+    doubtful, failed, _ = LIMITS[quantity]
+    return FAILED if value >= failed else DOUBTFUL if value >= doubtful else GOOD
 
 
 def worst(warned: Sequence[Warned]) -> int:
