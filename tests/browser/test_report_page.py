@@ -1,9 +1,14 @@
 """The report in a browser: it asks for nothing, contents lead on, nothing overflows the window."""
 
+import json
+
+import cv2
+import numpy as np
 import pytest
 
 from browser.waiting import until
 from courtside.pages import page as pages
+from courtside.pages import quality
 from courtside.pages.report import report
 from fixtures.study import report_made
 
@@ -77,6 +82,60 @@ def test_an_address_with_a_place_unfolds_it(open_page, path):
         "document.querySelector('.take details table').id = 'angles'; location.hash = 'angles'"
     )
     until(page, "document.querySelector('.take details').open")
+
+
+def test_on_paper_no_table_is_cut_off(open_page, path):
+    page = open_page(path, width=700)  # A4 without its margins
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    page.emulate_media(media="print")
+    hidden = page.evaluate(
+        "[...document.querySelectorAll('.scroll')].filter((one) => {"
+        " const boxes = [one, one.firstElementChild].map((item) => item.getBoundingClientRect());"
+        " return boxes[1].height > boxes[0].height + 1 || boxes[1].right > innerWidth + 1; })"
+        ".map((one) => one.ariaLabel)"
+    )
+    assert hidden == []
+    assert page.locator(".scroll").count() > 5
+    assert page.locator("table.dense tr").last.is_visible()
+
+
+def test_on_paper_a_dark_page_is_light(open_page, path):
+    page = open_page(path, color_scheme="dark")
+    page.emulate_media(media="print")
+    assert page.evaluate("getComputedStyle(document.body).color") == "rgb(28, 31, 35)"
+
+
+def test_the_page_for_quality_unfolds_before_printing(open_page, tmp_path):
+    files = report_made.study(tmp_path)["sessions"][0]["files"]
+    content = {**report_made.QUALITY, "remarks": ["cam03: not judged"]}
+    (tmp_path / "quality.json").write_text(json.dumps(content))
+    limits = {"max_shift_px": 1.0, "max_zoom_percent": 0.2}
+    cameras = {"calibration": "sfm-n40", "others": [], "files": files, "limits": limits}
+    pages.write(tmp_path / "quality.html", quality.build("hall", [], cameras))
+    page = open_page(tmp_path / "quality.html")
+    assert not page.locator("text=cam03: not judged").is_visible()
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert page.locator("text=cam03: not judged").is_visible()
+
+
+def test_pictures_of_the_page_for_quality_are_in_sight_in_a_narrow_window(open_page, tmp_path):
+    picture = bytes(cv2.imencode(".jpg", np.zeros((160, 320, 3), np.uint8))[1])
+    lines = [quality.Line("c1", "good", "It agrees with the other cameras.", ())]
+    take = {"name": "smash", "lines": lines, "pictures": {"c1": picture}, "left_out": ""}
+    pages.write(tmp_path / "quality.html", quality.build("hall", [take]))
+    page = open_page(tmp_path / "quality.html", width=400)
+    shown, reason = (
+        page.locator("img").bounding_box(),
+        page.locator("tbody td").nth(1).bounding_box(),
+    )
+    assert shown["x"] + shown["width"] <= 400
+    assert shown["y"] >= reason["y"] + reason["height"]
+    page.set_viewport_size({"width": 1280, "height": 900})
+    shown, reason = (
+        page.locator("img").bounding_box(),
+        page.locator("tbody td").nth(1).bounding_box(),
+    )
+    assert shown["x"] >= reason["x"] + reason["width"]
 
 
 def test_the_dark_page_is_dark(open_page, path):

@@ -116,6 +116,19 @@ def test_it_opens_at_the_first_frame_that_shows_a_person(open_page, tmp_path):
     assert page.evaluate("courtside.viewer.drawn()") == []
 
 
+def test_the_clock_tells_the_time_alone(open_page, tmp_path):
+    late = long_take()
+    later = replace(late, time_s=late.time_s + 1)  # the page begins before these frames
+    names = {"raw": later, "filtered": late}
+    layers = [viewer_layers.of_points(n, one, walker.SKELETON) for n, one in names.items()]
+    path = tmp_path / "viewer.html"
+    pages.write(path, viewer.build("A take", layers))
+    page = open_page(path)
+    page.evaluate("courtside.viewer.ready")
+    assert page.evaluate("courtside.viewer.state()")["frame"] > 0
+    assert page.inner_text("#clock") == "1.000 s"
+
+
 def test_positions_and_covariances_are_the_inputs(opened):
     page, points = opened
     ask = "([person, joint, frame]) => courtside.viewer.NAME('raw', person, joint, frame)"
@@ -248,6 +261,53 @@ def test_errors_are_coloured_with_a_legend(opened):
     assert page.evaluate("courtside.viewer.state()")["scale_end"] == 50
 
 
+@pytest.mark.parametrize("width", [400, 1280])
+def test_numbers_of_four_methods_are_in_sight(open_page, tmp_path, width):
+    names = ("d415-depth", "d415-rgb", "mocopi", "mocopi-corrected")
+    points = walker.points(n_frames=20)
+    layers = [viewer_layers.of_points(name, points, walker.SKELETON) for name in names]
+    path = tmp_path / "viewer.html"
+    pages.write(path, viewer.build("A take", layers))
+    page = open_page(path, width=width)
+    page.evaluate("courtside.viewer.ready")
+    page.select_option("#joint", "nose")
+    page.wait_for_timeout(60)
+    wide = "(one) => [one.scrollWidth, one.clientWidth, one.querySelectorAll('thead th').length]"
+    needed, given, columns = page.locator("#readout").evaluate(wide)
+    assert needed <= given and columns == 1 + len(names)
+
+
+def luminance(colour):
+    rgb = np.array(colour.removeprefix("rgb(").removesuffix(")").split(","), float) / 255
+    linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+    return float(linear @ [0.2126, 0.7152, 0.0722])
+
+
+def test_the_scale_of_errors_grows_lighter_from_end_to_end(opened):
+    page, _ = opened
+    found = [luminance(page.evaluate("(value) => shade(value, 60)", at)) for at in range(61)]
+    assert (np.diff(found) > 0).all()
+    assert found[-1] > 5 * found[0]  # also apart in grey print
+
+
+def test_several_methods_are_told_apart(opened):
+    page, _ = opened
+    swatch = page.locator("#layers .swatch").first
+    assert page.evaluate("courtside.viewer.state()")["colour"] == "side"
+    assert not swatch.is_visible()
+    page.locator("#layers input").nth(1).check()
+    page.wait_for_timeout(60)
+    assert page.evaluate("courtside.viewer.state()")["colour"] == "layer"
+    assert page.locator("#colour").input_value() == "layer" and swatch.is_visible()
+    assert page.locator("#legend .swatch").count() == 2
+    page.select_option("#colour", "side")
+    page.locator("#layers input").nth(0).uncheck()
+    page.locator("#layers input").nth(2).check()
+    page.select_option("#colour", "side")
+    page.wait_for_timeout(60)
+    assert "filtered: thick; corrected: thin, dashed" in page.locator("#legend").inner_text()
+
+
 def test_every_switch_works_and_a_layer_can_be_switched_off(opened):
     page, _ = opened
     for view in ("hall", "above", "x", "y", "camera c2", "all"):
@@ -261,6 +321,25 @@ def test_every_switch_works_and_a_layer_can_be_switched_off(opened):
     page.locator("#layers input").first.uncheck()
     page.wait_for_timeout(60)
     assert page.evaluate("courtside.viewer.drawn()") == []
+
+
+def test_the_chosen_person_is_followed_without_a_joint(open_page, tmp_path):
+    layer = viewer_layers.of_points("raw", long_take(2), walker.SKELETON)
+    path = tmp_path / "viewer.html"
+    pages.write(path, viewer.build("A take", [layer], scene.ring(4), court.read(COURT)))
+    page = open_page(path)
+    page.evaluate("courtside.viewer.ready")
+    page.check("#follow")
+    middle = page.locator("#canvas").bounding_box()["width"] / 2
+    for chosen, other in ((ROGUE, "p2"), ("p2", ROGUE)):
+        page.select_option("#person", chosen)
+        page.wait_for_timeout(60)
+        drawn = page.evaluate("courtside.viewer.drawn()")
+        x = {
+            who: np.mean([one["x"] for one in drawn if one["person"] == who])
+            for who in (chosen, other)
+        }
+        assert abs(x[chosen] - middle) < 60 < abs(x[other] - middle)
 
 
 def test_the_hand_turns_moves_and_zooms(opened):
@@ -292,6 +371,19 @@ def test_it_fits_the_window(made, open_page, width, scheme):
     page.wait_for_timeout(60)
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     assert picture(page).std() > 5
+
+
+def test_on_paper_the_picture_is_light_and_has_the_proportions_of_its_place(made, open_page):
+    page = open_page(made[0], color_scheme="dark")
+    page.evaluate("courtside.viewer.ready")
+    page.select_option("#view", "above")
+    floor = "canvas.getContext('2d').getImageData(canvas.width / 2, canvas.height / 2, 1, 1).data"
+    page.set_viewport_size({"width": 700, "height": 900})
+    page.emulate_media(media="print")
+    page.wait_for_timeout(100)
+    assert page.evaluate(f"Math.max(...Array.from({floor}).slice(0, 3))") > 200
+    shape = "canvas.width / canvas.height / (canvas.clientWidth / canvas.clientHeight)"
+    assert page.evaluate(shape) == pytest.approx(1, abs=0.01)
 
 
 def test_a_browser_too_old_is_told_so(made, browser):

@@ -38,7 +38,7 @@ rule build_people_page:
 rule build_quality_page:
     input:
         files=files_of(pages.judged_takes, "quality", "people", "skeleton", "pose2d", "videos"),
-        calibrations=lambda w: targets.calibration.warning_files(session_of(w)),
+        of_cameras=lambda w: report_page.files(report_page.cameras(session_of(w))),
         assets=sorted(ASSETS.glob("[pqr]*")),
     output:
         page_html=paths.QUALITY_PAGE,
@@ -48,6 +48,7 @@ rule build_quality_page:
         code=code("build_quality_page.py"),
         session=lambda w: w.session,
         takes=of_job(pages.judged_takes),
+        cameras=lambda w: report_page.cameras(session_of(w)),
     script:
         "../scripts/build_quality_page.py"
 

@@ -7,9 +7,9 @@ from courtside.study.execution import log, verdicts
 from courtside.study.execution.script import run
 
 
-def main(calibrations, page_html, *, session, takes):
+def main(page_html, *, session, takes, cameras):
     shown = [with_pictures(take) for take in log.progress(takes, len(takes), "takes")]
-    page.write(page_html, quality_page.build(session, shown, calibrations))
+    page.write(page_html, quality_page.build(session, shown, cameras))
     count = sum(len(take["pictures"]) for take in shown)
     log.logger.info("%s: %d takes, %d pictures", page_html, len(shown), count)
 

@@ -13,7 +13,7 @@ from courtside.figures.style import style
 from courtside.study.execution.script import run
 
 
-def main(ties_npz, summary_json, court_yaml, pdf, png, csv, *, n_images):
+def main(ties_npz, summary_json, court_yaml, pdf, png, csv, *, n_images, mapper):
     rows = fig06.table(
         {count: tie_points.read(path) for count, path in zip(n_images, ties_npz, strict=True)}
     )
@@ -21,7 +21,7 @@ def main(ties_npz, summary_json, court_yaml, pdf, png, csv, *, n_images):
         count: json.loads(Path(path).read_text(encoding="utf-8"))["n_images"]
         for count, path in zip(n_images, summary_json, strict=True)
     }
-    drawing = fig06.draw(rows, court.read(court_yaml), n_all)
+    drawing = fig06.draw(rows, court.read(court_yaml), n_all, mapper)
     style.save(drawing, rows, pdf, png, csv)
 
 

@@ -1,12 +1,15 @@
 """The page for quality: its lines, its pictures, and nobody to be recognised."""
 
 import json
+import re
 
 import cv2
 import numpy as np
 import pytest
 
+from courtside.pages import page as pages
 from courtside.pages import quality
+from courtside.pages.report import report
 from courtside.records.keypoints.skeleton import Skeleton
 from courtside.study.execution import verdicts
 from courtside.video import writer
@@ -16,6 +19,8 @@ from fixtures.study import report_made
 SKELETON = Skeleton(
     "made", ("a", "b", "c", "d", "e"), (("a", "c"), ("b", "d")), {}, {"face": ("a", "b")}
 )
+
+LIMITS = {"max_shift_px": 1.0, "max_zoom_percent": 0.2}
 
 
 @pytest.fixture
@@ -77,11 +82,45 @@ def test_the_page_says_what_checks_of_the_calibration_found(rows, tmp_path):
     check.parent.mkdir()
     content = {"warnings": ["the cameras of the file <disagree>"], "remarks": ["cam03: not judged"]}
     check.write_text(json.dumps(content))
+    own = check.with_name("quality.json")
+    own.write_text(json.dumps({"warnings": [], "covariance": "known"}))
     takes = [{"name": "smash", "lines": quality.lines(rows), "pictures": {}, "left_out": ""}]
-    html = quality.build("hall", takes, [check])
-    assert "file: the cameras of the file &lt;disagree&gt;." in html
-    assert "For information (1)" in html and "file: cam03: not judged." in html
-    assert "Calibrations" not in quality.build("hall", takes)
+    cameras = {"calibration": "file", "others": [], "limits": LIMITS}
+    cameras["files"] = {"quality": {"file": own}, "checks": [check]}
+    html = quality.build("hall", takes, cameras)
+    assert "Calibration: the cameras of the file &lt;disagree&gt;." in html
+    assert "For information (1)" in html and "Calibration: cam03: not judged." in html
+    assert "<h2>Cameras" not in quality.build("hall", takes)
+
+
+def test_the_page_and_the_report_say_the_same_of_the_cameras(rows, tmp_path):
+    study = report_made.study(tmp_path)
+    study["sessions"][0]["takes"] = []
+    content = report_made.QUALITY | {"expected_volume_rms_cm": None}  # 2 cm by points left out
+    (tmp_path / "quality.json").write_text(json.dumps(content))
+    other = tmp_path / "other.json"
+    other.write_text(json.dumps({"warnings": ["points are missing"]}))
+    files = study["sessions"][0]["files"]
+    both = files | {"quality": files["quality"] | {"known18": other}}
+    cameras = {"calibration": "sfm-n40", "others": ["known18"], "files": both, "limits": LIMITS}
+    html = quality.build("hall", [], cameras)
+    mark = (
+        r'<span class="light (\w+)"><span aria-hidden="true">(.)</span> (?:Cameras|doubtful)</span>'
+    )
+    own, listed = html.partition("</h2>")[0], html.partition("</h2>")[2]
+    of_report = report.build(study | {"figures": [], "tables": []}).partition("<main>")[2]
+    assert re.search(mark, own[own.index("<h2>") :]).groups() == ("doubtful", "▲")
+    assert re.search(mark, of_report[of_report.index("<h3") :]).groups() == ("doubtful", "▲")
+    sentence = "Calibration sfm-n40: the median error of court points left out in turn is 2.0 cm."
+    assert sentence in listed and sentence in of_report
+    assert listed.index("<h3>Also used: known18</h3>") < listed.index("points are missing")
+    assert "points are missing" not in of_report
+
+
+def test_the_marks_have_the_words_of_the_verdicts():
+    light = pages.macro("report_parts.html", "light")
+    words = [light(level).rpartition("</span> ")[2] for level in range(len(verdicts.ORDER))]
+    assert words == [f"{word}</span>" for word in verdicts.ORDER]
 
 
 def test_the_page_has_a_row_for_each_line_and_says_why_pictures_are_missing(rows):

@@ -20,6 +20,11 @@ def test_an_ellipsoid_holds_its_share_of_normal_errors(share):
     assert np.mean(squares <= normal_errors.ellipsoid(share)) == pytest.approx(share, abs=0.003)
 
 
+def test_numbers_end_with_two_digits_of_their_error():
+    errors = {120.0: 0, 9.4: 1, 0.38: 2, 0.017: 3, 0.0001: 3}
+    assert {error: normal_errors.decimals(error) for error in errors} == errors
+
+
 def test_factors_of_a_standard_deviation_are_those_of_normal_errors():
     sizes = np.abs(DRAWS[:, 0])
     assert np.mean(sizes <= normal_errors.WITHIN_90) == pytest.approx(0.9, abs=0.003)

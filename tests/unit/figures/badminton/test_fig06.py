@@ -55,6 +55,11 @@ def test_there_is_a_panel_for_every_number(rows):
     assert "points behind" in axes[1].texts[0].get_text()
 
 
+def test_the_mapper_is_named(rows):
+    assert fig06.draw(rows, COURT, mapper="global").get_suptitle() == "global mapper"
+    assert not fig06.draw(rows, COURT).get_suptitle()
+
+
 def test_all_cameras_are_inside_the_panel(rows):
     axis = fig06.draw(rows, COURT).axes[0]
     (left, right), (low, high) = axis.get_xlim(), axis.get_ylim()

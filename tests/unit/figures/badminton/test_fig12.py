@@ -1,5 +1,7 @@
 """The racket's figure: medians, floor and published values are drawn at their values."""
 
+import itertools
+
 import pandas as pd
 import pytest
 
@@ -42,6 +44,28 @@ def test_medians_floor_and_published_values_are_drawn(tmp_path):
     # SfM is way 4: its errors are 3 mm more than those of way 1 and 4 more than those of way 0.
     assert medians(drawing.axes[4]) == [3, 4, 0, 0, 3, 4]
     assert sorted(stars(drawing.axes[4])) == pytest.approx([-3.83, -0.83, 0.06])
+
+
+def shown_ticks(drawing, axis):
+    """Return the labels of the ticks within the y axis from below, and their boxes in pixels."""
+    low, high = axis.get_ylim()
+    ticks = zip(axis.get_yticks(), axis.get_yticklabels(), strict=True)
+    shown = [
+        label for value, label in sorted(ticks, key=lambda one: one[0]) if low <= value <= high
+    ]
+    return [one.get_text() for one in shown], [one.get_window_extent() for one in shown]
+
+
+def test_numbers_of_the_axes_stand_apart_and_reach_as_far_as_the_errors(tmp_path):
+    far = [(500.0, 200.0, 150.0), (900.0, 400.0, 260.0), (19000.0, 27000.0, 3400.0)]
+    for errors, largest in ((ERRORS | {"dlt8": far}, "10000"), (ERRORS, "20")):
+        drawing = fig12.draw(numbers(tmp_path, errors, ("hall",)), 0.674)
+        drawing.draw_without_rendering()
+        for axis in drawing.axes[:3]:
+            words, boxes = shown_ticks(drawing, axis)
+            assert len(words) >= 3
+            assert all(a.y1 < b.y0 for a, b in itertools.pairwise(boxes))
+        assert largest in shown_ticks(drawing, drawing.axes[0])[0]
 
 
 def test_ways_without_a_result_leave_a_gap(tmp_path):

@@ -45,6 +45,13 @@ def made(takes=("footwork",), stages=("pose3d", "pose3d_corrected"), n_persons=1
     return three_cameras.table(pd.concat(errors), pd.DataFrame(points))
 
 
+def test_no_two_fusions_have_the_same_words_although_they_have_the_same_cameras():
+    three = {way: ["c0", "c1", "c2"] for way in ("halfbody", "three-robust", "all-robust")}
+    drawing = three_cameras.draw(made(), CAMERAS | three)
+    words = [text.get_text() for text in drawing.legends[0].get_texts()]
+    assert len(set(words)) == len(words) == len(OFFSET_M)
+
+
 def test_numbers_are_those_of_the_evaluation():
     rows = made()
     assert set(rows["joint"]) == set(three_cameras.ROWS)
@@ -100,7 +107,7 @@ def test_marks_stand_at_the_medians_of_raw_and_corrected():
 def test_the_title_states_the_errors_of_two_cameras():
     drawing = three_cameras.draw(made(), CAMERAS)
     title = drawing.subfigs[0].get_suptitle()
-    assert "2 cameras, ours, filtered, joint offsets removed" in title
+    assert "2 cameras, fused with weights, filtered, joint offsets removed" in title
     assert "right half 30 (30), left half 60 (60), neck 8 (24), centre of gravity 8 (24)" in title
 
 

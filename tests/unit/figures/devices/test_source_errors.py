@@ -92,6 +92,26 @@ def test_parts_are_stacked_in_order_and_fill_the_bar(drawing):
     assert label == "100 mm rms; shift 12 mm, scale 1.050\nturn 3.0°, time −20 ms"
 
 
+def test_numbers_stand_free_between_the_bars(drawing):
+    axis = drawing.subfigs[2].axes[0]
+    texts = [text.get_window_extent() for text in axis.texts]
+    bars = [patch.get_window_extent() for patch in axis.patches]
+    assert len(texts) == len(MEDIANS)
+    assert not [1 for text in texts for bar in bars if text.overlaps(bar)]
+    assert min(text.y0 for text in texts) > axis.get_window_extent().y0
+
+
+def test_a_correction_of_nearly_nothing_has_no_sign_of_minus():
+    values = parts().assign(value=lambda rows: rows["value"].replace(-0.02, -0.0003))
+    drawing = source_errors.draw(errors(), angles(), values)
+    assert drawing.subfigs[2].axes[0].texts[0].get_text().endswith("time +0 ms")
+
+
+def test_parts_have_no_colour_of_a_source():
+    of_sources = {*source_styles.COLOURS.values(), source_styles.OTHER}
+    assert not of_sources.intersection(source_errors.PARTS.values())
+
+
 def test_a_source_without_common_frames_has_no_bar():
     unknown = parts().assign(mean_square_mm2=np.nan, percent=np.nan, value=np.nan)
     drawing = source_errors.draw(errors(), angles(), unknown)

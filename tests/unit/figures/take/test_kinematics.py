@@ -69,6 +69,9 @@ def test_the_limits_of_the_distance_include_the_cameras_error(tables):
     for camera, reach in ((0.4, 1.645 * 0.5), (np.nan, 1.645 * 0.3)):
         drawing = speeds.draw(frames, summary.assign(**known | {"sigma_camera": camera}), None)
         assert f"12.00 ± {reach:.2f} m" in drawing.subfigs[0].axes[0].get_title()
+    short = summary.assign(value=0.28295, sigma=0.01012, sigma_camera=np.nan)
+    title = speeds.draw(frames, short, None).subfigs[0].axes[0].get_title()
+    assert "0.283 ± 0.017 m on the ground" in title  # as the report has it
 
 
 def test_a_distance_that_is_unknown_is_told_in_words(tables):

@@ -56,9 +56,10 @@ def test_an_unknown_value_in_a_caption_is_an_error(source):
 
 @pytest.mark.parametrize("path", CAPTIONS, ids=lambda path: path.stem)
 def test_every_caption_of_the_study_is_text(path):
-    wildcards = dict.fromkeys(("session", "take", "model", "calibration", "plan"), "word")
+    wildcards = dict.fromkeys(("session", "take", "model", "calibration", "plan", "mapper"), "word")
     step = {"n_frames": 17, "n_instants": 3, "limit_torso": 0.1}
     params = {"networks": ["one", "two"], "source": "mocopi", "blur_faces": True, "step": step}
     html = captions.render(path.read_text(), wildcards, params)
     assert html.count("<p>") >= 1
     assert "problematic" not in html and "system-message" not in html and "{{" not in html
+    assert "mailto:" not in html

@@ -6,7 +6,7 @@ import pytest
 
 from courtside.pages import page
 from courtside.pages.report import coach
-from courtside.pages.report.warnings import DOUBT, GOOD, LOOK, Warned
+from courtside.pages.report.warnings import DOUBTFUL, FAILED, GOOD, Warned
 from fixtures.study.report_made import ROGUE
 
 FACTS = {"persons": {}, "left_out": {}, "seconds": None, "devices": [], "true_paths": []}
@@ -34,8 +34,8 @@ def test_numbers_have_the_digits_of_their_error(value, half, unit, expected):
 
 def test_a_mark_has_a_shape_and_a_word_beside_its_colour():
     light = page.macro("report_parts.html", "light")
-    shapes = {level: light(level) for level in (GOOD, LOOK, DOUBT)}
-    words = {GOOD: "Good", LOOK: "Look", DOUBT: "Doubt"}
+    shapes = {level: light(level) for level in (GOOD, DOUBTFUL, FAILED)}
+    words = {GOOD: "good", DOUBTFUL: "doubtful", FAILED: "failed"}
     assert all(words[level] in html for level, html in shapes.items())
     assert len({html.split('hidden="true">')[1][0] for html in shapes.values()}) == 3
 
@@ -43,6 +43,7 @@ def test_a_mark_has_a_shape_and_a_word_beside_its_colour():
 def test_a_take_says_distance_speeds_and_angles():
     measures = {
         "neck_distance": (29.3274, 0.376, "m"),
+        "neck_ground_distance": (28.6521, 0.371, "m"),
         "neck_speed_mean": (1.2254, 0.0155, "m/s"),
         "left_knee_flexion_min": (12.8, 9.5, "degrees"),
         "left_knee_flexion_max": (89.7, 9.4, "degrees"),
@@ -53,11 +54,14 @@ def test_a_take_says_distance_speeds_and_angles():
         "seconds": 24.03,
     }
     take = {"id": "take-x", "name": "smash", "links": [("a/viewer.html", "3D viewer")]}
-    html = coach.take(take, facts, [Warned(LOOK, "Camera left moved.")])
+    html = coach.take(take, facts, [Warned(DOUBTFUL, "Camera left moved.")])
     for words in ("29.33 &plusmn; 0.38 m", "in 24.0 s", "from 94 of 100 frames", "left knee, bend"):
         assert words in html
     assert 'href="a/viewer.html"' in html and "Camera left moved." in html
-    assert html.index("Look") < html.index("29.33")
+    space, ground = "29.33 &plusmn; 0.38 m", "28.65 &plusmn; 0.37 m"
+    text = " ".join(html.split())
+    assert f"{space}</b> in 24.0 s, up and down included, on the ground <b>{ground}" in text
+    assert html.index("doubtful") < html.index("29.33")
 
 
 def test_a_take_says_what_the_feet_did():
@@ -102,7 +106,7 @@ def test_a_simulated_take_compares_the_distance_with_the_truth():
 
 def test_warnings_for_information_only_are_folded_away():
     warnings = page.macro("report_parts.html", "warnings")
-    html = warnings([Warned(LOOK, "one"), Warned(GOOD, "two")])
+    html = warnings([Warned(DOUBTFUL, "one"), Warned(GOOD, "two")])
     assert html.index("one") < html.index("<details>") < html.index("two")
     assert warnings([]) == ""
 
@@ -111,6 +115,6 @@ def test_text_of_users_is_escaped():
     measures = {"neck_distance": (1.0, 0.1, ROGUE)}
     facts = FACTS | {"persons": {ROGUE: measures}, "devices": [{"source": ROGUE}]}
     take = {"id": "t", "name": ROGUE, "links": [(ROGUE, ROGUE)]}
-    html = coach.take(take, facts, [Warned(LOOK, ROGUE)], ROGUE)
+    html = coach.take(take, facts, [Warned(DOUBTFUL, ROGUE)], ROGUE)
     html += coach.take(take, facts | {"persons": {}}, [])
     assert "<img" not in html and "</script>" not in html

@@ -51,6 +51,14 @@ def test_figures_stand_by_session_and_take():
     assert found == [("b", ""), ("b", "shot"), ("a", "shot"), ("", ""), ("planned", "")]
 
 
+def test_numbers_of_a_table_have_one_style(tmp_path):
+    given = ["15731.0000", "10100.4", "100.0000", "98.6123", "-0.0", "0.00012345", "n/a", "nan"]
+    (tmp_path / "t.csv").write_text("a,b\n" + "".join(f"x,{value}\n" for value in given))
+    entry = {"file": str(tmp_path / "t.csv"), "title": "T", "words": "W.", "link": "t.csv"}
+    shown = re.findall(r"<td[^>]*>([^<x]*)</td>", report_figures.table(entry))
+    assert shown == ["15731", "10100", "100", "98.61", "0", "0.0001234", "n/a", "nan"]
+
+
 def test_a_table_leaves_out_what_is_empty_and_escapes_the_rest(tmp_path):
     html = report_figures.table(report_made.study(tmp_path)["tables"][0])
     assert "<th scope='col'>error cm</th>" in html and ">empty<" not in html

@@ -18,7 +18,7 @@ def page(tmp_path, **changes):
     take = session["takes"][0]
     known = report_facts.of_take(take["files"]) | changes
     facts = report_facts.of_session(session["files"])
-    found = [warnings.Warned(warnings.LOOK, "Calibration: odd.")]
+    found = [warnings.Warned(warnings.DOUBTFUL, "Calibration: odd.")]
     return quality.session(session, facts, found, [(take, known, [])])
 
 
@@ -105,8 +105,34 @@ def test_errors_of_simulated_takes_are_those_of_their_fusion(tmp_path):
 def test_verdicts_are_stated_with_their_limits(tmp_path):
     html = page(tmp_path)
     assert "<td>It is 0.064 off.</td>" in html and "of another calibration" not in html
-    assert re.search(r"0\.035</td>\s*<td[^>]*>0\.100</td>\s*<td>doubtful</td>", html)
-    assert "The take is <b>doubtful</b>, likelier cause: clock" in html
+    assert "<td>above 0.035</td><td>above 0.1</td><td>doubtful</td>" in html
+    assert "Agreement of the cameras: <b>doubtful</b>, likelier cause: clock. " in html
+
+
+@pytest.mark.parametrize(
+    ("measure", "doubtful", "failed", "stated"),
+    [
+        ("found", 0.9, 0.5, ("below 90%", "below 50%")),
+        ("views_3", 0.5, 0.0, ("below 50%", "–")),
+        ("limb_length", 0.09, 0.25, ("above 9%", "above 25%")),
+        ("reprojection", 0.035, 0.1, ("above 0.035", "above 0.1")),
+        ("found", math.nan, math.nan, ("–", "–")),
+    ],
+)
+def test_limits_have_the_unit_of_their_sentence(measure, doubtful, failed, stated):
+    row = {"measure": measure, "doubtful_from": doubtful, "failed_from": failed}
+    assert (quality.limit(row, "doubtful_from"), quality.limit(row, "failed_from")) == stated
+
+
+def test_sentences_are_no_numbers():
+    html = pages.macro("report_parts.html", "cells")("90% of the joints rest on two.", "9.0 %", "–")
+    assert html.count('class="number"') == 2 and "<td>90% of" in html
+
+
+def test_cameras_without_a_static_recording_have_a_row_of_movement_too(tmp_path):
+    names = {name: {"accepted": 1.0, "median_px": 1.0} for name in ("c0", "c9")}
+    assert cells(page(tmp_path, cameras=names), "c9")[:3] == ["–", "–", "–"]
+    assert "Movement since" not in page(tmp_path, cameras=names, movement=[])
 
 
 def test_unknown_numbers_are_a_dash():

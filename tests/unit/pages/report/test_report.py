@@ -74,10 +74,10 @@ def test_a_take_and_the_cameras_of_its_session_have_marks_of_their_own(study, tm
         return [cell.partition("</span> ")[2].partition("<")[0] for cell in row.split("<td>")[1:3]]
 
     take, cameras = marks()
-    assert cameras == "Good"
+    assert cameras == "good"
     bad = report_made.QUALITY | {"expected_volume_rms_cm": 6.0}
     (tmp_path / "quality.json").write_text(json.dumps(bad))
-    assert marks() == [take, "Doubt"] and take != "Doubt"
+    assert marks() == [take, "failed"] and take != "failed"
 
 
 def test_text_of_users_is_escaped(tmp_path):
@@ -89,9 +89,19 @@ def test_text_of_users_is_escaped(tmp_path):
 
 
 def test_a_session_of_devices_says_nothing_of_cameras(study):
-    assert "Cameras</span>" in report.build(study)
+    assert report.build(study).count("Cameras</span>") == 2
     study["sessions"][0] |= {"files": {}, "calibration": None, "mapper": None}
-    assert "Cameras</span>" not in report.build(study)
+    page = report.build(study)
+    assert "Cameras</span>" not in page
+    assert '<span class="light' not in page[page.index('id="quality"') :].partition("<details")[0]
+
+
+def test_what_is_for_information_only_has_no_mark(study, tmp_path):
+    content = report_made.QUALITY | {"remarks": ["cam03: not judged"], "warnings": ["cam01 moved"]}
+    (tmp_path / "quality.json").write_text(json.dumps(content))
+    page = report.build(study)
+    assert "<li>Calibration: cam03: not judged.</li>" in page
+    assert "doubtful</span> Calibration: cam01 moved.</li>" in page
 
 
 def test_a_study_without_takes_has_a_report(study):

@@ -29,10 +29,13 @@ def level(found):
     ("row", "expected"),
     [
         ({}, None),
-        ({"shift_x_px": 0.6}, warned.LOOK),
-        ({"shift_x_px": 0.8, "shift_y_px": -0.8}, warned.DOUBT),
-        ({"zoom_percent": -0.15}, warned.LOOK),
-        ({"shift_x_px": math.nan, "shift_y_px": math.nan, "zoom_percent": math.nan}, warned.LOOK),
+        ({"shift_x_px": 0.6}, warned.DOUBTFUL),
+        ({"shift_x_px": 0.8, "shift_y_px": -0.8}, warned.FAILED),
+        ({"zoom_percent": -0.15}, warned.DOUBTFUL),
+        (
+            {"shift_x_px": math.nan, "shift_y_px": math.nan, "zoom_percent": math.nan},
+            warned.DOUBTFUL,
+        ),
     ],
 )
 def test_a_moved_camera_gives_a_warning_with_its_name(row, expected):
@@ -47,11 +50,11 @@ def test_a_moved_camera_gives_a_warning_with_its_name(row, expected):
         (Clock(status="reference"), None),
         (Clock(status="assumed"), warned.GOOD),
         (Clock(status="found", uncertainty_s=0.002), None),
-        (Clock(status="found", uncertainty_s=0.006), warned.LOOK),
-        (Clock(status="found", uncertainty_s=0.02), warned.DOUBT),
-        (Clock(status="found", uncertainty_s=math.nan), warned.LOOK),
-        (Clock(status="ambiguous"), warned.DOUBT),
-        (Clock(status="unknown"), warned.DOUBT),
+        (Clock(status="found", uncertainty_s=0.006), warned.DOUBTFUL),
+        (Clock(status="found", uncertainty_s=0.02), warned.FAILED),
+        (Clock(status="found", uncertainty_s=math.nan), warned.DOUBTFUL),
+        (Clock(status="ambiguous"), warned.FAILED),
+        (Clock(status="unknown"), warned.FAILED),
     ],
 )
 def test_an_uncertain_clock_gives_a_warning(clock, expected):
@@ -95,7 +98,7 @@ def shake(knock_px=0.0, offset_px=0.0, unknown=0):
 
 def test_a_bump_is_reported_without_advice_that_was_followed():
     tremor, off, bump = map(warned.shaken, shake(knock_px=15.0, offset_px=5.0))
-    assert tremor.level == warned.GOOD and off.level == bump.level == warned.LOOK
+    assert tremor.level == warned.GOOD and off.level == bump.level == warned.DOUBTFUL
     assert tremor.text.startswith("Camera c0: trembles by 0.")
     done = ". This was measured on the background and corrected."
     assert off.text.startswith("Camera c0: was 5.0 px off its static picture at the start")
@@ -107,7 +110,7 @@ def test_a_bump_is_reported_without_advice_that_was_followed():
 @pytest.mark.parametrize("unknown", [10, 240])
 def test_frames_without_background_are_reported_as_unknown(unknown):
     found = warned.shaken(shake(unknown=unknown)[0])
-    assert found.level == warned.LOOK
+    assert found.level == warned.DOUBTFUL
     assert "background to tell" in found.text and "corrected" not in found.text
 
 
@@ -116,11 +119,14 @@ def test_frames_without_background_are_reported_as_unknown(unknown):
     [
         ({}, []),
         ({"left_out": {"p01": {"error_cm": 2.5}}}, []),
-        ({"left_out": {"p01": {"error_cm": 2.5}}, "expected_volume_rms_cm": None}, [warned.LOOK]),
-        ({"left_out": {"p01": {"error_cm": 9.0}}, "expected_volume_rms_cm": 6.0}, [warned.DOUBT]),
-        ({"tie_residual_px": 1.5}, [warned.LOOK]),
-        ({"warnings": ["the lines' middles were clicked"]}, [warned.LOOK]),
-        ({"left_out": "too few points", "expected_volume_rms_cm": 0.7}, [warned.LOOK]),
+        (
+            {"left_out": {"p01": {"error_cm": 2.5}}, "expected_volume_rms_cm": None},
+            [warned.DOUBTFUL],
+        ),
+        ({"left_out": {"p01": {"error_cm": 9.0}}, "expected_volume_rms_cm": 6.0}, [warned.FAILED]),
+        ({"tie_residual_px": 1.5}, [warned.DOUBTFUL]),
+        ({"warnings": ["the lines' middles were clicked"]}, [warned.DOUBTFUL]),
+        ({"left_out": "too few points", "expected_volume_rms_cm": 0.7}, [warned.DOUBTFUL]),
         ({"left_out": {}, "expected_volume_rms_cm": None}, []),
     ],
 )
@@ -143,7 +149,7 @@ def test_cameras_of_a_file_with_a_covariance_are_judged_by_their_expected_error(
     known = {"covariance": "data/hall/covariance.npz"}
     assert warned.calibration("file", known) == []
     (found,) = warned.calibration("file", known | {"expected_volume_rms_cm": 2.5})
-    assert found.level == warned.LOOK and "2.5 cm" in found.text
+    assert found.level == warned.DOUBTFUL and "2.5 cm" in found.text
     (found,) = warned.calibration("file", {"covariance": "unknown: the file gives none"})
     assert "the error bars do not include its error" in found.text
 
@@ -161,7 +167,9 @@ def test_the_median_of_points_that_were_left_out():
     assert warned.left_out_cm({"left_out": "why not"}) is None
 
 
-@pytest.mark.parametrize(("lost", "expected"), [(0, None), (6, warned.LOOK), (20, warned.DOUBT)])
+@pytest.mark.parametrize(
+    ("lost", "expected"), [(0, None), (6, warned.DOUBTFUL), (20, warned.FAILED)]
+)
 def test_pictures_that_were_not_registered_are_counted(lost, expected):
     found = warned.registered({"n_images": 42, "n_registered": 42 - lost})
     assert level(found) == expected
@@ -177,9 +185,9 @@ def verdict(word, camera="c1", person="all", measure="whole"):
 def test_a_camera_that_is_not_good_is_told_with_its_cause():
     assert warned.judged([verdict("good")]) == []
     told = warned.judged([verdict("doubtful")])
-    assert told == [(warned.LOOK, "Camera c1: its clock is off.")]
-    assert level(*warned.judged([verdict("failed")])) == warned.DOUBT
-    assert level(*warned.judged([verdict("failed", camera="all", person="p1")])) == warned.DOUBT
+    assert told == [(warned.DOUBTFUL, "Camera c1: its clock is off.")]
+    assert level(*warned.judged([verdict("failed")])) == warned.FAILED
+    assert level(*warned.judged([verdict("failed", camera="all", person="p1")])) == warned.FAILED
 
 
 def test_the_take_and_single_measures_are_not_told_twice():
@@ -190,7 +198,7 @@ def test_the_take_and_single_measures_are_not_told_twice():
 
 def test_a_take_that_is_doubtful_though_its_cameras_agree_is_told():
     take = verdict("doubtful", camera="all")
-    assert warned.judged([take, verdict("good")]) == [(warned.LOOK, take["sentence"])]
+    assert warned.judged([take, verdict("good")]) == [(warned.DOUBTFUL, take["sentence"])]
 
 
 def test_remarks_of_a_calibration_are_for_information():
@@ -205,17 +213,17 @@ def joint(missing=0.0, few=0.0):
 def test_the_joint_that_is_missing_most_often_is_named():
     assert warned.joints({"left_knee": joint(), "left_hip": joint()}) == []
     (found,) = warned.joints({"left_knee": joint(0.3), "left_hip": joint(0.1)})
-    assert found.level == warned.DOUBT
+    assert found.level == warned.FAILED
     assert "20%" in found.text and "left knee (30%)" in found.text
     (alone,) = warned.joints({"left_knee": joint(few=0.9)})
-    assert alone.level == warned.LOOK and "only two cameras" in alone.text
+    assert alone.level == warned.DOUBTFUL and "only two cameras" in alone.text
     assert warned.joints({}) == []
 
 
 def test_frames_left_out_give_a_warning_with_the_reason():
     assert warned.frames("p1", 1, 100, {"uncertain": 1}) is None
     found = warned.frames("p1", 30, 100, {"uncertain": 20, "one_view": 10})
-    assert found.level == warned.DOUBT
+    assert found.level == warned.FAILED
     assert "30 of 100" in found.text and "too uncertain" in found.text
     assert "one view" in warned.frames("p1", 10, 100, {"one_view": 10}).text
 
@@ -224,7 +232,7 @@ def test_a_truth_outside_the_error_bar_gives_a_warning():
     row = {"person": "m3", "point": "neck", "distance_sigma_percent": 1.0}
     assert warned.true_path(row | {"distance_error_percent": -1.6}) is None
     found = warned.true_path(row | {"distance_error_percent": -2.3})
-    assert found.level == warned.LOOK and "2.3 % larger" in found.text
+    assert found.level == warned.DOUBTFUL and "2.3 % larger" in found.text
     assert warned.true_path(row | {"distance_error_percent": math.nan}) is None
     assert warned.true_path(row | {"point": "mass", "distance_error_percent": 9.0}) is None
 
@@ -233,10 +241,10 @@ def test_a_truth_outside_the_error_bar_gives_a_warning():
     ("value", "half", "expected"),
     [
         (2.0, 0.05, None),
-        (2.0, 0.2, warned.LOOK),
-        (2.0, 0.5, warned.DOUBT),
-        (2.0, math.nan, warned.LOOK),
-        (math.nan, math.nan, warned.DOUBT),
+        (2.0, 0.2, warned.DOUBTFUL),
+        (2.0, 0.5, warned.FAILED),
+        (2.0, math.nan, warned.DOUBTFUL),
+        (math.nan, math.nan, warned.FAILED),
     ],
 )
 def test_an_uncertain_distance_gives_a_warning(value, half, expected):
@@ -257,7 +265,7 @@ def test_an_unknown_distance_has_its_cause_and_remedy(bias, measured, gaps, why)
     values = {"": math.nan, "_noise_bias": bias, "_measured": measured, "_in_gaps": gaps}
     measures = {f"neck_distance{what}": (each, 0.0, "m") for what, each in values.items()}
     found = warned.distance("p1", measures)
-    assert found.level == warned.DOUBT
+    assert found.level == warned.FAILED
     assert re.fullmatch(f"p1: the distance of the neck is unknown: {why}.*\\.", found.text)
 
 
@@ -265,8 +273,8 @@ def test_an_unknown_distance_has_its_cause_and_remedy(bias, measured, gaps, why)
     ("row", "expected"),
     [
         ({"status": "reference", "uncertainty_s": 0.0}, None),
-        ({"status": "found", "uncertainty_s": 0.017}, warned.LOOK),
-        ({"status": "unknown", "uncertainty_s": math.nan}, warned.DOUBT),
+        ({"status": "found", "uncertainty_s": 0.017}, warned.DOUBTFUL),
+        ({"status": "unknown", "uncertainty_s": math.nan}, warned.FAILED),
     ],
 )
 def test_an_uncertain_clock_of_a_device_gives_a_warning(row, expected):
@@ -275,7 +283,7 @@ def test_an_uncertain_clock_of_a_device_gives_a_warning(row, expected):
 
 def test_a_device_without_a_tpose_gives_a_warning():
     warning = warned.no_tpose({"source": "mocopi", "n_tposes": 0})
-    assert warning.level == warned.LOOK
+    assert warning.level == warned.DOUBTFUL
     assert warning.text.startswith("mocopi: it shows no T-pose")
     assert warned.no_tpose({"source": "mocopi", "n_tposes": 1}) is None
 
@@ -293,8 +301,8 @@ def test_warnings_are_sorted_by_level():
         "true_paths": [],
     }
     found = warned.of_take(facts, max_shift_px=1.0, max_zoom_percent=0.2)
-    assert [item.level for item in found] == [warned.DOUBT, warned.LOOK, warned.GOOD]
-    assert warned.worst(found) == warned.DOUBT
+    assert [item.level for item in found] == [warned.FAILED, warned.DOUBTFUL, warned.GOOD]
+    assert warned.worst(found) == warned.FAILED
     assert warned.worst([]) == warned.GOOD
 
 
@@ -318,4 +326,4 @@ def test_a_static_photo_is_no_fault():
     assert "left: its static recording is a photo" in found.text
     moved = facts | {"static": [STILL | {"shift_x_px": 3.0}]}
     (found,) = warned.of_session(moved, None, max_shift_px=1.0, max_zoom_percent=0.2)
-    assert found.level == warned.DOUBT
+    assert found.level == warned.FAILED

@@ -53,6 +53,14 @@ def layer(name="raw", n_frames=20, **more):
     return viewer_layers.of_points(name, walker.points(n_frames=n_frames), walker.SKELETON, **more)
 
 
+def test_the_page_says_whose_axes_it_shows():
+    ring, hall = scene.ring(4), court_files.read(CONFIG / "courts" / "badminton.yaml")
+    alone = viewer.build("t", [layer("suit")])
+    assert "Axes: those of suit, turned so that z points up. Heights count from its origin" in alone
+    assert "Axes: those of the calibration of the cameras." in viewer.build("t", [layer()], ring)
+    assert "Axes: those of the court." in viewer.build("t", [layer()], ring, hall)
+
+
 def test_the_page_requests_nothing_and_escapes_names():
     cameras = scene.ring(3)
     source = viewer.build(ROGUE, [layer(ROGUE)], cameras, notes=[ROGUE])

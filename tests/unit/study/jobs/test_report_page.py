@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from courtside.study import paths
 from courtside.study.jobs import report_page
 
 REAL = "results/walk-4cams-tiny/takes/balancing"
@@ -99,6 +100,17 @@ def test_a_session_is_told_with_its_first_calibration_and_its_overrides(content)
     assert real["links"] == [("walk-4cams-tiny/pages/quality.html", words)]
     assert single["links"] == []
     assert (single["calibration"], single["takes"][0]["name"]) == (None, "claps")
+
+
+def test_the_page_for_quality_rests_on_what_the_report_says_of_the_cameras(study, content):
+    for told in content["sessions"][:3:2]:
+        found = report_page.cameras(study.sessions[told["name"]])
+        own = paths.CALIBRATION_QUALITY.format(session=told["name"], calibration="{}")
+        ways = [found["calibration"], *found["others"]]
+        assert found["files"]["quality"] == {way: own.format(way) for way in ways}
+        same = [one | {"quality": {}} for one in (found["files"], told["files"])]
+        assert same[0] == same[1]
+        assert all(found[key] == told[key] for key in ("calibration", "limits"))
 
 
 def test_the_number_of_images_is_that_of_the_calibration(study, rules):

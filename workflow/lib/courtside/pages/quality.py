@@ -1,8 +1,6 @@
 """The page of a session for quality: each take and camera with verdict, reason and a picture."""
 
 from collections.abc import Mapping, Sequence
-from itertools import chain
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import cv2
@@ -10,13 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.pages import page
-from courtside.pages.report import warnings
+from courtside.pages.report import facts, warnings
 from courtside.pose import privacy, stick_drawing
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.records.keypoints.people import People
 from courtside.records.keypoints.skeleton import Skeleton
 from courtside.study.errors import StrPath
-from courtside.study.execution.files import read_json
 from courtside.study.execution.verdicts import ALL, ORDER, WAY, WHOLE
 from courtside.video import reader
 
@@ -87,13 +84,14 @@ def shown_frame(view: Keypoints2D) -> int:
 
 
 def build(
-    session: str, takes: Sequence[Mapping[str, Any]], calibrations: Sequence[StrPath] = ()
+    session: str, takes: Sequence[Mapping[str, Any]], cameras: Mapping[str, Any] | None = None
 ) -> str:
     """Return the page, to be written by `page.write`.
 
-    `calibrations` are the files in which they and their checks give warnings and remarks, each
-    in the folder of its calibration. Each take has `name`, `lines`, `pictures` ({camera: JPEG}) and
-    `left_out`: in words why there are no pictures, empty where there are.
+    `cameras` has `calibration` (that of the verdicts), `others` (of the takes), `files` (of
+    `facts.of_session`) and `limits` (of `warnings.of_session`). Each take has `name`, `lines`,
+    `pictures` ({camera: JPEG}) and `left_out`: in words why there are no pictures, empty where
+    there are.
     """
     pictures = {
         f"{at}.{camera}": (picture, JPEG)
@@ -101,7 +99,18 @@ def build(
         for camera, picture in take["pictures"].items()
     }
     title = f"Quality of the takes: {session}"
-    told = [warnings.said(Path(path).parent.name, read_json(path)) for path in calibrations]
-    said = [*chain(*told)]
-    body = page.render("quality.html", title=title, said=said, takes=takes, all=ALL, order=ORDER)
-    return page.build(title, body, css=["report.css", "quality.css"], images=pictures)
+    found, others = _of_cameras(**cameras) if cameras else (None, {})
+    told = {"found": found, "others": others, "level": warnings.worst(found or [])}
+    body = page.render("quality.html", title=title, takes=takes, all=ALL, order=ORDER, **told)
+    return page.build(
+        title, body, css=["report.css", "quality.css"], js=["report.js"], images=pictures
+    )
+
+
+def _of_cameras(
+    calibration: str, others: Sequence[str], files: dict, limits: dict
+) -> tuple[list[warnings.Warned], dict[str, list[warnings.Warned]]]:
+    """Return the warnings of the session as the report has them, and of its other calibrations."""
+    known = facts.of_session(files)
+    more = {way: warnings.calibration(way, known["quality"][way]) for way in others}
+    return warnings.of_session(known, calibration, **limits), more

@@ -1,4 +1,6 @@
-"""Normal errors: factors of their sigma, and ellipsoids of a stated share."""
+"""Normal errors: factors of their sigma, ellipsoids of a stated share, decimals to state."""
+
+import math
 
 import numpy as np
 import scipy
@@ -17,3 +19,11 @@ def mahalanobis(error: NDArray, covariance: NDArray) -> NDArray:
 def ellipsoid(share: float) -> float:
     """Return what `mahalanobis` stays within for a share, 0..1, of normal errors."""
     return 2 * scipy.special.gammaincinv(3 / 2, share)
+
+
+def decimals(error: float) -> int:
+    """Return after how many decimals a number ends that has such an error: with two digits of it.
+
+    At most 3; `error` is more than 0.
+    """
+    return min(max(0, 1 - math.floor(math.log10(error))), 3)

@@ -62,10 +62,13 @@ def table(records: dict[int, Record]) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True).reindex(columns=columns)
 
 
-def draw(rows: pd.DataFrame, court: Court, n_images: dict[int, int] | None = None) -> Figure:
+def draw(
+    rows: pd.DataFrame, court: Court, n_images: dict[int, int] | None = None, mapper: str = ""
+) -> Figure:
     """Draw the table of `table`, one panel for each number of bridging images, the largest first.
 
-    `n_images` are the images, fixed ones included, by number of bridging images.
+    `n_images` are the images, fixed ones included, by number of bridging images; `mapper` is the
+    one of structure from motion.
     """
     counts = sorted(rows["n_bridging"].unique(), reverse=True)
     columns = min(COLUMNS, len(counts))
@@ -87,6 +90,8 @@ def draw(rows: pd.DataFrame, court: Court, n_images: dict[int, int] | None = Non
         Line2D([], [], label=words, **{**look, "markersize": 4}) for words, look in LOOKS.values()
     ]
     drawing.legend(handles=marks, loc="outside lower center", ncols=3)
+    if mapper:
+        drawing.suptitle(f"{mapper} mapper")
     return drawing
 
 

@@ -39,6 +39,8 @@ AGAINST = [  # reference, clicks of the racket: as differences are drawn
 BELOW = 10  # frames below the net's height, as published
 SHOWN_MM = 70  # to either side of the length
 TICKS_MM = [5, 10, 20, 50, 100]
+LINEAR_MM = 3  # to either side of no difference
+FAR_MM = 300  # what reaches further has ticks at powers of ten alone
 WIDTH = 0.11  # of a box, where groups are 1 apart
 
 
@@ -67,6 +69,8 @@ def draw(numbers: pd.DataFrame, length_m: float) -> Figure:
         _draw_volume(column[-1], of[of["quantity"] == "volume_rms_cm"])
     for axis, sigma_px in zip(axes[:, 0], sigmas_px, strict=False):
         axis.set_ylabel(f"tips {sigma_px:g} px: error (mm)")
+        _tick_errors(axis)
+    _tick_differences(axes[-3, 0])
     axes[-3, 0].set_ylabel("SfM minus 8-point (mm)")
     axes[-2, 0].set_ylabel("length, one run (mm)")
     axes[-1, 0].set_ylabel("volume error (cm)")
@@ -86,8 +90,24 @@ def _draw_errors(axis: Axes, numbers: pd.DataFrame) -> None:
         reach = [at - 0.42, at + 0.42]
         axis.plot(reach, [floor, floor], color="#777777", linestyle="--", linewidth=0.8, zorder=1)
     bars.plain_log(axis)
-    axis.set_yticks(TICKS_MM)
     _group_ticks(axis)
+
+
+def _tick_errors(axis: Axes) -> None:
+    high = axis.get_ylim()[1]
+    axis.set_yticks(TICKS_MM if high <= FAR_MM else [10, *_powers(high)])
+
+
+def _tick_differences(axis: Axes) -> None:
+    low, high = axis.get_ylim()
+    below = [-value for value in reversed(_powers(-low))]
+    axis.set_yticks([*below, -10, 0, 10, *_powers(high)])
+    axis.set_yticks([-LINEAR_MM, LINEAR_MM], minor=True)
+
+
+def _powers(most: float) -> list[int]:
+    """Return the powers of ten from 100 up to a length, mm."""
+    return [100 * 10**at for at in range(9) if 100 * 10**at <= most]
 
 
 def _places(n_boxes: int) -> NDArray:
@@ -135,10 +155,8 @@ def _draw_differences(axis: Axes, numbers: pd.DataFrame, published: pd.DataFrame
         reach = [at + places[0] - WIDTH, at + places[-1] + WIDTH]
         _star(axis, reach, reach[0], value)
     axis.axhline(0, color="#777777", linestyle="--", linewidth=0.8, zorder=1)
-    axis.set_yscale("symlog", linthresh=3, linscale=1.5)
-    axis.set_yticks([-100, -30, -10, -3, 0, 3, 10, 30], minor=False)
+    axis.set_yscale("symlog", linthresh=LINEAR_MM, linscale=1.5)
     axis.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
-    axis.set_yticks([], minor=True)
     _group_ticks(axis)
 
 

@@ -25,10 +25,10 @@ PANELS = {"pose3d": "as triangulated (raw)", "pose3d_corrected": "filtered, join
 NO_OFFSETS = "no estimate of\njoint offsets"
 WAYS = {  # fusion: words, colour, mark, filled
     "two-dlt": ("plain, as in the paper", "#777777", "o", False),
-    "two-robust": ("ours", "#777777", "o", True),
+    "two-robust": ("fused with weights", "#777777", "o", True),
     "halfbody": ("the paper's half-body rule", "#D55E00", "s", True),
-    "three-robust": ("ours", "#56B4E9", "^", True),
-    "all-robust": ("ours", "#0072B2", "D", True),
+    "three-robust": ("fused with weights", "#56B4E9", "^", True),
+    "all-robust": ("fused with weights, all of the session", "#0072B2", "D", True),
 }
 SPREAD = 0.72  # of the distance between rows that the marks of one row share
 BAND = "#f0f0f0"
@@ -146,7 +146,7 @@ def _title(key: tuple[str, str, str, str], rows: pd.DataFrame) -> str:
         for joint in ("right half", "left half", *POINTS)
         if joint in two.index
     ]
-    what = f"2 cameras, ours, {PANELS[stage]}; median (95 % quantile) in mm"
+    what = f"2 cameras, fused with weights, {PANELS[stage]}; median (95 % quantile) in mm"
     return f"{title}\n{what}:\n{', '.join(found)}" if found else title
 
 

@@ -15,11 +15,11 @@ SHOWN = {  # alignments of `courtside.evaluation.sources`, from none to the most
     "procrustes_frame": "Procrustes\n(similarity for each frame)",
 }
 FORMS = {"fixed": "frame of the T-pose", "following": "frame that follows the trunk"}
-PARTS = {
-    "origin": "#999999",
-    "scale": style.CYCLE[4],
-    "rotation": style.CYCLE[2],
-    "time": style.CYCLE[3],
+PARTS = {  # none is the colour of a source
+    "origin": "#cccccc",
+    "scale": "#c9b7e0",
+    "rotation": "#8c6bb1",
+    "time": "#a6772f",
     "remainder": "#333333",
 }
 VALUES = {
@@ -57,7 +57,7 @@ def draw(
     looks = source_styles.looks(errors["source"], kinds)
     joints = _joints(errors["joint"])
     heights = [26 + (2.5 + 1.2 * len(looks)) * len(joints), 22 + 4 * len(looks)]
-    heights.append(24 + 10 * len(looks))
+    heights.append(24 + 14 * len(looks))
     drawing = style.figure(sum(heights))
     above, middle, below = drawing.subfigures(3, 1, height_ratios=heights)
     _draw_errors(above, errors, looks, joints)
@@ -142,7 +142,7 @@ def _draw_parts(
         axis.set_xlim(0, 100)
         axis.set_xlabel("share of the mean squared error (%)")
     _name_sources(axes[0], looks)
-    axes[0].set_ylim(len(looks) - 0.4, -0.6)
+    axes[0].set_ylim(len(looks) - 0.3, -0.5)
     marks = [
         bars.mark(colour, marker="s", label=name.replace("origin", "place of the origin"))
         for name, colour in PARTS.items()
@@ -162,6 +162,7 @@ def _draw_bar(axis: Axes, y: float, own: pd.DataFrame) -> None:
         axis.barh(y - 0.12, width, 0.42, left=start, color=colour, linewidth=0)
         start += width
     values = own["value"].mul(pd.Series({"time": MS}), fill_value=1)
+    values["time"] = np.round(values["time"]) + 0.0  # no -0
     fitted = [form.format(values[name]) for name, form in VALUES.items()]
     size = np.sqrt(own.loc["all", "mean_square_mm2"])
     text = f"{size:.0f} mm rms; {', '.join(fitted[:2])}\n{', '.join(fitted[2:])}"

@@ -75,7 +75,8 @@ def _draw_path(
     found = measured.loc["neck_ground_distance"]
     cameras = 0.0 if np.isnan(found.sigma_camera) else found.sigma_camera
     reach = normal_errors.WITHIN_90 * np.hypot(found.sigma, cameras)
-    length = f"{found.value:.2f} ± {reach:.2f} m on the ground (90 %)"
+    digits = normal_errors.decimals(reach) if reach > 0 else 2
+    length = f"{found.value:.{digits}f} ± {reach:.{digits}f} m on the ground (90 %)"
     if np.isnan(found.value):
         length = "distance unknown: gaps too long, or errors not known"
     axis.set_title(f"{person}: neck from above\n{length}")

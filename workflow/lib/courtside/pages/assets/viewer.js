@@ -21,7 +21,7 @@ class Viewer {
     const wrists = layers.flatMap((layer) => layer.joints).filter((joint) => joint.endsWith("_wrist"));
     const shown = layers.filter((layer) => layer.shown).length;
     this.view = {
-      layers, time_s: main.firstShown_s, cameras: true, names: true, picked: null, magnified: 1, trail_s: 1,
+      layers, time_s: main.firstShown_s, cameras: true, names: true, person: main.persons[0], picked: null, magnified: 1, trail_s: 1,
       trails: new Set(wrists), colour: shown > 1 ? "layer" : "side", against: main, end: {},
       layerColour: (layer) => scene.colours.layers[layer.index % scene.colours.layers.length],
       jointColour: (layer, ...where) => this.jointColour(layer, ...where),
@@ -70,6 +70,16 @@ class Viewer {
     }
     const ends = bone.map((joint) => this.measured(layer, person, joint, frame));
     return shade((ends[0] + ends[1]) / 2, this.view.end[this.view.colour]);
+  }
+
+  /** Show a layer or not; two in the colours of the body's sides could not be told apart. */
+  switchLayer(layer, on) {
+    layer.shown = on;
+    if (on && this.view.colour === "side" && this.view.layers.filter((one) => one.shown).length > 1) {
+      courtside.byId("colour").value = "layer";
+      this.chooseColour("layer");
+    }
+    this.changed();
   }
 
   chooseColour(colour) {
@@ -132,19 +142,22 @@ class Viewer {
     const by = courtside.byId;
     by("slider").value = this.frame;
     by("slider").setAttribute("aria-valuetext", `${this.view.time_s.toFixed(2)} seconds`);
-    by("clock").textContent = `${this.view.time_s.toFixed(3)} s, frame ${this.frame}`;
+    by("clock").textContent = `${this.view.time_s.toFixed(3)} s`;
     by("play").textContent = this.playing ? "Pause" : "Play";
     by("play").setAttribute("aria-pressed", String(this.playing));
     by("readout").replaceChildren(...readout(this.view));
-    if (this.relabel) by("legend").replaceChildren(...legend(this.view, this.scene));
+    if (this.relabel) {
+      by("legend").replaceChildren(...legend(this.view, this.scene));
+      by("layers").classList.toggle("unpainted", this.view.colour === "side");
+    }
     this.relabel = false;
   }
 
-  /** Keep the middle of the picked person, or of the first, in the middle of the picture. */
+  /** Keep the middle of the chosen person, or of the first, in the middle of the picture. */
   follow() {
     const layer = this.view.layers.find((one) => one.shown);
     if (!layer) return;
-    const person = Math.max(0, this.view.picked ? layer.persons.indexOf(this.view.picked.person) : 0);
+    const person = Math.max(0, layer.persons.indexOf(this.view.person));
     const frame = layer.frameAt(this.view.time_s);
     const places = layer.joints.map((_, joint) => layer.position(person, joint, frame)).filter(Boolean);
     if (!places.length) return;
@@ -166,9 +179,10 @@ class Viewer {
   }
 
   choose(person, joint) {
-    this.view.picked = person && joint ? { person, joint } : null;
-    courtside.byId("person").value = person || "";
-    courtside.byId("joint").value = joint || "";
+    this.view.person = person;
+    this.view.picked = joint ? { person, joint } : null;
+    courtside.byId("person").value = person;
+    courtside.byId("joint").value = joint;
     this.changed();
   }
 
@@ -200,7 +214,7 @@ function wirePanel(viewer) {
   const by = courtside.byId;
   const set = (key) => (value) => { view[key] = value; viewer.changed(); };
   by("layers").replaceChildren(...view.layers.map((layer) =>
-    box(layer.name, layer.shown, (on) => { layer.shown = on; viewer.changed(); }, view.layerColour(layer))));
+    box(layer.name, layer.shown, (on) => viewer.switchLayer(layer, on), view.layerColour(layer))));
   const colours = [["side", "body side"], ["layer", "method"]];
   if (view.layers.some((layer) => layer.ellipsoid)) colours.push(["sigma", "expected error σ (mm)"]);
   if (view.layers.some((layer) => layer.error_px)) colours.push(["reprojection", "reprojection error (px)"]);
@@ -235,10 +249,10 @@ function wireJoints(viewer) {
   const by = courtside.byId;
   const joints = [...new Set(view.layers.flatMap((layer) => layer.joints))];
   const persons = [...new Set(view.layers.flatMap((layer) => layer.persons))];
-  options(by("person"), persons.map((name) => [name, name]), persons[0]);
+  options(by("person"), persons.map((name) => [name, name]), view.person);
   options(by("joint"), [["", "none"], ...joints.map((name) => [name, name.replaceAll("_", " ")])], "");
   for (const id of ["person", "joint"]) {
-    by(id).addEventListener("change", () => viewer.choose(by("person").value || persons[0], by("joint").value));
+    by(id).addEventListener("change", () => viewer.choose(by("person").value, by("joint").value));
   }
   by("trails").replaceChildren(...joints.map((joint) => box(joint.replaceAll("_", " "), view.trails.has(joint), (on) => {
     if (on) view.trails.add(joint);
@@ -356,6 +370,8 @@ async function start() {
   const adapt = () => { viewer.painter.adapt(); viewer.changed(); };
   new ResizeObserver(adapt).observe(viewer.painter.canvas);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", adapt);
+  // Paper has another size and is light; it does not wait for the next frame.
+  matchMedia("print").addEventListener("change", () => { adapt(); viewer.show(); });
   viewer.relabel = true;
   viewer.show();
   Object.assign(courtside.viewer, hook(viewer));

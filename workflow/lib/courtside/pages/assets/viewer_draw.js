@@ -3,7 +3,7 @@
 /* Draws the scene on a 2D canvas: no graphics processor is asked for anything. */
 
 const CONFIDENT = 2.795; // standard deviations: 95 % of a normal distribution in space lie inside
-const SCALE = [[58, 105, 210], [22, 160, 150], [226, 168, 10], [206, 45, 35]];
+const SCALE = [[52, 72, 165], [150, 62, 150], [222, 98, 78], [240, 180, 50]]; // lighter from each to the next
 const UNKNOWN = "#999999";
 const HIDDEN_M = 0.3;
 const BONE_M = 0.028, JOINT_M = 0.022;

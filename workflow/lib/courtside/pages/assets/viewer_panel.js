@@ -65,8 +65,10 @@ function swatches(entries) {
 function legend(view, scene) {
   const shown = view.layers.filter((layer) => layer.shown);
   const { left, right, middle } = scene.colours;
-  if (view.colour === "side") return [element("div", {}, ...swatches([[left, "left"], [right, "right"], [middle, "middle"]]))];
   if (view.colour === "layer") return [element("div", {}, ...swatches(shown.map((layer) => [view.layerColour(layer), layer.name])))];
+  const bones = shown.map(({ name }, order) => `${name}: ${order ? "thin" : "thick"}${order % 2 ? ", dashed" : ""}`);
+  const drawn = shown.length > 1 ? [element("div", { textContent: bones.join("; ") })] : [];
+  if (view.colour === "side") return [element("div", {}, ...swatches([[left, "left"], [right, "right"], [middle, "middle"]])), ...drawn];
   const measure = MEASURES[view.colour];
   const bar = element("span", { className: "bar" });
   bar.style.background = `linear-gradient(to right, ${[0, 1, 2, 3, 4, 5, 6].map((at) => shade(at, 6)).join(", ")})`;
@@ -80,7 +82,7 @@ function legend(view, scene) {
     lines.push(element("div", { textContent: `root mean square distance from the true place${covers.length ? `: ${covers.join("; ")}` : ""}` }));
   }
   lines.push(element("div", {}, ...swatches([[UNKNOWN, "not known"]])));
-  return lines;
+  return [...lines, ...drawn];
 }
 
 /** Rows of the picked joint: [heading, one text per shown layer]. */

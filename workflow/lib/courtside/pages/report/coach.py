@@ -7,6 +7,7 @@ from markupsafe import Markup
 
 from courtside.pages import page
 from courtside.pages.report import warnings as warned
+from courtside.statistics import normal_errors
 
 ANGLES = {
     "knee_flexion": "knee, bend",
@@ -28,7 +29,7 @@ def with_error(value: float, half: float, unit: str) -> Markup:
     known = math.isfinite(half) and half > 0
     # Without an error, whole degrees, and two digits of anything else.
     rough = 10.0 if unit == "degrees" else max(abs(value), 1e-3)
-    digits = min(max(0, 1 - math.floor(math.log10(half if known else rough))), 3)
+    digits = normal_errors.decimals(half if known else rough)
     error = Markup(f" &plusmn; {half:.{digits}f}") if known else ""
     sign = Markup("&deg;") if unit == "degrees" else f" {unit}"
     last = "" if known else " (error unknown)"
@@ -61,7 +62,12 @@ def _person(person: str, facts: dict) -> dict:
     distance = measures.get("neck_distance")
     if distance and not math.isnan(distance[0]):
         over = f" in {facts['seconds']:.1f} s" if facts["seconds"] else ""
-        phrases.append(("the neck travelled", with_error(*distance), over))
+        phrases.append(
+            ("the neck travelled", with_error(*distance), f"{over}, up and down included")
+        )
+        if "neck_ground_distance" in measures:
+            on_ground = with_error(*measures["neck_ground_distance"])
+            phrases.append(("on the ground", on_ground, ""))
     for name, words in (("neck_speed_mean", "mean speed"), ("neck_speed_max", "largest speed")):
         if name in measures:
             phrases.append((words, with_error(*measures[name]), ""))

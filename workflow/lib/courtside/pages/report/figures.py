@@ -1,5 +1,6 @@
 """Figures of the report with their captions, and CSV files as tables."""
 
+import math
 import re
 from collections.abc import Iterable
 from pathlib import Path
@@ -46,6 +47,8 @@ PAPERS = {
     "badminton_tab": "Shishido & Kitahara 2020, table",
     "thesis_fig": "Homma 2023, figure",
 }
+
+FOUR_DIGITS = 1000  # before the point
 
 Groups = dict[tuple[str, str], list[dict]]  # figures by session and take
 
@@ -123,9 +126,12 @@ def table(entry: dict) -> Markup:
 
 
 def _cell(value: str) -> tuple[str, bool]:
-    """Return a value, fractions with four digits, and whether it is a number."""
+    """Return a value, fractions with four digits or to whole numbers, and whether it is one."""
     try:
         number = float(value)
     except ValueError:
         return value, False
-    return (value.removesuffix(".0") if number.is_integer() else f"{number:.4g}"), True
+    if value.isdigit():  # a name such as 01 keeps its zero
+        return value, True
+    whole = number.is_integer() or FOUR_DIGITS <= abs(number) < math.inf
+    return (f"{number + 0.0:.0f}" if whole else f"{number:.4g}"), True

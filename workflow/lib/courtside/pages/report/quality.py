@@ -12,6 +12,11 @@ from courtside.study.methods import STAGE_WORDS, Calibration
 
 NO_VOLUME = "neither a court nor points on a floor say where the volume is"
 NO_COVARIANCE = "the error of these cameras is not known"
+UNMEASURED = {
+    **dict.fromkeys(("shift_x_px", "shift_y_px", "zoom_percent"), math.nan),
+    "n_matches": "–",
+}
+OF_HEIGHT = "reprojection"  # the measure of a verdict that is no share in percent
 
 
 def session(
@@ -37,6 +42,7 @@ def session(
         stages=STAGE_WORDS,
         number=number,
         percent=percent,
+        limit=limit,
         movement_px=lambda row: math.hypot(row["shift_x_px"], row["shift_y_px"]),
         clock_ms=lambda sigma_s: number(warned.MS_90 * sigma_s or None),
     )
@@ -46,12 +52,15 @@ def _take(take: dict, known: dict, found: Sequence[warned.Warned]) -> dict:
     """Return what the template says of a take besides its facts."""
     devices = [(row["source"], {**row, "note": ""}) for row in known["devices"]]
     reasons = [why for row in known["joints"].values() for why in row["reasons"]]
+    still = {row["camera"] for row in known["movement"]}
+    unknown = [{"camera": name, **UNMEASURED} for name in known["cameras"] if name not in still]
     return {
         **known,
         "name": take["name"],
         "fusion": take["fusion"],
         "level": warned.worst(found),
         "clocks": [*known["clocks"].items(), *devices],
+        "movement": known["movement"] + unknown if still else [],
         "shake": [warned.shaken(line).text for line in known["shake"]],
         "reasons": list(dict.fromkeys(reasons)),
     }
@@ -111,10 +120,20 @@ def clicked(qualities: dict[str, dict]) -> bool:
 def limits() -> Markup:
     """Return how the marks are set, as an HTML table."""
     rows = [
-        (words, f"{look:g}", f"{doubtful:g}") for look, doubtful, words in warned.LIMITS.values()
+        (words, f"{doubtful:g}", f"{failed:g}")
+        for doubtful, failed, words in warned.LIMITS.values()
     ]
     table = page.macro("report_parts.html", "table")
-    return table(("what", "Look from", "Doubt from"), rows, "limits of the lights")
+    return table(("what", "doubtful from", "failed from"), rows, "limits of the marks")
+
+
+def limit(row: dict, key: str) -> str:
+    """Return a limit of a verdict as its sentence states the value; a dash if never reached."""
+    falling, value = row["doubtful_from"] > row["failed_from"], row[key]
+    if math.isnan(value) or (falling and value == 0):
+        return "–"
+    stated = f"{value:g}" if row["measure"] == OF_HEIGHT else f"{value:.0%}"
+    return f"{'below' if falling else 'above'} {stated}"
 
 
 def number(value: float | None, digits: int = 2) -> str:

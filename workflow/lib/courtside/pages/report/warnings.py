@@ -10,10 +10,10 @@ from courtside.statistics.normal_errors import WITHIN_90
 from courtside.study.execution import verdicts
 from courtside.study.methods import Calibration
 
-GOOD, LOOK, DOUBT = 0, 1, 2  # their marks: LIGHTS in assets/report_parts.html
+GOOD, DOUBTFUL, FAILED = range(len(verdicts.ORDER))  # marks: LIGHTS in assets/report_parts.html
 MS_90 = 1645  # half of the 90 % interval of a normal error with a sigma of 1 s, in ms
 VAGUE_CLOCK = "the uncertainty of its clock is unknown"
-# {quantity: (LOOK from, DOUBT from, what it is)}
+# {quantity: (DOUBTFUL from, FAILED from, what it is)}
 # ASSUME: chosen so that a usual recording gives no warning; no study backs them.
 LIMITS = {
     "moved": (0.5, 1.0, "movement of a fixed camera, as a share of the configured limit"),
@@ -30,18 +30,18 @@ LIMITS = {
 
 
 class Warned(NamedTuple):
-    """The level (`GOOD`: for information only, `LOOK`, `DOUBT`), and one sentence."""
+    """The level (`GOOD`: for information only, `DOUBTFUL`, `FAILED`), and one sentence."""
 
     level: int
     text: str
 
 
 def _level_of(quantity: str, value: float | None) -> int:
-    """Return the level of a quantity of `LIMITS`; `LOOK` if its value is unknown."""
+    """Return the level of a quantity of `LIMITS`; `DOUBTFUL` if its value is unknown."""
     if value is None or math.isnan(value):
-        return LOOK
-    look, doubtful, _ = LIMITS[quantity]
-    return DOUBT if value >= doubtful else LOOK if value >= look else GOOD
+        return DOUBTFUL
+    doubtful, failed, _ = LIMITS[quantity]
+    return FAILED if value >= failed else DOUBTFUL if value >= doubtful else GOOD
 
 
 def worst(warned: Sequence[Warned]) -> int:
@@ -87,7 +87,7 @@ def moved(row: dict, max_shift_px: float, max_zoom_percent: float) -> Warned | N
     share = max(shift / max_shift_px, abs(row["zoom_percent"]) / max_zoom_percent)
     if math.isnan(share):
         text = "the picture shows too little background to tell whether it moved"
-        return Warned(LOOK, f"Camera {row['camera']}: {text}.")
+        return Warned(DOUBTFUL, f"Camera {row['camera']}: {text}.")
     level = _level_of("moved", share)
     text = f"it moved by {shift:.2g} px and zoomed by {row['zoom_percent']:.2g} %"
     return Warned(level, f"Camera {row['camera']}: {text}.") if level else None
@@ -112,9 +112,9 @@ def shaken(line: str) -> Warned:
     text = line.partition(": steady")[0]
     text = text[:1].upper() + text[1:]
     if "too little" in line or "no frame" in line:
-        return Warned(LOOK, f"{text}.")
+        return Warned(DOUBTFUL, f"{text}.")
     if "knocked" in line or "off its static picture" in line:
-        return Warned(LOOK, f"{text}. This was measured on the background and corrected.")
+        return Warned(DOUBTFUL, f"{text}. This was measured on the background and corrected.")
     return Warned(GOOD, f"{text}; corrected.")
 
 
@@ -129,7 +129,7 @@ def clock(camera: str, found: Clock) -> Warned | None:
         return Warned(GOOD, f"Camera {camera}: {text}.")
     if not found.usable:
         words = {"ambiguous": "several offsets fit the recording", "unknown": "no offset was found"}
-        return Warned(DOUBT, f"Camera {camera}: its clock is unknown: {words[found.status]}.")
+        return Warned(FAILED, f"Camera {camera}: its clock is unknown: {words[found.status]}.")
     ms = MS_90 * found.uncertainty_s
     level = _level_of("clock_ms", ms)
     if not level:
@@ -145,11 +145,11 @@ def device(row: dict) -> Warned | None:
     source = row["source"]
     if row["status"] in ("unknown", "ambiguous"):
         text = "its clock is unknown; do not compare it with the other sources"
-        return Warned(DOUBT, f"{source}: {text}.")
+        return Warned(FAILED, f"{source}: {text}.")
     ms = MS_90 * row.get("uncertainty_s", 0.0)
     level = _level_of("clock_ms", ms)
     text = VAGUE_CLOCK if math.isnan(ms) else f"its clock is known only to {ms:.0f} ms (90 %)"
-    return Warned(min(level, LOOK), f"{source}: {text}.") if level else None
+    return Warned(min(level, DOUBTFUL), f"{source}: {text}.") if level else None
 
 
 def no_tpose(row: dict) -> Warned | None:
@@ -157,7 +157,7 @@ def no_tpose(row: dict) -> Warned | None:
     if row.get("n_tposes", 1):
         return None
     text = "it shows no T-pose, so that it has no body frame of its own and no arcs of the wrists"
-    return Warned(LOOK, f"{row['source']}: {text}; film a T-pose and a clap.")
+    return Warned(DOUBTFUL, f"{row['source']}: {text}; film a T-pose and a clap.")
 
 
 def calibration(name: str, quality: dict) -> list[Warned]:
@@ -182,12 +182,12 @@ def calibration(name: str, quality: dict) -> list[Warned]:
             text = f"Calibration {name}: {words.format(value)}."
             found.append(Warned(_level_of(quantity, value), text))
     if isinstance(quality.get("left_out"), str):
-        found.append(Warned(LOOK, f"Calibration {name}: {quality['left_out']}."))
+        found.append(Warned(DOUBTFUL, f"Calibration {name}: {quality['left_out']}."))
     if not has_covariance(name, quality) and expected is None:
         made = "made elsewhere" if name == "file" else name
         text = "its accuracy is unknown, so that " if error is None else ""
         text += "the error bars do not include its error"
-        found.append(Warned(LOOK if error is None else GOOD, f"Calibration {made}: {text}."))
+        found.append(Warned(DOUBTFUL if error is None else GOOD, f"Calibration {made}: {text}."))
     return found
 
 
@@ -204,7 +204,7 @@ def said(what: str, content: dict) -> list[Warned]:
     """Return the warnings and remarks of a calibration's file or check, as sentences on `what`."""
     return [
         Warned(level, f"{what}: {text}.")
-        for key, level in (("warnings", LOOK), ("remarks", GOOD))
+        for key, level in (("warnings", DOUBTFUL), ("remarks", GOOD))
         for text in content.get(key, ())
     ]
 
@@ -233,8 +233,7 @@ def judged(rows: Sequence[dict]) -> list[Warned]:
     wholes = [row for row in rows if row["measure"] == verdicts.WHOLE]
     bad = [row for row in wholes if row["verdict"] != verdicts.GOOD]
     each = [row for row in bad if not row["camera"] == row["person"] == verdicts.ALL]
-    levels = {verdicts.DOUBTFUL: LOOK, verdicts.FAILED: DOUBT}
-    return [Warned(levels[row["verdict"]], row["sentence"]) for row in each or bad]
+    return [Warned(verdicts.ORDER.index(row["verdict"]), row["sentence"]) for row in each or bad]
 
 
 def joints(found: dict) -> list[Warned]:
@@ -251,7 +250,7 @@ def joints(found: dict) -> list[Warned]:
         made.append(Warned(level, f"{missing:.0%} of the joints are missing, {worst_one}."))
     if few and _level_of("two_views", alone):
         text = f"only two cameras see {alone:.0%} of the joints: no third camera can confirm these."
-        made.append(Warned(min(_level_of("two_views", alone), LOOK), text))
+        made.append(Warned(min(_level_of("two_views", alone), DOUBTFUL), text))
     return made
 
 
@@ -260,7 +259,7 @@ def distance(person: str, measures: dict) -> Warned | None:
     value, half, _ = measures.get("neck_distance", (math.nan, math.nan, "m"))
     if math.isnan(value):
         text = f"the distance of the neck is unknown: {_unknown_distance(measures)}"
-        return Warned(DOUBT, f"{person}: {text}.")
+        return Warned(FAILED, f"{person}: {text}.")
     share = half / value if value > 0 else math.nan
     level = _level_of("distance", share)
     if math.isnan(share):
@@ -292,12 +291,12 @@ def true_path(row: dict) -> Warned | None:
         return None
     side = "smaller" if off > 0 else "larger"
     text = f"the true distance of this simulated take is {abs(off):.1f} % {side}"
-    return Warned(LOOK, f"{row['person']}: {text}, outside the error bar.")
+    return Warned(DOUBTFUL, f"{row['person']}: {text}, outside the error bar.")
 
 
 def frames(person: str, lost: int, total: int, why: dict[str, int]) -> Warned | None:
     """Return a warning if the neck's path is unknown in many frames; `why` counts reasons."""
-    level = _level_of("frames", lost / total) if total else LOOK
+    level = _level_of("frames", lost / total) if total else DOUBTFUL
     if not level:
         return None
     words = {"uncertain": "the position of the neck is too uncertain there"}

@@ -75,11 +75,19 @@ def build(
     }
     return page.build(
         title,
-        page.render("viewer.html", title=title),
+        page.render("viewer.html", title=title, axes=_axes(layers, cameras, court)),
         css=["viewer.css"],
         js=ASSETS,
         data={"scene": scene, "layers": contents},
     )
+
+
+def _axes(layers: Sequence[Layer], cameras: Sequence[Camera], court: Court | None) -> str:
+    """Return in words whose axes the page shows."""
+    if court or cameras:
+        return f"Axes: those of {'the court' if court else 'the calibration of the cameras'}."
+    words = f"Axes: those of {layers[0].name}, turned so that z points up."
+    return f"{words} Heights count from its origin, not from the floor."
 
 
 def _within(layers: Sequence[Layer], middle: NDArray) -> tuple[list[dict], int]:

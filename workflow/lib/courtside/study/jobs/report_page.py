@@ -136,15 +136,7 @@ def _session(study: Study, session: Session) -> dict[str, Any]:
     ways = [Calibration.parse(name) for name in session.calibrations()]
     way = next(iter(session.take_calibrations()), ways[0].name if ways else None)
     variant = _reported_variant(session, way)
-    known = {"session": session.name}
     every = dict.fromkeys(name for one in ways for name in (one.base, one.name) if name)
-    quality = {name: paths.CALIBRATION_QUALITY.format(**known, calibration=name) for name in every}
-    model: dict[str, Any] = {}
-    if variant:
-        model = {"model": paths.SFM_SUMMARY.format(**known, **vars(variant))}
-        model["static"] = [paths.STATIC_CHECK.format(**known, camera=c) for c in session.cameras]
-    checks = {"checks": checked} if (checked := calibration.file_checks(session)) else {}
-    limits = session.parameters["extract_static"]
     return {
         "name": session.name,
         "description": session.description,
@@ -157,11 +149,39 @@ def _session(study: Study, session: Session) -> dict[str, Any]:
         "imported": study.models[session.parameters["models"][0]].decoder == "imported",
         "overrides": _overrides(study, session),
         "withheld": consent.left_out(session),
-        "limits": {key: limits[key] for key in ("max_shift_px", "max_zoom_percent")},
-        "files": {"quality": quality, **checks, **model},
+        "limits": _limits(session),
+        "files": _of_cameras(session, way, every),
         "links": [(_link(path), VERDICTS) for path in pages.quality_pages(session)],
         "takes": [_take(study, session, take) for take in session.takes.values()],
     }
+
+
+def cameras(session: Session) -> dict[str, Any]:
+    """Return what the page for quality says of the cameras that takes are measured with."""
+    way, *others = session.take_calibrations()
+    files = _of_cameras(session, way, [way, *others])
+    return {"calibration": way, "others": others, "files": files, "limits": _limits(session)}
+
+
+def _of_cameras(session: Session, way: str | None, names: Iterable[str]) -> dict[str, Any]:
+    """Return the files about a session's cameras, with the quality of the calibrations named.
+
+    The structure from motion is that of the calibration `way`.
+    """
+    known, variant = {"session": session.name}, _reported_variant(session, way)
+    quality = {name: paths.CALIBRATION_QUALITY.format(**known, calibration=name) for name in names}
+    model: dict[str, Any] = {}
+    if variant:
+        model = {"model": paths.SFM_SUMMARY.format(**known, **vars(variant))}
+        model["static"] = [paths.STATIC_CHECK.format(**known, camera=c) for c in session.cameras]
+    checks = {"checks": checked} if (checked := calibration.file_checks(session)) else {}
+    return {"quality": quality, **checks, **model}
+
+
+def _limits(session: Session) -> dict[str, float]:
+    """Return how far a fixed camera of a session may move."""
+    limits = session.parameters["extract_static"]
+    return {key: limits[key] for key in ("max_shift_px", "max_zoom_percent")}
 
 
 def _reported_variant(session: Session, way: str | None) -> Variant | None:
