@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
-from browser.waiting import second_tab, until
+from browser.waiting import reload, second_tab, until
 from courtside.geometry import camera as projection
 from courtside.pages import page as pages
 from courtside.pages.clicking import page as clicking_page
@@ -363,11 +363,11 @@ def test_work_is_kept_by_the_browser_and_can_be_forgotten(open_page, make):
     page = open_page(make())
     page.keyboard.press("Space")
     kept = marked(page)
-    page.reload()
+    reload(page)
     assert marked(page) == kept and "is here again" in page.inner_text("#message")
     page.click("#help summary")
     page.click("#afresh")
-    page.reload()
+    reload(page)
     assert marked(page) == {}
 
 
@@ -383,7 +383,7 @@ def test_each_table_counts_as_unsaved_until_it_is_saved(open_page, make, picture
     assert "Not saved yet" not in page.inner_text("#where")
     page.click("text=smash1 back 12")
     waiting["after"] = page.inner_text("#where")
-    page.reload()
+    reload(page)
     assert "Not saved yet" not in page.inner_text("#where")
     page.click("text=smash1 back 12")
     until(page, "document.querySelector('#tabs [aria-selected=true]').innerText.includes('smash')")
@@ -404,7 +404,7 @@ def test_without_storage_the_page_still_works(open_page, make):
     page.add_init_script(
         "Object.defineProperty(window, 'localStorage', { get() { throw new Error('forbidden'); } })"
     )
-    page.reload()
+    reload(page)
     page.keyboard.press("Space")
     assert list(marked(page)) == [("back", "p01")]
 
@@ -491,7 +491,7 @@ def test_a_file_of_one_camera_leaves_the_marks_of_the_others(open_page, make, tm
     assert "marks of oblique. Those of back stay." in page.inner_text("#message")
     of_back = {("back", point): xy for point, xy in given["back"].items()}
     assert marked(page) == {**of_back, ("oblique", "p02"): (10.0, -5.0)}
-    page.reload()
+    reload(page)
     page.click("#undo")
     assert marked(page) == {**of_back, ("oblique", "p01"): (1.0, 2.0)}
     path.write_text("camera,point,frame_idx,x_px,y_px\n")
@@ -508,7 +508,7 @@ def test_a_page_in_two_tabs_keeps_the_marks_of_the_first_to_change_it(open_page,
     two.keyboard.press("n")
     two.keyboard.press("Space")
     assert two.is_visible("#unkept") and not one.is_visible("#unkept")
-    one.reload()
+    reload(one)
     assert list(marked(one)) == [("back", "p01")]
     one.click("#help summary")
     one.click("#afresh")
@@ -523,16 +523,16 @@ def test_a_browser_that_keeps_nothing_says_so_and_asks_before_marks_are_lost(
     page.add_init_script(
         "Object.defineProperty(window, 'localStorage', { get() { throw new Error('forbidden'); } })"
     )
-    page.reload()
+    reload(page)
     asked = []
     page.on("dialog", lambda dialog: (asked.append(dialog.type), dialog.accept()))
     page.keyboard.press("Space")
     assert "This browser keeps nothing: save" in page.inner_text("#unkept")
     saved(page, tmp_path)
-    page.reload()
+    reload(page)
     assert asked == []
     page.click("#view")
-    page.reload()
+    reload(page)
     assert asked == ["beforeunload"]
 
 

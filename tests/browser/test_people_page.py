@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from browser.waiting import second_tab, until
+from browser.waiting import reload, second_tab, until
 from courtside.pages import page as pages
 from courtside.pages.people import page as people_page
 from courtside.pages.people.strips import Shot
@@ -38,7 +38,7 @@ def opened(open_page, tmp_path):
             for c in range(n_cameras)
         ]
         about = {"session": "hall", "take": to, "subjects": ["a", "b"], "target": "data/p.csv"}
-        about |= {"takes": ["walk", "run", "jump"], "file_ms": 0, "meet_m": 0.8}
+        about |= {"takes": ["walk", "run", "jump"], "meet_m": 0.8}
         columns = dict.fromkeys(range(n_people), COLUMNS)
         built = people_page.build(
             {**about, **(words or {})}, take.found, take.seen, columns, shots, **given
@@ -161,12 +161,12 @@ def test_names_given_before_and_those_of_other_takes_are_kept(opened, tmp_path):
     ]
     page = opened(named=named, rows=[OTHER])
     path, found = saved(page, tmp_path)
-    assert sightings.of_other_takes(path, "walk", ["walk", "run"]) == [OTHER]
+    assert OTHER in sightings.every_row(path, ["walk", "run"])
     assert [one.subject for one in found] == ["b", "b", "a", "a", "b", "b"]
     assert found[2].to_s == 3.5
     name(page, "person-1", "")
     assert [one.subject for one in saved(page, tmp_path)[1]] == ["a", "a", "b", "b"]
-    page.reload()  # the browser keeps the work
+    reload(page)  # the browser keeps the work
     assert page.input_value("article[data-person=person-1] select") == ""
     page.click("#afresh")
     assert page.input_value("article[data-person=person-1] select") == "b"
@@ -185,7 +185,7 @@ def test_a_file_of_other_takes_can_be_loaded(opened, tmp_path):
     path.write_text(f"{head}\nrun,a,c0,1,2,3,,\nwalk,b,c0,1,2,3,,\n")
     page.set_input_files("#chooser", path)
     until(page, "document.getElementById('message').textContent.includes('other takes')")
-    assert sightings.of_other_takes(saved(page, tmp_path)[0], "walk", ["walk", "run"]) == [OTHER]
+    assert OTHER in sightings.every_row(saved(page, tmp_path)[0], ["walk", "run"])
     path.write_text("camera,point\n")
     page.set_input_files("#chooser", path)
     until(page, "document.getElementById('message').className.includes('bad')")
@@ -196,7 +196,7 @@ def test_rows_of_a_loaded_file_outlive_a_reload(opened, tmp_path):
     page = opened()
     load(page, file(tmp_path, "run,a,c0,1,2,3,,", "jump,b,c0,1,2,3,,"), "2 rows of other takes")
     name(page, "person-1", "a")
-    page.reload()
+    reload(page)
     message = page.inner_text("#message")
     assert "is here again" in message and "with 2 rows of other takes" in message
     assert takes(page) == ["run", "jump", "walk", "walk"]
@@ -231,18 +231,29 @@ def test_names_saved_on_the_page_of_one_take_are_in_the_file_of_the_next(opened,
     assert takes(walk) == ["run", "run", "walk", "walk"]
 
 
-def test_names_saved_before_the_file_of_the_workflow_was_written_do_not_come_back(opened, tmp_path):
+def test_names_saved_before_somebody_changed_the_file_do_not_come_back(opened, tmp_path):
+    walk = opened()
+    name(walk, "person-1", "a")
+    path, _ = saved(walk, tmp_path)
+    placed = sightings.every_row(path, ["walk", "run"])
+    changed = [["walk", "b", *row[2:]] for row in placed]
+    run = opened(to="run", context=walk.context, rows=changed)
+    assert takes(run) == ["walk", "walk"] and ",b," in run.input_value("#text")
+    run = opened(to="run", context=walk.context, rows=placed)  # as saved
+    assert ",a," in run.input_value("#text")
+    run = opened(to="run", context=walk.context)  # and deleted in the file since
+    assert takes(run) == []
+
+
+def test_a_fresh_start_forgets_what_other_pages_saved(opened, tmp_path):
     walk = opened()
     name(walk, "person-1", "a")
     saved(walk, tmp_path)
-    later = walk.evaluate("Date.now()") + 1
-    run = opened(to="run", context=walk.context, words={"file_ms": later})
-    assert takes(run) == []
     run = opened(to="run", context=walk.context)
     heard(run, "walk")
     run.click("#afresh")
     assert takes(run) == []
-    run.reload()
+    reload(run)
     assert takes(run) == []
     run.click("#undo")
     assert takes(run) == ["walk", "walk"]
@@ -293,11 +304,11 @@ def test_a_page_in_two_tabs_keeps_the_work_of_the_first_to_change_it(opened):
     until(two, "document.getElementById('unkept').textContent.includes('reload before you go on')")
     name(two, "person-2", "b")
     assert two.is_visible("#unkept") and not one.is_visible("#unkept")
-    one.reload()
+    reload(one)
     assert names(one) == ["a", ""]
     asked = []
     two.on("dialog", lambda dialog: (asked.append(dialog.type), dialog.accept()))
-    two.reload()
+    reload(two)
     assert asked == ["beforeunload"]  # for b is not kept
     assert names(two) == ["a", ""] and not two.is_visible("#unkept")
 
@@ -307,16 +318,16 @@ def test_a_browser_that_keeps_nothing_says_so_and_asks_before_names_are_lost(ope
     page.add_init_script(
         "Object.defineProperty(window, 'localStorage', { get() { throw new Error('forbidden'); } })"
     )
-    page.reload()
+    reload(page)
     asked = []
     page.on("dialog", lambda dialog: (asked.append(dialog.type), dialog.accept()))
     name(page, "person-1", "a")
     assert "This browser keeps nothing: save" in page.inner_text("#unkept")
     saved(page, tmp_path)
-    page.reload()
+    reload(page)
     assert asked == []
     name(page, "person-1", "a")
-    page.reload()
+    reload(page)
     assert asked == ["beforeunload"]
 
 
@@ -333,7 +344,7 @@ def test_names_splits_joins_and_a_fresh_start_are_undone(opened):
     assert page.inner_text("#message") == "The last change is undone: person-1."
     page.click("#afresh")
     assert names(page) == ["", ""] and "Undo" in page.inner_text("#message")
-    page.reload()
+    reload(page)
     page.click("#undo")
     assert page.input_value("#text") == whole
     for _ in range(3):

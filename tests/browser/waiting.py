@@ -1,6 +1,7 @@
 """Waiting for what a page does."""
 
 EVERY_MS, TRIES = 100, 150
+OPENING_MS = 500  # Chromium tells a page nothing of what is written in the moment in which it opens
 
 
 def until(page, expression, arg=None):
@@ -16,12 +17,15 @@ def until(page, expression, arg=None):
 
 
 def second_tab(context, address):
-    """Open a page in another tab, and wait until it hears of what others write into the storage.
-
-    Chromium tells a page nothing of what is written in the moment in which it opens.
-    """
-    context.pages[0].wait_for_timeout(500)
+    """Open a page in another tab, and wait until it hears of what others write into the storage."""
+    context.pages[0].wait_for_timeout(OPENING_MS)
     page = context.new_page()
     page.goto(address)
-    page.wait_for_timeout(500)
+    page.wait_for_timeout(OPENING_MS)
     return page
+
+
+def reload(page):
+    """Load a page again, with all that it has written into the storage."""
+    page.wait_for_timeout(OPENING_MS)
+    page.reload()

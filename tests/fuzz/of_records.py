@@ -185,9 +185,9 @@ def named(folder):
 
 
 def read_named(path):
-    """Read names of one take, and the rows of the others as their page does."""
+    """Read names of one take, and all rows as their page does."""
     found = sightings.read(path, "walk", ["p1", "p2"], ["left", "right"])
-    return found, sightings.of_other_takes(path, "walk", ["walk", "run"])
+    return found, sightings.every_row(path, ["walk", "run"])
 
 
 def measured(folder):

@@ -1,7 +1,5 @@
 """Build the page to name people on: people found, videos, earlier names -> one HTML file."""
 
-from pathlib import Path
-
 from courtside.calibration.court import court
 from courtside.pages import page
 from courtside.pages.people import page as people_page
@@ -23,13 +21,12 @@ def main(paths, page_html, *, session, take, takes, subjects, stated, target):
         shots += strips.pictures(one, one.video, found, columns, joints)
     rows, sighted = [], [sightings.stated("seen", name, entry) for name, entry in stated]
     if paths.people_csv:
-        rows = sightings.of_other_takes(paths.people_csv, take, takes)
+        rows = sightings.every_row(paths.people_csv, takes)
         cameras = [one.camera.name for one in seen]
         sighted += sightings.read(paths.people_csv, take, subjects, cameras)
     named = earlier(sighted, found, seen, subjects)
-    written_s = Path(paths.people_csv).stat().st_mtime if paths.people_csv else 0.0
     words = {"session": session, "take": take, "takes": takes, "subjects": subjects}
-    words |= {"target": target, "file_ms": 1000 * written_s, "meet_m": identity.MEET_M}
+    words |= {"target": target, "meet_m": identity.MEET_M}
     lines = court.read(paths.court) if paths.court else None
     built = people_page.build(
         words, found, seen, columns, shots, court=lines, named=named, rows=rows

@@ -28,8 +28,9 @@ def test_rows_of_the_take_are_read(tmp_path):
     assert (first.from_s, first.to_s) == (None, None)
     assert (second.from_s, second.to_s) == (1.0, None)
     assert second.where.endswith("people.csv: line 4")
-    others = sightings.of_other_takes(tmp_path / "people.csv", "walk", TAKES)
-    assert others == [["run", "p1", "x", "1", "1", "1", "", ""]]
+    rows = sightings.every_row(tmp_path / "people.csv", TAKES)
+    assert [row[0] for row in rows] == ["walk", "run", "walk"]
+    assert rows[1] == ["run", "p1", "x", "1", "1", "1", "", ""]
 
 
 def test_the_bounds_may_be_left_out(tmp_path):
@@ -76,12 +77,12 @@ def test_another_table_is_refused(tmp_path, head):
 def test_a_row_of_no_take_is_named(tmp_path):
     read(tmp_path, "walk,p1,left,1,1,1", "jump,p1,left,1,1,1")
     with pytest.raises(InputError, match=r"line 3: expected a take of walk, run, found 'jump'"):
-        sightings.of_other_takes(tmp_path / "people.csv", "walk", TAKES)
+        sightings.every_row(tmp_path / "people.csv", TAKES)
 
 
 def test_a_missing_file_is_named(tmp_path):
     with pytest.raises(InputError, match=r"none\.csv: expected a readable CSV"):
-        sightings.of_other_takes(tmp_path / "none.csv", "walk", TAKES)
+        sightings.every_row(tmp_path / "none.csv", TAKES)
 
 
 def test_an_entry_of_a_session_is_a_sighting():

@@ -32,8 +32,8 @@ def named(session: Session, looks: Mapping[str, Looks]) -> Iterator[str]:
     if path is None or not Path(path).is_file():
         return
     try:
+        sightings.every_row(path, [*session.takes, *session.withheld])
         for name, take in session.takes.items():
-            sightings.of_other_takes(path, name, [*session.takes, *session.withheld])
             for one in sightings.read(path, name, take.subjects, take.cameras):
                 entry = {"camera": one.camera, "time_s": one.time_s, "at_px": one.xy}
                 look = looks[name].get(one.camera)

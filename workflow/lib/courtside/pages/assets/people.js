@@ -280,13 +280,27 @@
   const counted = (rows) => `${rows.length} ${rows.length === 1 ? "row" : "rows"}`;
   const ownRows = () => given.persons.flatMap(rowsOf);
 
+  const inFile = (take) => given.rows.filter((row) => row[0] === take);
+  const same = (rows, others) => JSON.stringify(rows) === JSON.stringify(others);
+
+  // What this session's pages saved, by take, {rows, time, before}, counts as long as people.csv has the rows `before`,
+  // of when it was saved. Once the file has the saved rows, these are that.
+  function notePlaced() {
+    const saved = courtside.storage.get(SAVED) || {};
+    const placed = Object.entries(saved).filter(([take, one]) => same(inFile(take), one.rows) && !same(one.rows, one.before));
+    placed.forEach(([, one]) => { one.before = one.rows; });
+    if (placed.length) courtside.storage.set(SAVED, saved);
+  }
+
   // Returns the rows of every other take, the newest of people.csv, of a loaded file and of what other pages saved.
   function others() {
-    const known = Math.max(given.file_ms, state.since), saved = courtside.storage.get(SAVED) || {};
+    const saved = courtside.storage.get(SAVED) || {};
     return given.takes.filter((take) => take !== given.take).map((take) => {
-      const ways = [{ rows: given.rows.filter((row) => row[0] === take), time: known, where: "of people.csv when this page was made" }];
+      const ways = [{ rows: inFile(take), time: state.since, where: "of people.csv when this page was made" }];
       if (take in state.loaded) ways.push({ ...state.loaded[take], where: "of a loaded file" });
-      if (take in saved) ways.push({ ...saved[take], where: `saved in this browser ${new Date(saved[take].time).toLocaleString()}` });
+      if (take in saved && same(inFile(take), saved[take].before)) {
+        ways.push({ ...saved[take], where: `saved in this browser ${new Date(saved[take].time).toLocaleString()}` });
+      }
       return { take, ...ways.reduce((newest, way) => (way.time > newest.time ? way : newest)) };
     }).filter((one) => one.rows.length);
   }
@@ -299,7 +313,8 @@
     const rows = ownRows(), more = others();
     savedText = text();
     courtside.download("people.csv", savedText, "text/csv");
-    courtside.storage.set(SAVED, { ...courtside.storage.get(SAVED), [given.take]: { rows, time: Date.now() } });
+    const one = { rows: rows.map((row) => row.map(String)), time: Date.now(), before: inFile(given.take) };
+    courtside.storage.set(SAVED, { ...courtside.storage.get(SAVED), [given.take]: one });
     const held = [{ take: given.take, rows }, ...more].map((one) => `${counted(one.rows)} of ${one.take}`).join(", ");
     say(`Saved ${held}. Put the file where the workflow reads it: ${given.target}.`
       + (more.length || given.takes.length < 2 ? "" : " If that file has names of other takes by now, load it here first, then save again."));
@@ -345,6 +360,7 @@
 
   // ---- start ----
   function start() {
+    notePlaced();
     given.persons.forEach(addCard);
     byId("left-out").textContent = given.left_out ? `${given.left_out} more, seen in less than 2 % of the take, are not shown.` : "";
     savedText = text();

@@ -36,11 +36,10 @@ def build(
     """Return the page, to be written by `page.write`.
 
     `words` are `session`, `take`, `subjects`; `takes`, all that people.csv may name; `target`,
-    where the workflow reads this file; `file_ms`, when the file was written (ms since 1970; 0
-    without one); `meet_m`, how far apart two tracks of one person may be. `columns` are the
-    instants at which each person is shown, `shots` the pictures. `named` are names given before:
-    `person`, `subject`, `time_s`, `from_s` and `to_s` of the reference clock; `rows` are those of
-    people.csv of other takes, which are saved again.
+    where the workflow reads this file; `meet_m`, how far apart two tracks of one person may be.
+    `columns` are the instants at which each person is shown, `shots` the pictures. `named` are
+    names given before: `person`, `subject`, `time_s`, `from_s` and `to_s` of the reference clock;
+    `rows` are those of people.csv, of which those of other takes are saved again.
     """
     persons = [_person(people, k, columns[k], shots) for k in columns]
     about = [words["session"], words["take"], persons, list(named)]

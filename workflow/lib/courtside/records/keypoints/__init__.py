@@ -2,7 +2,7 @@
 
 keypoints: `read_2d`, `write_2d`, `read_3d`, `write_3d`
 people: `read`, `write`, `People.assigned`: which tracklet is which person
-sightings: `read`, `stated`, `of_other_takes`: where the user says that a person is
+sightings: `read`, `stated`, `every_row`: where the user says that a person is
 skeleton: `read`: joints, bones, groups; `heel_and_toe`
 derived_joints: `read`, `of`, `append`, `combine`: neck, head centre, mid-hip and the like
 body_motion: `read`, `write`: a skeleton in the body's own frame and unit

@@ -63,13 +63,13 @@ def read(
     return found
 
 
-def of_other_takes(path: StrPath, take: str, takes: Collection[str]) -> list[list[str]]:
-    """Return the rows of other takes as they are, cells in the order of all columns.
+def every_row(path: StrPath, takes: Collection[str]) -> list[list[str]]:
+    """Return the rows of all takes as they are, cells in the order of all columns.
 
     An `InputError` if one names a take that is not among `takes`.
     """
     order, found = (*COLUMNS, *BOUNDS), []
     for line, row in table(path, COLUMNS, BOUNDS):
-        if known(f"{path}: line {line}", "take", row["take"], takes) != take:
-            found.append([row.get(key, "") for key in order])
+        known(f"{path}: line {line}", "take", row["take"], takes)
+        found.append([row.get(key, "") for key in order])
     return found
