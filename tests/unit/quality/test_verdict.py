@@ -49,11 +49,14 @@ def absent(person, frames, found):
     return cameras
 
 
-@pytest.mark.parametrize("frames", [slice(82), slice(45, None)])
-def test_who_comes_later_or_leaves_earlier_makes_nothing_doubtful(frames):
+@pytest.mark.parametrize(
+    ("frames", "when"), [(slice(82), "from 1.6 to 3.0 s"), (slice(45, None), "from 0.0 to 0.9 s")]
+)
+def test_who_comes_later_or_leaves_earlier_makes_nothing_doubtful(frames, when):
     rows, table = wholes(absent(1, frames, found=False))
     assert {row.verdict for row in rows.values()} == {GOOD}
     assert set(table["verdict"]) == {GOOD}
+    assert when in rows[ALL, "p2"].sentence and "from" not in rows[ALL, "p1"].sentence
 
 
 @pytest.mark.parametrize(
