@@ -56,6 +56,23 @@ def test_a_network_s_lasting_shift_is_stated_and_a_record_without_network_has_no
         np.testing.assert_allclose(each, take.SHIFT_M.get(name.partition("_")[2], 0.0), atol=1e-9)
 
 
+def test_joints_on_no_segment_are_left_out_of_the_model_s_joints():
+    body = moving_model.points(moving_model.moving(20))
+    first = [0] * 2  # two places of the face, seen in all frames
+    jaw = replace(body.some_joints(first), joints=np.array(["right_jaw_1", "left_jaw_1"]))
+    keys = [key for key in vars(body) if getattr(body, key).__class__ is np.ndarray]
+    both = {
+        key: np.concatenate([getattr(jaw, key), getattr(body, key)], axis=2)
+        for key in keys
+        if getattr(body, key).shape[:3] == body.xyz.shape[:3]
+    }
+    points = replace(body, joints=np.concatenate([jaw.joints, body.joints]), **both)
+    found, alone = (take.joints(one, fitted(one)) for one in (points, body))
+    assert found.joints.tolist() == body.joints.tolist()
+    np.testing.assert_allclose(found.xyz, alone.xyz)
+    assert (found.reason == missing_reason.OK).all()
+
+
 def test_missing_joints_stay_missing_and_frames_without_a_person_are_not_made():
     points = moving_model.points(moving_model.moving(), noise_m=0.005)
     wrist = points.joints.tolist().index("left_wrist")

@@ -161,6 +161,23 @@ def test_another_reader_finds_more_frames_than_the_header_counts(tmp_path):
     assert found == list(range(70001))
 
 
+@pytest.mark.parametrize(
+    ("place_m", "error_mm"), [((8.0, 12.0), None), ((12e3, 16e3), None), ((691e3, 5336e3), 256)]
+)
+def test_places_that_the_format_rounds_by_over_a_millimetre_are_told(
+    tmp_path, caplog, place_m, error_mm
+):
+    record = one_joint(300)
+    record.xyz[0, :, 0, :2] = place_m + np.random.default_rng(0).random((300, 2))
+    record.xyz[0, 7] = np.nan
+    c3d.write(tmp_path / "far.c3d", record, 0)
+    told = [line for line in caplog.messages if "mm off" in line]
+    assert len(told) == (error_mm is not None)
+    if error_mm:
+        stated = int(told[0].split(" mm off")[0].rsplit(" ")[-1])
+        assert 0.9 * error_mm < stated <= error_mm
+
+
 def test_one_frame_has_no_rate(tmp_path):
     with pytest.raises(InputError, match=r"at least 2 .* found 1; change `trim_s`"):
         c3d.write(tmp_path / "f.c3d", one_joint(1), 0)

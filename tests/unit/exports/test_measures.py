@@ -175,3 +175,15 @@ def test_angles_of_a_skeletal_motion_have_a_row_for_each_frame_and_person():
     np.testing.assert_allclose(rows["left_knee_flexion_deg"], motion.angle_deg[0, :, knee].round(2))
     assert rows["person"].tolist() == ["a"] * 5
     assert (rows["right_elbow_flexion_sd_deg"] > 0).all()
+
+
+def test_the_rotation_of_a_pelvis_goes_on_where_a_person_turns_round():
+    points = moving_model.points(moving_model.moving(5))
+    fitted = take.person(points, 0, dict.fromkeys(moving_model.JOINTS, 8.0), 1.75)
+    motion = take.motion(points, {0: fitted})
+    names = motion.angles.tolist()
+    motion.angle_deg[0, :, names.index("pelvis_rotation")] = np.nan, 170, 179, -179, -170
+    motion.angle_deg[0, :, names.index("left_shoulder_plane")] = np.nan, 170, 179, -179, -170
+    rows = measures.angles(motion)
+    np.testing.assert_allclose(rows["pelvis_rotation_deg"], [np.nan, 170, 179, 181, 190])
+    np.testing.assert_allclose(rows["left_shoulder_plane_deg"], [np.nan, 170, 179, -179, -170])

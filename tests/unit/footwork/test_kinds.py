@@ -1,6 +1,7 @@
 """What stances are: steps, lunges, split steps, jumps."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -48,6 +49,17 @@ def test_a_hop_is_a_split_step_once_even_where_the_stances_show_it():
     (row,) = events.to_dict("records")
     assert (row["event"], row["start_s"], row["stop_s"]) == ("split_step", 1.0, 1.2)
     assert row["x_m"] == pytest.approx(0.0)
+
+
+def test_a_split_step_before_the_feet_are_lost_has_no_place_as_the_dictionary_says():
+    feet = {side: stances[:1] for side, stances in together(1.0, 1.2).items()}
+    _, events = kinds.tables({"p1": (feet, 0.9, [Hop(1.0, 0.01, 1.2, 0.01)])})
+    assert events.event.tolist() == ["split_step"]
+    assert events[["x_m", "y_m", "quality"]].isna().all(axis=None)
+    text = (Path(__file__).parents[3] / "docs" / "results.md").read_text(encoding="utf-8")
+    told = text.split("| `.events.csv` | `event`, `foot` |")[1].split("\n")[2]
+    assert told.startswith("| | `x_m`, `y_m`, `quality` |")
+    assert "a split step after which neither foot is seen" in told
 
 
 def test_where_hops_were_looked_for_no_other_flight_is_a_split_step():

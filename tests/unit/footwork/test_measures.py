@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from courtside.calibration.court import court
-from courtside.footwork import kinds, measures
+from courtside.footwork import hops, kinds, measures
+from courtside.footwork.hops import Hop
 from courtside.footwork.stances import Stance
 from fixtures.study import data_dictionary
 
@@ -59,6 +60,17 @@ def test_times_in_which_a_foot_is_not_seen_are_neither_swings_nor_flights():
     found = values(both)
     assert found.loc["swing_time", ["value", "n"]].tolist() == pytest.approx([0.35, 16])
     assert found.loc["flight_time", "value"] == pytest.approx(0.05)
+
+
+def test_a_hop_is_one_flight():
+    """A split step of 0.2 s, in which both feet land at one time, before the flights of a run."""
+    hop = Hop(0.2, 0.01, 0.4, 0.01)
+    feet = {side: hops.cut(stances, [hop]) for side, stances in run().items()}
+    steps, events = kinds.tables({"p1": (feet, 0.9, [hop])})
+    found = measures.summary(steps, events, None).set_index("measure").loc["flight_time"]
+    alone = values(run()).loc["flight_time"]
+    assert found["n"] == alone["n"] + 1
+    assert found["n"] * found["value"] == pytest.approx(alone["n"] * alone["value"] + 0.2)
 
 
 def test_a_foot_that_gets_out_of_sight_does_not_stand_for_ever():

@@ -37,6 +37,43 @@ def test_a_camera_that_was_switched_on_later_is_good():
     assert {row.verdict for row in rows.values()} == {GOOD}
 
 
+def absent(person, frames, found):
+    """Return the cameras where the association loses a person, or nobody is found there."""
+    cameras = []
+    for one in judged.footage():
+        one.people.index[one.camera.name][person, frames] = -1
+        view = one.tracklets
+        for values in () if found else (view.xy, view.score):
+            values[person, frames] = np.nan
+        cameras.append(one)
+    return cameras
+
+
+@pytest.mark.parametrize(
+    ("frames", "when"), [(slice(82), "from 1.6 to 3.0 s"), (slice(45, None), "from 0.0 to 0.9 s")]
+)
+def test_who_comes_later_or_leaves_earlier_makes_nothing_doubtful(frames, when):
+    rows, table = wholes(absent(1, frames, found=False))
+    assert {row.verdict for row in rows.values()} == {GOOD}
+    assert set(table["verdict"]) == {GOOD}
+    assert when in rows[ALL, "p2"].sentence and "from" not in rows[ALL, "p1"].sentence
+
+
+@pytest.mark.parametrize(
+    ("found", "cause", "words"),
+    [(True, causes.IDENTITY, "followed in 75%"), (False, causes.DETECTION, "network found 75%")],
+)
+def test_who_is_lost_by_all_cameras_in_the_middle_is_doubtful_or_failed(found, cause, words):
+    rows, _ = wholes(absent(1, slice(40, 115), found=found))
+    assert rows[ALL, "p2"].verdict == DOUBTFUL
+    assert rows[ALL, "p1"].verdict == GOOD
+    for camera in SAME:
+        assert rows[camera, ALL].verdict == DOUBTFUL and rows[camera, ALL].cause == cause
+        assert words in rows[camera, ALL].sentence and "poor" not in rows[camera, ALL].sentence
+    rows, _ = wholes(absent(1, slice(15, 135), found=found))
+    assert rows[ALL, "p2"].verdict == rows[ALL, ALL].verdict == FAILED
+
+
 PLANTED = {
     "turned by 2 degrees": (lambda: judged.turned(judged.footage(), 1, 2.0), causes.CALIBRATION),
     "0.1 s late": (lambda: judged.footage(offset_s={1: 0.1}), causes.CLOCK),

@@ -40,6 +40,16 @@ def test_times_below_100_s_are_written_as_other_numbers(tmp_path, number):
     assert (tmp_path / "rows.csv").read_text().split()[2] == f"{number:.6g}"
 
 
+def test_places_in_coordinates_of_a_survey_keep_a_tenth_of_a_millimetre(tmp_path):
+    far = {"x_m": 691234.623456, "neck_y_m": 5336123.523456, "height_m": 520.12346}
+    near = {"z_m": 1.2345678, "centre_x_m": 99.123456, "max_m": 1234.56789, "sd_mm": 1234.56789}
+    tables.write(tmp_path / "rows.csv", pd.DataFrame([far | near]))
+    assert (tmp_path / "rows.csv").read_text().splitlines()[1].split(",") == [
+        *("691234.6235", "5336123.5235", "520.1235"),
+        *("1.23457", "99.1235", "1234.57", "1234.57"),
+    ]
+
+
 def test_a_label_replaces_a_column_of_its_name(tmp_path):
     tables.write(tmp_path / "rows.csv", pd.DataFrame({"n": [1], "take": ["old"]}), {"take": "new"})
     assert (tmp_path / "rows.csv").read_text() == "take,n\nnew,1\n"

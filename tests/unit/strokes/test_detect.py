@@ -3,8 +3,10 @@
 import numpy as np
 import pandas as pd
 import pytest
+import scipy
 
 from courtside.evaluation.movement import strokes as evaluation
+from courtside.kinematics import filtering
 from courtside.records.strokes import STROKE_COLUMNS
 from courtside.strokes import detect, signals
 from fixtures.people import strokes_made
@@ -66,6 +68,48 @@ def test_walks_t_poses_and_claps_are_no_strokes(name):
     points, _ = strokes_made.take(name, seed=2, seconds=8)
     assert not len(detect.table(points, {"p1": "right"}))
     assert not len(detect.table(points, {}))
+
+
+def ready(rate_hz, seed):
+    """Return 20 s in ready position, with gaps of half a second and 3 mm of noise.
+
+    The body sways at 0.63 m/s at most: less than before any stroke.
+    """
+    places = {"shoulder": 1.45, "elbow": 1.2, "wrist": 1.25, "hip": 0.95, "knee": 0.5, "ankle": 0.1}
+    rng, time_s = np.random.default_rng(seed), np.arange(20 * rate_hz) / rate_hz
+    sides = [0.2 if name.startswith("left") else -0.2 for name in strokes_made.JOINTS]
+    heights = [places[name.split("_")[1]] for name in strokes_made.JOINTS]
+    body = np.stack([np.zeros(12), sides, heights], axis=1)
+    body[strokes_made.JOINTS.index("right_wrist")] = 0.45, -0.3, 1.3
+    body[strokes_made.JOINTS.index("right_elbow")] = 0.15, -0.25, 1.2
+    sway = 0.25 * np.sin(2 * np.pi * (0.4 * time_s + rng.random()))
+    xyz = body + np.outer(sway, [0, 1, 0])[:, None]
+    xyz += rng.normal(0, 0.004 * np.sqrt(rate_hz / 30), xyz.shape)
+    xyz[(time_s + 0.5) % 2 < 0.5] = np.nan
+    return strokes_made.record(time_s, filtering.zero_lag_points(xyz, rate_hz, 7.0, 4))
+
+
+@pytest.mark.parametrize("rate_hz", [60, 120])
+def test_who_is_lost_now_and_then_in_ready_position_plays_no_stroke(rate_hz):
+    for seed in range(3):
+        points = ready(rate_hz, seed)
+        assert np.nanmedian(signals.of_person(points, 0).arms["right"].reach) > detect.FAR["low"]
+        assert not len(detect.table(points, {"p1": "right"}))
+        assert detect.playing_hand(signals.of_person(points, 0)) is None
+
+
+def test_the_height_of_a_wrist_that_is_lost_at_the_hit_is_empty():
+    points, _ = strokes_made.take(seed=1)
+    time_s = np.arange(4 * len(points.time_s) - 3) / (4 * strokes_made.RATE_HZ)
+    xyz = scipy.interpolate.make_interp_spline(points.time_s, points.xyz[0])(time_s)
+    whole = detect.table(strokes_made.record(time_s, xyz), {"p1": "right"})
+    low = np.flatnonzero(~whole.overhead.astype(bool))[0]
+    wrist = strokes_made.JOINTS.index("right_wrist")
+    xyz[np.abs(time_s - whole.time_s[low] - 0.1) < 0.12, wrist] = np.nan
+    rows = detect.table(strokes_made.record(time_s, xyz), {"p1": "right"})
+    assert rows.time_s.tolist() == whole.time_s.tolist()
+    assert rows.height_m.isna().tolist() == [at == low for at in range(len(rows))]
+    assert rows.x_m.tolist() == whole.x_m.tolist()
 
 
 def test_frames_without_the_wrist_lower_the_quality():

@@ -37,6 +37,22 @@ def test_where_too_few_frames_are_known_there_is_nothing():
     assert np.isfinite(found.place[:8]).all()
 
 
+@pytest.mark.parametrize("rate_hz", [30, 240])
+def test_a_gap_has_no_place_and_its_edges_no_sure_speed(rate_hz):
+    time_s = np.arange(2 * rate_hz) / rate_hz
+    path = np.random.default_rng(0).normal(0, 0.003, (len(time_s), 3))
+    lost = (time_s >= 0.8) & (time_s < 1.3)
+    path[lost] = np.nan
+    found = local_fit.fit(path, rate_hz, 0.17)
+    assert np.isnan(found.place[lost]).all()
+    assert np.isfinite(found.place[~lost]).all()
+    beside = (np.abs(time_s - 0.8) < 1.5 / rate_hz) | (np.abs(time_s - 1.3) < 1.5 / rate_hz)
+    assert np.isnan(found.sure_speed[lost | beside]).all()
+    away = (time_s > 0.2) & (time_s < 1.8)  # the take itself ends there
+    usual = found.speed[(time_s > 0.2) & (time_s < 0.5)]
+    assert np.nanmax(found.sure_speed[away]) < 4 * usual.max()
+
+
 def test_the_stated_sigma_of_the_slope_is_that_of_its_errors():
     noise = np.random.default_rng(0).normal(0, 0.02, (3000, 3))
     found = local_fit.fit(noise, 30, 0.17)

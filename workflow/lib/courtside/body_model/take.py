@@ -152,6 +152,7 @@ def _filled(line: NDArray) -> NDArray:
 def joints(points: Keypoints3D, fits: Mapping[int, Fitted]) -> Keypoints3D:
     """Return the record with the joints of the fits, where the record has these joints.
 
+    Joints that are on no segment of the model, as of the face and the fingers, are left out.
     The fit's error is split as the record's: the keypoints' noise, and the rest as the network's.
     To the rest of limb joints whose network's errors are known, `SHIFT_M` is added.
     """
@@ -172,7 +173,9 @@ def joints(points: Keypoints3D, fits: Mapping[int, Fitted]) -> Keypoints3D:
             noise[at][rows] = np.where(known[..., None, None], own, np.nan)
             rest[at][rows] = np.where(known[..., None, None], total - own + shift, np.nan)
     found = points.without(np.isfinite(points.xyz[..., 0]) & ~kept)
-    return replace(found, xyz=xyz, covariance_2d=noise, covariance_network=rest)
+    found = replace(found, xyz=xyz, covariance_2d=noise, covariance_network=rest)
+    on = [segments.segment_of(joint) is not None for joint in points.joints.tolist()]
+    return found if all(on) else found.some_joints(np.flatnonzero(on).tolist())
 
 
 def _shifts(points: Keypoints3D, person: int) -> NDArray:

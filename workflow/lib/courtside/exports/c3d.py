@@ -28,6 +28,7 @@ MISSING = -1.0
 MOST_RESIDUAL_MM = 127.0  # above, readers that take the byte as signed see a missing point
 BLOCK_BYTES = 512
 FIRST_DATA_BLOCK = slice(16, 18)  # of the header: the block, from 1, in which the points begin
+MOST_ROUNDED_MM = 1.0  # points have 24 bits: 1 mm at 17 km from the origin
 MOST_COUNTED = 65535  # frames: header and POINT:FRAMES count in 16 bits
 
 
@@ -61,6 +62,7 @@ def write(path: StrPath, keypoints: Keypoints3D, person: int) -> None:
             "give them the TRC file",
             *(path, n_frames, MOST_COUNTED),
         )
+    _warn_of_rounding(path, xyz)
     points = np.ones((4, n_joints, n_frames))
     points[:3] = xyz.transpose(2, 1, 0)
     file["data"]["points"] = points
@@ -73,6 +75,17 @@ def write(path: StrPath, keypoints: Keypoints3D, person: int) -> None:
         stored = np.frombuffer(content, "<f4", points.size, start).reshape(n_frames, n_joints, 4)
         stored[..., 3] = residuals
         temporary.write_bytes(content)
+
+
+def _warn_of_rounding(path: StrPath, xyz: NDArray) -> None:
+    """Warn of places so far from the origin that the points of the format round them."""
+    rounded = np.abs(xyz.astype(np.float32) - xyz)
+    if (worst := np.max(rounded, initial=0.0, where=np.isfinite(rounded))) > MOST_ROUNDED_MM:
+        log.logger.warning(
+            "%s: places are up to %.0f mm off, because C3D rounds numbers so far from the origin: "
+            "use the TRC file, or coordinates that begin near the court",
+            *(path, worst),
+        )
 
 
 def _first_point(path: StrPath, content: bytes | bytearray, n_bytes: int) -> int:

@@ -151,7 +151,10 @@ def _angle_rows(name: str, angle: Angle) -> Iterator[tuple[Any, ...]]:
 
 
 def angles(motion: SkeletalMotion) -> pd.DataFrame:
-    """Return the joint angles of a skeletal motion, T rows for each person."""
+    """Return the joint angles of a skeletal motion, T rows for each person.
+
+    The rotation of the pelvis goes on beyond 180 degrees where a person turns round.
+    """
     parts = []
     for at, person in enumerate(motion.person_id.tolist()):
         columns = {
@@ -160,7 +163,11 @@ def angles(motion: SkeletalMotion) -> pd.DataFrame:
             "person": person,
         }
         for k, name in enumerate(motion.angles.tolist()):
-            columns[f"{name}_deg"] = motion.angle_deg[at, :, k].round(2)
+            degrees = motion.angle_deg[at, :, k].copy()
+            if name == "pelvis_rotation":
+                fitted = np.isfinite(degrees)
+                degrees[fitted] = np.unwrap(degrees[fitted], period=360)
+            columns[f"{name}_deg"] = degrees.round(2)
             columns[f"{name}_sd_deg"] = motion.angle_sigma_deg[at, :, k].round(2)
         parts.append(pd.DataFrame(columns))
     return pd.concat(parts, ignore_index=True)

@@ -74,14 +74,14 @@ def _mean(name: str, start: pd.Series, stop: pd.Series, *sigmas: pd.Series) -> R
 def _flights(steps: pd.DataFrame) -> Row:
     """Return the mean time in which neither foot stands, from the last end to the next landing.
 
-    Both feet are seen all this time.
+    Both feet are seen all this time. A landing of both at one time, as of a hop, is one.
     """
     lasts, variances = [], []
     since_s, until_s = (
         steps[f"{known}_s"].fillna(steps[f"seen_{cut}_s"])
         for known, cut in (("onset", "from"), ("end", "until"))
     )
-    for row in steps.dropna(subset=["onset_s"]).itertuples():
+    for row in steps.dropna(subset=["onset_s"]).drop_duplicates("onset_s").itertuples():
         stands = (since_s < row.onset_s) & (until_s > row.onset_s)
         before = steps[until_s <= row.onset_s].groupby("foot").tail(1)  # in order of time
         seen = before.end_s.notna() & (before.seen_until_s >= row.onset_s)

@@ -12,6 +12,7 @@ import scipy
 from numpy.typing import NDArray
 
 from courtside.geometry import camera as camera_models
+from courtside.quality import measures
 from courtside.quality import seen as views
 from courtside.quality.seen import Seen
 from courtside.study.execution.verdicts import CALIBRATION
@@ -163,7 +164,7 @@ def _is_other(one: _Camera) -> bool:
 
 
 def _unexplained(one: _Camera, before: float, absent: float) -> Cause:
-    """Return the cause if no test succeeds: no matching person was found, or keypoints are poor."""
+    """Return the cause if no test succeeds: nobody matches, or keypoints are poor or missing."""
     if before > FITS:
         words = "nobody found in it is the person that the other cameras see"
         return Cause(DETECTION, words, is_shown=False)
@@ -171,8 +172,22 @@ def _unexplained(one: _Camera, before: float, absent: float) -> Cause:
         return Cause(DETECTION, _absent(absent), is_shown=False)
     errors = np.linalg.norm(one.seen.errors(one.at, one.nearest), axis=-1)
     poor = float((errors > views.AGREED)[np.isfinite(errors)].mean())
+    if poor <= SOME:
+        return _incomplete(one)
     words = f"its keypoints are poor: {poor:.0%} of them are not where the other cameras see them"
     return Cause(DETECTION, words, is_shown=False)
+
+
+def _incomplete(one: _Camera) -> Cause:
+    """Return the cause if all keypoints that can be compared are right."""
+    share = measures.of_camera(one.seen, one.at)
+    if share["followed"] < share["found"] - SOME:
+        words = "people are found there, but followed in {:.0%} of the frames only"
+        return Cause(IDENTITY, words.format(share["followed"]), is_shown=False)
+    if share["found"] < 1 - SOME:
+        words = "the network found {:.0%} of the persons who should be in its picture"
+        return Cause(DETECTION, words.format(share["found"]), is_shown=False)
+    return Cause(UNKNOWN, "no test shows why it disagrees with the others", is_shown=False)
 
 
 def _absent(share: float) -> str:

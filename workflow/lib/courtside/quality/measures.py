@@ -40,7 +40,8 @@ def of_camera(seen: Seen, camera: int) -> dict[str, float]:
 def of_person(seen: Seen, person: int) -> dict[str, float]:
     """Return the quality measures of a person over all cameras; NaN if unknown.
 
-    `views_2`, `views_3`: share of the limb joints that rest on two and three cameras or more;
+    `views_2`, `views_3`: share of the limb joints that rest on two and three cameras or more, from
+    the person's first to last frame in two cameras;
     `accepted` and `reprojection` as of a camera, from the joints as all cameras place them;
     `limb_length`: how far the length of a limb varies, as a share of it (robust standard deviation,
     median over the limbs).
@@ -48,10 +49,11 @@ def of_person(seen: Seen, person: int) -> dict[str, float]:
     points = seen.points
     n_views, error_px = points.n_views[person], points.reproj_error_px[person]
     placed, known = np.isfinite(points.xyz[person, ..., 0]), np.isfinite(error_px)
+    present = seen.present[person]
     heights = np.moveaxis(seen.height_px[:, person], 0, -1)[:, None]
     return {
-        "views_2": float((placed & (n_views >= 2)).mean()),
-        "views_3": float((placed & (n_views >= 3)).mean()),
+        "views_2": float((placed & (n_views >= 2))[present].mean()),
+        "views_3": float((placed & (n_views >= 3))[present].mean()),
         "accepted": _share(points.accepted[person][known].sum(), known.sum()),
         "reprojection": _median(error_px / heights),
         "limb_length": limb_variation(points.xyz[person], [str(j) for j in points.joints]),

@@ -49,10 +49,21 @@ class Seen:
         """Whether each camera follows each person, (C, P, T)."""
         return shown(self.xy)
 
+    @property
+    def present(self) -> NDArray:
+        """Whether each person is there, (P, T): from the first to the last frame in two cameras.
+
+        Who is followed in two cameras at no time is there all the time: lost, as far as is known.
+        """
+        placed = self.followed.sum(axis=0) >= 2
+        came = np.maximum.accumulate(placed, axis=1)
+        stays = np.maximum.accumulate(placed[:, ::-1], axis=1)[:, ::-1]
+        return (came & stays) | ~placed.any(axis=1, keepdims=True)
+
     def expected(self, camera: int) -> NDArray:
         """Return whether a person is expected in a picture, (P, S): inside, or position unknown.
 
-        Nobody is where the camera did not run.
+        Nobody is where the camera did not run, nor before a person comes and after one has left.
         """
         middle = np.ma.median(np.ma.masked_invalid(self.others[camera]), axis=2).filled(np.nan)
         unknown = np.isnan(middle).any(axis=-1)
@@ -60,7 +71,7 @@ class Seen:
         with np.errstate(invalid="ignore"):
             place = project(self.cameras[camera], middle)
             inside = ((place > MARGIN * size) & (place < (1 - MARGIN) * size)).all(axis=-1)
-        return (inside | unknown) & self.filmed[camera, self.at]
+        return (inside | unknown) & self.filmed[camera, self.at] & self.present[:, self.at]
 
     def errors(self, camera: int, xy: NDArray, model: Camera | None = None) -> NDArray:
         """Return keypoints (P, S, K, 2) minus the others' projections, heights."""

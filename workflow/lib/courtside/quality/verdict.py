@@ -258,9 +258,16 @@ def _person(seen: Seen, at: int) -> list[dict]:
     judged = _judged(found, OF_PERSON, ALL, name)
     verdict = worst([row["verdict"] for row in judged])
     bad = [row["sentence"] for row in judged if row["verdict"] == verdict != GOOD]
-    sentence = bad[0] if bad else "The cameras agree."
+    sentence = bad[0] if bad else f"The cameras agree{_when(seen, at)}."
     whole = _whole(ALL, name, verdict, "", f"{name}: {sentence[:1].lower()}{sentence[1:]}")
     return [whole, *judged]
+
+
+def _when(seen: Seen, at: int) -> str:
+    """Return between which times a person is judged; empty: in the whole take."""
+    present = seen.present[at]
+    first_s, last_s = seen.points.time_s[present][[0, -1]]
+    return "" if present.all() else f" from {first_s:.1f} to {last_s:.1f} s of the take"
 
 
 def _together(rows: list[dict]) -> list[str]:

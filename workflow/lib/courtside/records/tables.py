@@ -1,5 +1,6 @@
 """Write and read the CSV tables of the study: whole files, labels first, 6 significant digits."""
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -14,8 +15,11 @@ REMAKE = "delete it and run the study again"
 # Columns of names, which are texts even where all of them are digits.
 LABELS = ("person", "opponent", "camera", "take", "session", "foot", "source")
 DIGITS = 6  # significant, of a number that is not whole
-TIME_DECIMALS = 4  # at least, of a time in seconds: epoch times have 10 digits before the point
+# At least, of a time in seconds and a place in metres: epoch times and coordinates of a survey have
+# up to 10 digits before the point.
+DECIMALS = 4
 RATES = ("_m_s", "_deg_s")  # ends of columns of speeds, which are no times
+PLACE = re.compile(r"(^|_)([xyz]|height)_m$")  # columns of places
 
 
 def column_fault(table: pd.DataFrame, columns: Iterable[str], numbers: Iterable[str]) -> str:
@@ -38,13 +42,13 @@ def write(
 
     `labels` are columns put before the others, the same in every row: session, take, how it was
     measured. `float_format` is that of every number that is not whole, None for the shortest exact
-    form; by default, times (columns `*_s`) have at least `TIME_DECIMALS` decimals. `about` is a
-    comment for the first line.
+    form; by default, times (columns `*_s`) and places (`*x_m`) have at least `DECIMALS` decimals.
+    `about` is a comment for the first line.
     """
     labels = labels or {}
     rows = rows.assign(**labels)
     if float_format == f"%.{DIGITS}g":
-        rows = rows.assign(**_times(rows))
+        rows = rows.assign(**_long(rows))
     rows = labels_first(rows, labels)
     with (
         atomic(path) as temporary,
@@ -67,18 +71,19 @@ def labels_first(rows: pd.DataFrame, labels: Iterable[str]) -> pd.DataFrame:
     return rows[[*labels, *(name for name in rows.columns if name not in labels)]]
 
 
-def _times(rows: pd.DataFrame) -> dict[str, pd.Series]:
-    """Return the columns of times that have over 2 digits before the point, as texts."""
+def _long(rows: pd.DataFrame) -> dict[str, pd.Series]:
+    """Return the columns of times and places with over 2 digits before the point, as texts."""
     return {
-        name: rows[name].map(_time, na_action="ignore")
+        name: rows[name].map(_text, na_action="ignore")
         for name in rows.select_dtypes("floating")
-        if name.endswith("_s") and not name.endswith(RATES) and np.abs(rows[name]).max() >= 100
+        if ((name.endswith("_s") and not name.endswith(RATES)) or PLACE.search(name))
+        and np.abs(rows[name]).max() >= 100
     }
 
 
-def _time(time_s: float) -> str:
-    whole = f"{abs(time_s) // 1:.0f}"
-    return f"{time_s:.{max(DIGITS, len(whole) + TIME_DECIMALS)}g}"
+def _text(number: float) -> str:
+    whole = f"{abs(number) // 1:.0f}"
+    return f"{number:.{max(DIGITS, len(whole) + DECIMALS)}g}"
 
 
 def read(

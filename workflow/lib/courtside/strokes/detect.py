@@ -80,17 +80,19 @@ def _swings(found: Signals, arm: Arm) -> list[int]:
     apart = max(1, round(APART_S * found.rate_hz))
     high = np.where(arm.above > OVERHEAD, arm.reach, 0.0)
     peaks, _ = scipy.signal.find_peaks(high, height=FAR["overhead"], distance=apart)
-    fastest = [_most(arm.from_waist.speed, at, found.rate_hz, SWING_S, SWING_S) for at in peaks]
+    speed = arm.from_waist.sure_speed
+    fastest = [_most(speed, at, found.rate_hz, SWING_S, SWING_S) for at in peaks]
     return [int(at) for at, speed in zip(peaks, fastest, strict=True) if speed >= SWING_M_S]
 
 
 def _lunges(found: Signals, arm: Arm) -> list[int]:
     """Return the frames at which the trunk stops after a run while the wrist is far."""
     speed, rate_hz, chosen = found.trunk.speed, found.rate_hz, []
+    sure = found.trunk.sure_speed
     stops, _ = scipy.signal.find_peaks(-np.nan_to_num(speed, nan=np.inf))
     before, after = (round(part_s * rate_hz) for part_s in REACHED_S)
     for at in stops:
-        fastest = _most(speed, at, rate_hz, TRAVEL_S, 0.0)
+        fastest = _most(sure, at, rate_hz, TRAVEL_S, 0.0)
         near = arm.reach[_around(at, before, after, len(speed))]
         known = near[np.isfinite(near)]
         reached = np.median(known) if len(known) else 0.0
@@ -145,15 +147,15 @@ def playing_hand(found: Signals) -> str | None:
 
     The racket hand reaches in the direction of movement. Tested on all virtual players.
     """
-    speed, rate_hz = found.trunk.speed, found.rate_hz
+    speed, sure, rate_hz = found.trunk.speed, found.trunk.sure_speed, found.rate_hz
     stops, _ = scipy.signal.find_peaks(
         -np.nan_to_num(speed, nan=9.0), distance=max(1, round(0.5 * rate_hz))
     )
     ahead = dict.fromkeys(HANDS, 0.0)
     for stop in stops:
         before = _around(stop, round(0.5 * rate_hz), 0, len(speed))
-        fastest = before[np.nanargmax(speed[before])] if np.isfinite(speed[before]).any() else stop
-        if not speed[fastest] >= TRAVEL_M_S:
+        fastest = before[np.nanargmax(sure[before])] if np.isfinite(sure[before]).any() else stop
+        if not sure[fastest] >= TRAVEL_M_S:
             continue
         way = found.trunk.velocity[fastest, :2] / speed[fastest]
         for hand in HANDS:
