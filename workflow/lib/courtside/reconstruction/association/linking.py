@@ -103,6 +103,8 @@ def link(
             choice = np.full((len(parent), slots), -1)
         parents.append(parent)
         choices.append(np.where(choice >= 0, here[choice] if len(here) else -1, -1))
+        if len(parents) == len(warm) + 1:  # the first instant: from here on time runs forwards
+            state.velocity = -state.velocity
     return _trace(state, parents, choices, slots)[:, len(warm) :]
 
 
