@@ -278,3 +278,14 @@ def test_who_runs_at_the_first_instant_is_placed_from_there_on(speed_m_s):
     result = linking.link(found, piece, time_s, 4)
     assert sorted(map(sorted, persons_of(result, person))) == [[0], [1]]
     assert ((result >= 0).sum(axis=0) == 2).all()
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+@pytest.mark.parametrize("people", [2, 4, 8])
+def test_all_are_known_in_takes_of_few_instants(people, n):
+    found, piece, time_s, person = candidates_of(
+        lines(n, *(([2 * x, 0, 1], [2 * x, 0.1 * n, 1]) for x in range(people)))
+    )
+    result = linking.link(found, piece, time_s, people + 2)
+    assert sorted(map(sorted, persons_of(result, person))) == [[p] for p in range(people)]
+    assert ((result >= 0).sum(axis=0) == people).all()
