@@ -108,6 +108,17 @@ def test_a_row_that_resumes_after_a_gap_is_another_piece():
     np.testing.assert_array_equal(second, np.arange(20))
 
 
+@pytest.mark.parametrize("jump", [0.5, 0.8, 1.2])
+def test_a_row_that_jumps_to_another_body_is_another_piece(jump):
+    x = 100 + 0.5 * np.arange(60)
+    x[30:] += 100 * jump
+    found = rows.separate(seen(x))
+    after = np.arange(60) >= 30
+    assert all(len(set(after[own >= 0])) == 1 for own in found)
+    assert (found >= 0).any(axis=0).all()
+    assert sorted((found >= 0).sum(axis=1))[-2:] == [29, 30]
+
+
 def test_the_longest_pieces_are_kept():
     x = np.full(1000, 200.0)
     for gap in range(20):

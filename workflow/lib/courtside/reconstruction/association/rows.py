@@ -68,9 +68,9 @@ def describe(xy: NDArray, trunk: Sequence[int]) -> Rows:
 def separate(view: Keypoints2D) -> NDArray:
     """Return the row (N, T) int of each piece that shows one body, -1 in other frames.
 
-    A tracker may exchange people where they are close, and resume a row with another body after a
-    gap. Rows are cut there, and frames in which another body is close belong to no piece. The
-    longest pieces come first, at most `MOST_PIECES`. A row may have none.
+    A tracker may exchange people where they are close, resume a row with another body after a gap,
+    and jump to another body. Rows are cut there, and frames in which another body is close belong
+    to no piece. The longest pieces come first, at most `MOST_PIECES`. A row may have none.
     """
     joints, limbs = list(view.joints), list(skeleton.JOINTS)
     found = describe(
@@ -80,7 +80,7 @@ def separate(view: Keypoints2D) -> NDArray:
     pieces = []
     for row, alone in enumerate(found.present & ~found.close):
         frames = np.flatnonzero(alone)
-        each = np.split(frames, np.flatnonzero(np.diff(frames) > 1) + 1)
+        each = np.split(frames, np.flatnonzero(np.diff(found.piece[row, frames])) + 1)
         pieces += [(row, piece) for piece in each if len(piece)]
     pieces.sort(key=lambda one: -len(one[1]))
     index = np.full((len(pieces[:MOST_PIECES]), len(view.time_s)), -1)
