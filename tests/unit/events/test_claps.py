@@ -72,6 +72,26 @@ def test_rebounding_hands_touch_first_at_the_event():
         assert clap.uncertainty_s >= 0.008
 
 
+@pytest.mark.parametrize("kind", ["cameras", "rgbd"])
+@pytest.mark.parametrize("rate_hz", [20.0, 24.0, 25.0, 30.0, 50.0])
+def test_rebounding_hands_touch_first_at_the_event_at_any_rate(rate_hz, kind):
+    errors, stated, rebounds = [], [], []
+    for seed in range(8):
+        take = device_takes.truth(seed % 2, 2.0, "tpose_clap_bouncing")
+        rng = np.random.default_rng(seed)
+        options = {"kind": kind, "rate_hz": rate_hz, "noise_m": (0.004, 0.004, 0.01)}
+        found = found_at(device_takes.device(rng, take, **options))
+        assert len(found) == 2
+        errors += [c.time_s - take[2][f"clap_{number}"] for number, c in enumerate(found, 1)]
+        stated += [clap.uncertainty_s for clap in found]
+        rebounds += [clap.rebounds for clap in found]
+    errors, stated = np.array(errors), np.array(stated)
+    # Palms give for 8 ms before they fly apart; the corner is there.
+    assert 0 < errors.mean() < 0.01
+    assert np.mean(np.abs(errors) <= 1.645 * stated) >= 0.9
+    assert np.mean(rebounds) >= 0.85
+
+
 def test_a_filter_that_lags_delays_the_clap_by_its_lag():
     take = device_takes.truth(0)
     options = {"cutoff_hz": None, "causal_s": 0.03}

@@ -46,6 +46,15 @@ def test_a_rebound_is_seen_and_its_corner_found():
     assert not flat.rises
 
 
+def test_seven_values_tell_a_rebound():
+    time_s = np.arange(-3, 4) / 24
+    for corner_s in (-0.015, 0.0, 0.015):
+        values = hinge(time_s, corner_s, rise=1.6)
+        found = contact_time.fit(time_s, values, 0.0, 0.08)
+        assert found.rises
+        assert abs(found.time_s - corner_s) < 1.645 * found.uncertainty_s
+
+
 @pytest.mark.parametrize(("memory", "noise_m"), [(0.0, 0.01), (0.5, 0.015)])
 def test_the_uncertainty_covers_noisy_corners(memory, noise_m):
     rng = np.random.default_rng(7)

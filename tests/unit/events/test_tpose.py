@@ -1,5 +1,6 @@
 """T-poses are found where the athlete holds them, by any device, and nowhere else."""
 
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
@@ -119,3 +120,15 @@ def test_a_rest_pose_that_nobody_performed_gives_a_t_pose_of_its_own():
         tpose.rest(replace(motion, performed=np.ones(len(xyz), bool)))
     with pytest.raises(InputError, match="level arms, found arms 90 degrees from square"):
         tpose.rest(replace(motion, performed=~performed))
+
+
+def test_t_poses_of_many_frames_need_little_memory():
+    """The windows of all joints of half a minute at 240 Hz at once are over 100 MB."""
+    still = figure(n=7200)
+    fast = replace(still, time_s=np.arange(7200) / 240)
+    tracemalloc.start()
+    (spell,) = tpose.find(fast)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 100e6
+    assert spell.stop_s - spell.start_s == pytest.approx(30, abs=1.5)

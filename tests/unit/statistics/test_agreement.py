@@ -150,6 +150,9 @@ def test_known_components_are_found():
         ([5] * 3, 0.2, 1.0),
         ([5] * 10, 1.0, 1.0),
         ([3, 4, 8, 5, 6, 10], 0.7, 1.0),
+        ([5, 5, 5, 30], 2.0, 0.5),
+        ([5, 5, 40], 2.0, 0.5),
+        ([5, 5, 5, 5, 5, 40], 2.0, 0.5),
     ],
 )
 def test_intervals_hold_the_true_limits_as_often_as_they_say(counts, between, within):

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from courtside.reconstruction.association import everybody
+from courtside.reconstruction.association import associate, everybody
 from courtside.records.cameras.footage import Footage
 from courtside.records.devices.clocks import Clock
 from courtside.study.errors import InputError
@@ -24,6 +24,28 @@ def test_a_walker_is_one_person_in_all_cameras():
     assert all((rows[0] == 0).mean() > 0.9 for rows in found.index.values())
     middle = np.nanmedian(found.path[0], axis=0)
     assert np.linalg.norm(middle[:2] - np.nanmedian(record.xyz[0], axis=(0, 1))[:2]) < 0.2
+
+
+def test_rows_of_slow_cameras_are_described_by_their_own_frames(monkeypatch):
+    """The first camera films three times as fast as the others, whose frames count."""
+    views = walker.views(walker.points(n_frames=40), CAMERAS)
+    fields = ("xy", "score", "reason", "xyz_in_body", "clothing")
+    slow = [
+        replace(
+            view, time_s=view.time_s[::3], **{key: getattr(view, key)[:, ::3] for key in fields}
+        )
+        for view in views[1:]
+    ]
+    strides, describe = [], associate.describe
+    monkeypatch.setattr(
+        associate,
+        "describe",
+        lambda xy, trunk, stride: strides.append(stride) or describe(xy, trunk, stride),
+    )
+    seen = [Footage(c, v, Clock()) for c, v in zip(CAMERAS, [views[0], *slow], strict=True)]
+    found, _ = everybody.find(seen, walker.SKELETON, None)
+    assert strides == [1, 3, 3]
+    assert len(found.person_id) == 1
 
 
 @pytest.mark.parametrize(("score", "hidden"), [(0.3, True), (0.9, False)])

@@ -4,6 +4,7 @@ import itertools
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from courtside.reconstruction.association import candidates, linking
 from courtside.reconstruction.association import rows as rows_module
@@ -263,3 +264,28 @@ def test_of_two_rows_the_better_one_is_the_person():
     cost[0, 3::7, 0] = 4.0  # now and then the better row is worse: the rows do not take turns
     index = linking.one_row_each(owner, cost)
     assert index.tolist() == [[0] * 20 + [1] * 10]
+
+
+@pytest.mark.parametrize("speed_m_s", [3.0, 5.0, 7.0])
+def test_who_runs_at_the_first_instant_is_placed_from_there_on(speed_m_s):
+    """Two run past each other and back; the take begins in the middle of their run."""
+    x_m = 3 * np.sin(speed_m_s / 3 * STEP_S * np.arange(60))
+    paths = np.stack(
+        [np.stack([s * x_m, np.full(60, s * 1.5), np.ones(60)], axis=1) for s in (1, -1)]
+    )
+    own = np.arange(120).reshape(2, 60) + 10  # their motion alone carries them
+    found, piece, time_s, person = candidates_of(paths, own)
+    result = linking.link(found, piece, time_s, 4)
+    assert sorted(map(sorted, persons_of(result, person))) == [[0], [1]]
+    assert ((result >= 0).sum(axis=0) == 2).all()
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+@pytest.mark.parametrize("people", [2, 4, 8])
+def test_all_are_known_in_takes_of_few_instants(people, n):
+    found, piece, time_s, person = candidates_of(
+        lines(n, *(([2 * x, 0, 1], [2 * x, 0.1 * n, 1]) for x in range(people)))
+    )
+    result = linking.link(found, piece, time_s, people + 2)
+    assert sorted(map(sorted, persons_of(result, person))) == [[p] for p in range(people)]
+    assert ((result >= 0).sum(axis=0) == people).all()

@@ -55,6 +55,40 @@ def test_rows_that_come_close_are_cut_there_and_numbers_differ():
     assert found.piece[0, 0] != found.piece[0, -1]
 
 
+def between(x, stride):
+    """Return places at times between those of frames, `stride` to a frame."""
+    own = np.arange(len(x))
+    return np.interp(np.arange(stride * (len(x) - 1) + 1) / stride, own, x)
+
+
+@pytest.mark.parametrize("stride", [1, 2, 4, 8])
+@pytest.mark.parametrize("jump", [0.5, 0.8, 1.2])
+def test_a_jump_between_two_frames_of_a_slow_camera_cuts(jump, stride):
+    x = 100 + 4.0 * np.arange(30)
+    x[15:] += 100 * jump
+    cut = rows.describe(row(between(x, stride))[None], TRUNK, stride).cut[0]
+    around = np.arange(len(cut))
+    assert cut[(around > 14 * stride) & (around < 17 * stride)].any()
+    assert not cut[1 : 14 * stride].any() and not cut[17 * stride :].any()
+    steady = rows.describe(row(between(100 + 4.0 * np.arange(30), stride))[None], TRUNK, stride)
+    assert not steady.cut[0, 1:].any()
+
+
+def test_a_slow_camera_is_steadied_and_kept_apart_by_its_own_frames():
+    noise = np.random.default_rng(1).normal(0, 1, 1000)
+    each = [
+        rows.describe(row(between(500 + noise, stride))[None], TRUNK, stride) for stride in (1, 8)
+    ]
+    own = slice(5, -5)
+    np.testing.assert_allclose(each[1].centre[0, ::8][own], each[0].centre[0][own], atol=1e-9)
+    one, other = 100 + 4.0 * np.arange(60), 340 - 4.0 * np.arange(60)
+    close = [
+        rows.describe(np.stack([row(between(one, n)), row(between(other, n))]), TRUNK, n).close
+        for n in (1, 8)
+    ]
+    assert close[1][:, ::8][close[0]].all()
+
+
 def test_a_body_seen_in_part_still_has_its_trunk_as_centre():
     xy = row(np.full(9, 200.0))[None]
     xy[0, :, [0, 4]] = np.nan
@@ -106,6 +140,17 @@ def test_a_row_that_resumes_after_a_gap_is_another_piece():
     first, second = (np.flatnonzero(own >= 0) for own in rows.separate(seen(x)))
     np.testing.assert_array_equal(first, np.arange(21, 60))
     np.testing.assert_array_equal(second, np.arange(20))
+
+
+@pytest.mark.parametrize("jump", [0.5, 0.8, 1.2])
+def test_a_row_that_jumps_to_another_body_is_another_piece(jump):
+    x = 100 + 0.5 * np.arange(60)
+    x[30:] += 100 * jump
+    found = rows.separate(seen(x))
+    after = np.arange(60) >= 30
+    assert all(len(set(after[own >= 0])) == 1 for own in found)
+    assert (found >= 0).any(axis=0).all()
+    assert sorted((found >= 0).sum(axis=1))[-2:] == [29, 30]
 
 
 def test_the_longest_pieces_are_kept():

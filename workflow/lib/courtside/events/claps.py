@@ -27,6 +27,7 @@ HELD_APART = 0.12  # spans: held or rebounding hands do not part further
 BEFORE_S, BEHIND_S = 0.15, 0.22  # around the contact: what the hinge is fitted to
 LEAST_HZ = contact_time.FEWEST / (BEFORE_S + BEHIND_S)  # with fewer frames there is no such fit
 REBOUND_S = 0.12  # after the contact: the time in which a rebound shows
+REBOUND_FRAMES = 3.5  # and at least so many frames before and after, or it cannot be fitted
 REBOUND = 0.015  # spans: hands of a rebound part by more, the overshoot of a filter is less
 REACH_S = 0.08  # search range of the contact about the first guess
 # Around the meeting of hands: their place. Hands that hide each other for longer are often lost.
@@ -177,8 +178,9 @@ def _fitted(motion, spell, number, apart, near_s) -> Clap | NoClap:
     least_m = max(REBOUND * np.nanmedian(apart[spell.frames]), REBOUND_NOISE * noise.sd)
     parted = _parted(motion.time_s, apart, near_s) > least_m
     # A rebound ends in the next contact, which the hinge does not model.
-    behind_s = REBOUND_S if parted else BEHIND_S
-    used = _within(motion.time_s, near_s, (-BEFORE_S, behind_s)) & motion.performed
+    least_s = REBOUND_FRAMES * interpolation.frame_step_s(motion.time_s) if parted else 0.0
+    before_s, behind_s = max(BEFORE_S, least_s), max(REBOUND_S if parted else BEHIND_S, least_s)
+    used = _within(motion.time_s, near_s, (-before_s, behind_s)) & motion.performed
     try:
         corner = contact_time.fit(
             motion.time_s[used],

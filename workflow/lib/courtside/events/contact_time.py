@@ -6,7 +6,9 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-FEWEST = 7  # ASSUME: values that a fit needs
+# ASSUME: values that a fit needs. A rebound has as many parameters; what is assumed of its bends
+# and its smoothing counts, too.
+FEWEST = 7
 SMOOTHINGS_S = np.linspace(0.0, 0.06, 13)  # standard deviations of the Gaussians tried
 USUAL_S = 0.01  # ASSUME: their usual size
 STEP_S = 0.001  # grid of contact times: small against their uncertainty
@@ -109,10 +111,8 @@ class _Hinge:
 
 
 def _hinge(time_s, distance, corners_s, noise, rises) -> _Hinge | None:
-    """Fit every hinge of one form; None if it has too many parameters or none falls."""
+    """Fit every hinge of one form; None if none falls."""
     count = 4 + 2 * rises
-    if len(time_s) < count + 2:
-        return None
     design = _design(corners_s[:, None, None] - time_s, SMOOTHINGS_S[:, None], rises)
     design, wanted = _white(design, noise.memory), _white(distance[:, None], noise.memory)[:, 0]
     held = np.zeros((count - 1, count - 1))

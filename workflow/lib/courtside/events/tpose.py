@@ -4,6 +4,7 @@ All measures are relative to the body, because devices differ in their up axis. 
 frames is too noisy to tell straight arms: joints are medians over a third of a second.
 """
 
+import itertools
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
@@ -14,6 +15,7 @@ from courtside.geometry import rotations
 from courtside.kinematics import filtering
 from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.devices.events import TPose
+from courtside.records.keypoints import keypoints
 from courtside.study.errors import InputError
 
 # ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
@@ -138,9 +140,12 @@ def _medians(values: NDArray, length: float) -> NDArray:
     windows = np.lib.stride_tricks.sliding_window_view(
         np.concatenate([ends, values, ends]), 2 * half + 1, axis=0
     )
-    known = np.isfinite(windows).all(axis=2).sum(axis=-1) > half
     medians = np.full(values.shape, np.nan)
-    medians[known] = np.nanmedian(windows.transpose(0, 1, 3, 2)[known], axis=1)
+    # All joints, or all frames, at once need much memory.
+    for joint, at in itertools.product(range(values.shape[1]), keypoints.blocks(len(values))):
+        window = windows[at, joint]
+        known = np.isfinite(window).all(axis=1).sum(axis=-1) > half
+        medians[at, joint][known] = np.nanmedian(window[known], axis=-1)
     return medians
 
 

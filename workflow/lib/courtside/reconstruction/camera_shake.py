@@ -18,6 +18,7 @@ from courtside.geometry import epipolar, interpolation, rotations
 from courtside.geometry.camera import Camera
 from courtside.records.cameras import footage, shake_table
 from courtside.records.cameras.footage import Footage
+from courtside.records.keypoints import keypoints
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError, StrPath
 from courtside.study.execution import log
@@ -320,9 +321,10 @@ def _steps(level: NDArray, n: int, least: int) -> NDArray:
     """
     pad = np.full((n, level.shape[1]), np.nan)
     windows = np.lib.stride_tricks.sliding_window_view(np.concatenate([pad, level, pad]), n, axis=0)
-    enough = np.isfinite(windows[:, 0]).sum(axis=-1) >= least
     medians = np.full(windows.shape[:2], np.nan)
-    medians[enough] = np.nanmedian(windows[enough], axis=-1)
+    for at in keypoints.blocks(len(windows)):  # all at once need much memory
+        enough = np.isfinite(windows[at, 0]).sum(axis=-1) >= least
+        medians[at][enough] = np.nanmedian(windows[at][enough], axis=-1)
     return medians[n : n + len(level)] - medians[: len(level)]
 
 

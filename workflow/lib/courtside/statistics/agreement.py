@@ -173,7 +173,9 @@ def limits(subject: ArrayLike, difference: ArrayLike) -> Limits:
     typical = (total - np.sum(count**2) / total) / (n_subjects - 1)
     component = max((between - within) / typical, 0.0)
     half = scipy.stats.norm.ppf(0.5 + LEVEL / 2) * np.sqrt(component + within)
-    inner, outer = _margins(count, mean, within)
+    # The bias counts each difference alike, so its variance is not that of the mean of means.
+    of_bias = component * np.sum(count**2) / total**2 + within / total
+    inner, outer = _margins(count, mean, within, of_bias)
     return Limits(
         bias=float(bias),
         sd_between=float(np.sqrt(component)),
@@ -199,8 +201,11 @@ def _by_subject(subject: ArrayLike, value: ArrayLike) -> tuple[NDArray, NDArray,
     return count, mean, within, value
 
 
-def _margins(count: NDArray, mean: NDArray, within: float) -> tuple[float, float]:
-    """Return how far the interval of a limit reaches towards the bias and away from it."""
+def _margins(count: NDArray, mean: NDArray, within: float, of_bias: float) -> tuple[float, float]:
+    """Return how far the interval of a limit reaches towards the bias and away from it.
+
+    `of_bias` is the variance of the bias.
+    """
     n_subjects, tail = len(count), (1 - LEVEL) / 2
     normal = scipy.stats.norm.ppf(1 - tail)
     of_means = mean.var(ddof=1)
@@ -213,9 +218,8 @@ def _margins(count: NDArray, mean: NDArray, within: float) -> tuple[float, float
         of_other = rest * (freedom / scipy.stats.chi2.ppf(quantile, freedom) - 1)
         reach[side] = np.hypot(of_one, of_other)
     most, least = np.sqrt(variance + reach["upper"]), np.sqrt(max(variance - reach["lower"], 0.0))
-    of_bias = normal**2 * of_means / n_subjects
-    inner = np.sqrt(of_bias + normal**2 * (np.sqrt(variance) - least) ** 2)
-    outer = np.sqrt(of_bias + normal**2 * (most - np.sqrt(variance)) ** 2)
+    inner = normal * np.sqrt(of_bias + (np.sqrt(variance) - least) ** 2)
+    outer = normal * np.sqrt(of_bias + (most - np.sqrt(variance)) ** 2)
     return inner, outer
 
 

@@ -60,6 +60,7 @@ def associate(
     court: Court | None = None,
     bones: Sequence[tuple[int, int]] = (),
     clothing: Sequence[NDArray] | None = None,
+    strides: Sequence[int] = (),
 ) -> Association:
     """Find everybody whom two cameras see, and which tracklets show them, over the whole take.
 
@@ -69,7 +70,7 @@ def associate(
     still agree. If the `court` has a net, changing halves is assumed to be rare; people far from
     the court are left out. `bones`, pairs of joints of constant distance, distinguish people of
     different size in `doubts`. `clothing` are the colours of the rows' clothes (P, T, 2, 3) in each
-    camera.
+    camera. `strides` are the common times per own frame of each camera, 1 unless it is slower.
 
     At instants 0.1 s apart, rows of several views that meet in space become candidates
     (`candidates`). They are linked over time by a search that keeps several histories (`linking`);
@@ -81,11 +82,10 @@ def associate(
     """
     alone = all(len(view) == 1 for view in xy)
     xy = [v if len(v) else np.full((1, *v.shape[1:]), np.nan) for v in xy]
-    rows = [describe(view, trunk) for view in xy]
+    rows = _rows(xy, trunk, strides)
     instants = _instants(time_s)
     looks = _looks(cameras, xy, rows, instants, mirror, clothing)
-    found = _candidates(cameras, xy, rows, instants, mirror, looks)
-    found = _near_court(found, court)
+    found = _near_court(_candidates(cameras, xy, rows, instants, mirror, looks), court)
     net = court.net["y_m"] if court is not None and court.net else None
     piece = _pieces(rows, found, instants)
     chosen = linking.link(found, piece, time_s[instants], _slots(cameras, rows), net, looks)
@@ -138,6 +138,11 @@ def crowd(at_once: Mapping[str, int]) -> str:
         f"{at_once[name]}; only {MOST_PEOPLE} are followed, who may be taken for others; leave "
         "spectators out of the pictures"
     )
+
+
+def _rows(xy, trunk, strides) -> list[Rows]:
+    strides = strides or [1] * len(xy)
+    return [describe(view, trunk, stride) for view, stride in zip(xy, strides, strict=True)]
 
 
 def _slots(cameras: Sequence[Camera], rows: Sequence[Rows]) -> int:

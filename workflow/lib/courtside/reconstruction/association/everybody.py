@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration.court.court import Court
+from courtside.geometry import interpolation
 from courtside.reconstruction import resampling
 from courtside.reconstruction.association import associate, identity, lengths, scale
 from courtside.records.cameras.footage import Footage
@@ -41,17 +42,17 @@ def find(
     trunk = [at for at, name in enumerate(names) if name.endswith(("hip", "shoulder"))]
     cameras = [one.camera for one in seen]
     scale.check(cameras, xy, names, calibration, unit)
-    mirror = [chosen.index(joints.mirror()[joint]) for joint in chosen]
     try:
         found = associate.associate(
             cameras,
             xy,
             time_s,
             trunk=trunk,
-            mirror=mirror,
+            mirror=[chosen.index(joints.mirror()[joint]) for joint in chosen],
             court=court,
             bones=lengths.bones(names),
             clothing=[_worn(one, time_s) for one in seen],
+            strides=_strides(views, time_s),
         )
     except InputError as error:
         apart = scale.apart(cameras, calibration, unit)
@@ -73,6 +74,12 @@ def _check_common(views: Sequence[Keypoints2D], time_s: NDArray) -> None:
             f"{', '.join(view.camera for view in views)}: expected cameras that film at one time, "
             "found none by their clocks; correct `clocks` of the take (t_ref = t_own - offset_s)"
         )
+
+
+def _strides(views: Sequence[Keypoints2D], time_s: NDArray) -> list[int]:
+    """Return the common times (T,) per own frame of each camera, 1 at least."""
+    step_s = interpolation.frame_step_s(time_s)
+    return [max(1, round(interpolation.frame_step_s(view.time_s) / step_s)) for view in views]
 
 
 def _worn(one: Footage, time_s: NDArray) -> NDArray:

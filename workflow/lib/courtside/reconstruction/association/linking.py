@@ -21,6 +21,7 @@ PLACE_M = 0.07  # standard deviation of a body about its prediction one instant 
 ACCELERATION_MS2 = 6.0  # of a player, for predictions over gaps
 LARGEST_M = 4.0  # limit of the prediction's standard deviation, for persons lost for long
 WARM_S = 5.0  # at first, backwards: births take instants, and of many people one after another
+AGAIN_S = 0.1  # between the repeated instants of a short take, as usual between instants
 COAST_S = 0.3  # a lost person is expected to keep the velocity for this long
 BIRTH = 20.0  # cost of a new person: more than that of finding a lost one again
 SHORT = 2.0  # and at most this much an instant, or takes of half a second would have no people
@@ -87,9 +88,9 @@ def link(
     birth = min(BIRTH, SHORT * len(time_s))
     first = np.searchsorted(candidates.instant, np.arange(len(time_s) + 1))
     most = max(MOST, MOST_EACH * slots)
-    warm = np.flatnonzero(time_s < time_s[0] + WARM_S)[:0:-1]
+    warm, before_s = _warm_up(time_s, slots)
     order = np.concatenate([warm, np.arange(len(time_s))])
-    running_s = np.concatenate([2 * time_s[0] - time_s[warm], time_s])
+    running_s = np.concatenate([before_s, time_s])
     parents, choices = [], []
     for at, now_s in zip(order, running_s, strict=True):
         here = _best(candidates, np.arange(first[at], first[at + 1]), most)
@@ -103,7 +104,23 @@ def link(
             choice = np.full((len(parent), slots), -1)
         parents.append(parent)
         choices.append(np.where(choice >= 0, here[choice] if len(here) else -1, -1))
+        if len(parents) == len(warm) + 1:  # the first instant: from here on time runs forwards
+            state.velocity = -state.velocity
     return _trace(state, parents, choices, slots)[:, len(warm) :]
+
+
+def _warm_up(time_s: NDArray, slots: int) -> tuple[NDArray, NDArray]:
+    """Return the instants before the first forward one, backwards, and their running times.
+
+    Each instant has one birth at most. If a take has no more instants than slots, the last one is
+    repeated, so that all are born before the first forward instant.
+    """
+    warm = np.flatnonzero(time_s < time_s[0] + WARM_S)[::-1]
+    running_s = 2 * time_s[0] - time_s[warm]
+    again = np.arange(max(slots + 1 - len(warm), 0), 0, -1)
+    warm = np.concatenate([np.full(len(again), warm[0]), warm])
+    running_s = np.concatenate([running_s[0] - AGAIN_S * again, running_s])
+    return warm[:-1], running_s[:-1]
 
 
 def _best(candidates: Candidates, here: NDArray, most: int) -> NDArray:

@@ -36,12 +36,13 @@ class Rows:
     close: NDArray  # (P, T): whether another body is close enough for a tracker to confuse them
 
 
-def describe(xy: NDArray, trunk: Sequence[int]) -> Rows:
+def describe(xy: NDArray, trunk: Sequence[int], stride: int = 1) -> Rows:
     """Describe the rows of one camera, keypoints `xy` (P, T, J, 2) in px, NaN where missing.
 
     The mean of the joints `trunk` (shoulders and hips) is the body's centre. A row is cut after
     each frame without a body, where its centre jumps off its course, and in every frame in which
-    another body is close enough for a tracker to confuse them.
+    another body is close enough for a tracker to confuse them. Of a camera slower than the times of
+    `xy`, `stride` is the number of these for each of its own frames, which the limits count.
     """
     seen = np.isfinite(xy[..., 0])
     present = seen.mean(axis=-1) >= MIN_SHARE
@@ -56,10 +57,10 @@ def describe(xy: NDArray, trunk: Sequence[int]) -> Rows:
     before = np.zeros_like(present)
     before[:, 1:] = present[:, :-1]
     limit = (JUMP * typical + SIGMA_PX)[:, None]
-    broken = present & (~before | (_off_course(centre) > limit))
-    close = present & _close_to_another(centre, typical)
+    broken = present & (~before | (_off_course(centre, stride) > limit))
+    close = present & _close_to_another(centre, typical, AROUND * stride)
     cut = broken | close
-    centre = _smoothed(centre, np.where(present, np.cumsum(broken, axis=1), -1))
+    centre = _smoothed(centre, np.where(present, np.cumsum(broken, axis=1), -1), stride)
     number = np.cumsum(cut, axis=1) + np.cumsum(cut.sum(axis=1))[:, None] - cut.sum(axis=1)[:, None]
     piece = np.where(present, number, -1)
     return Rows(present, centre, height, SIGMA_SHARE * typical + SIGMA_PX, cut, piece, close)
@@ -68,9 +69,9 @@ def describe(xy: NDArray, trunk: Sequence[int]) -> Rows:
 def separate(view: Keypoints2D) -> NDArray:
     """Return the row (N, T) int of each piece that shows one body, -1 in other frames.
 
-    A tracker may exchange people where they are close, and resume a row with another body after a
-    gap. Rows are cut there, and frames in which another body is close belong to no piece. The
-    longest pieces come first, at most `MOST_PIECES`. A row may have none.
+    A tracker may exchange people where they are close, resume a row with another body after a gap,
+    and jump to another body. Rows are cut there, and frames in which another body is close belong
+    to no piece. The longest pieces come first, at most `MOST_PIECES`. A row may have none.
     """
     joints, limbs = list(view.joints), list(skeleton.JOINTS)
     found = describe(
@@ -80,7 +81,7 @@ def separate(view: Keypoints2D) -> NDArray:
     pieces = []
     for row, alone in enumerate(found.present & ~found.close):
         frames = np.flatnonzero(alone)
-        each = np.split(frames, np.flatnonzero(np.diff(frames) > 1) + 1)
+        each = np.split(frames, np.flatnonzero(np.diff(found.piece[row, frames])) + 1)
         pieces += [(row, piece) for piece in each if len(piece)]
     pieces.sort(key=lambda one: -len(one[1]))
     index = np.full((len(pieces[:MOST_PIECES]), len(view.time_s)), -1)
@@ -100,25 +101,26 @@ def _centre(xy: NDArray, seen: NDArray, trunk: Sequence[int]) -> NDArray:
     return np.where(np.isfinite(mean[0]), mean[0], mean[1])
 
 
-def _off_course(centre: NDArray) -> NDArray:
-    """Return the distance (P, T), px, of each centre from the course of the two frames before it.
+def _off_course(centre: NDArray, stride: int) -> NDArray:
+    """Return the distance (P, T), px, of each centre from the course of two frames before it.
 
-    It is 0 where unknown.
+    These are `stride` and twice `stride` earlier. It is 0 where unknown.
     """
     off = np.zeros(centre.shape[:2])
-    bend = centre[:, 2:] - 2 * centre[:, 1:-1] + centre[:, :-2]
-    off[:, 2:] = np.nan_to_num(np.linalg.norm(bend, axis=-1))
-    step = np.linalg.norm(np.diff(centre, axis=1), axis=-1)
+    first, both = stride, 2 * stride
+    bend = centre[:, both:] - 2 * centre[:, first:-first] + centre[:, :-both]
+    off[:, both:] = np.nan_to_num(np.linalg.norm(bend, axis=-1))
+    step = np.linalg.norm(centre[:, first:] - centre[:, :-first], axis=-1)
     # After a gap there is no course yet: then the limit is twice as far, from the last place.
-    alone = np.isfinite(step[:, 1:]) & ~np.isfinite(bend[..., 0])
-    off[:, 2:] = np.where(alone, step[:, 1:] / 2, off[:, 2:])
+    alone = np.isfinite(step[:, first:]) & ~np.isfinite(bend[..., 0])
+    off[:, both:] = np.where(alone, step[:, first:] / 2, off[:, both:])
     return off
 
 
-def _smoothed(centre: NDArray, run: NDArray) -> NDArray:
+def _smoothed(centre: NDArray, run: NDArray, stride: int) -> NDArray:
     """Return the symmetric mean over neighbouring frames of one unbroken run."""
     total, count = centre.copy(), np.ones(run.shape)
-    for shift in range(1, SMOOTHING + 1):
+    for shift in range(stride, SMOOTHING * stride + 1, stride):
         whole = np.zeros(run.shape, dtype=bool)
         middle = slice(shift, -shift)
         whole[:, middle] = (run[:, : -2 * shift] == run[:, 2 * shift :]) & (run[:, middle] >= 0)
@@ -130,8 +132,8 @@ def _smoothed(centre: NDArray, run: NDArray) -> NDArray:
     return total / count[..., None]
 
 
-def _close_to_another(centre: NDArray, typical: NDArray) -> NDArray:
-    """Return (P, T) bool: another row of this camera is close."""
+def _close_to_another(centre: NDArray, typical: NDArray, around: int) -> NDArray:
+    """Return (P, T) bool: another row is close, or was or will be at most `around` frames away."""
     close = np.zeros(centre.shape[:2], dtype=bool)
     for one in range(len(centre)):
         for other in range(one + 1, len(centre)):
@@ -140,7 +142,7 @@ def _close_to_another(centre: NDArray, typical: NDArray) -> NDArray:
             close[one] |= near
             close[other] |= near
     wide = close.copy()
-    for shift in range(1, AROUND + 1):
+    for shift in range(1, around + 1):
         wide[:, shift:] |= close[:, :-shift]
         wide[:, :-shift] |= close[:, shift:]
     return wide
