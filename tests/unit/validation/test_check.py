@@ -13,7 +13,7 @@ import yaml
 
 from courtside.geometry import camera as geometry
 from courtside.records.cameras import clicks
-from courtside.study.configuration import schemas, session_faults
+from courtside.study.configuration import configuration, schemas, session_faults
 from courtside.study.configuration.sessions import Study
 from fixtures.recordings import rooms_filmed, video_files
 from fixtures.recordings.real_data import REAL, needs_real
@@ -316,7 +316,7 @@ def test_too_few_photos_are_told_with_keys_that_help(hall, n_photos, n_cameras):
     found = session_faults.find(Path("config"), Path("hall.yaml"), hall.content, None, hall.root)
     session = hall.session()
     study = Study({"hall": session}, {}, {}, session.parameters)
-    assert [*found, *session_faults.unmeasured(study, session)] == []
+    assert [*found, *configuration.unmeasured(study, session)] == []
     assert hall.session().take_calibrations() == [f"sfm-n{max(2, n_photos)}"] * bool(cameras)
     if n_photos > 1:
         assert hall.said() == ([], [])

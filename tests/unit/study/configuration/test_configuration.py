@@ -620,6 +620,40 @@ def test_people_alone_without_heights_are_told_where_nothing_else_is_wanted(fold
     assert study.sessions["hall"].calibrations() == ["people"]
 
 
+@pytest.mark.parametrize(
+    ("override", "own", "stands", "found"),
+    [
+        (["board"], {}, "{sessions}/hall.yaml: override.calibrations", ["board"]),
+        (["known18", "sfm-n40"], {}, "{sessions}/hall.yaml: override.calibrations", None),
+        (None, {"calibrations": ["wand"]}, "mine.yaml: calibrations", ["wand"]),
+    ],
+)
+def test_calibrations_that_are_all_impossible_are_told(folder, override, own, stands, found):
+    session = SESSION | ({"override": {"calibrations": override}} if override else {})
+    with pytest.raises(InputError) as caught:
+        load_own(folder, session, own)
+    (line,) = caught.value.lines
+    stands = stands.format(sessions=folder / "sessions")
+    assert line.startswith(f"{stands}: expected a calibration that the recordings and the court ")
+    assert f"of session hall allow, such as file, found {found or override}; name another" in line
+
+
+def test_impossible_calibrations_are_no_fault_where_no_take_is_to_be_measured(folder):
+    override = {"calibrations": ["board"], "take_calibrations": []}
+    study = load(folder, SESSION | {"override": override})
+    assert study.sessions["hall"].calibrations() == []
+
+
+def test_a_session_that_waits_for_clicks_has_no_calibration_yet(folder):
+    (folder.parent / "empty.mp4").touch()
+    session = changed("cameras", value={key: {"static": "empty.mp4"} for key in ("left", "right")})
+    session |= {"court": "badminton", "court_points": "clicks.csv"}
+    session = {key: value for key, value in session.items() if key != "calibration"}
+    study = load(folder, session)
+    assert study.sessions["hall"].unclicked == "clicks.csv"
+    assert study.sessions["hall"].calibrations() == []
+
+
 def changed_step(step, **change):
     return {step: yaml_files.read(CONFIG / "config.yaml")[step] | change}
 

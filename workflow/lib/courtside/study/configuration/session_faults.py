@@ -13,7 +13,7 @@ from courtside.study.configuration.session_files import (
     is_there,
     of_configuration,
 )
-from courtside.study.configuration.sessions import FEWEST_ALONE, Session, Study
+from courtside.study.configuration.sessions import FEWEST_ALONE
 from courtside.study.configuration.yaml_files import Content
 from courtside.study.execution.artefacts import Artefact
 from courtside.study.paths import EXTERNAL, VIRTUAL
@@ -88,27 +88,6 @@ def _view_faults(file: Path, content: Content) -> Iterator[str]:
         yield (
             f"{file}: halfbody: expected three different cameras, found {', '.join(players)}; "
             "correct one"
-        )
-
-
-def unmeasured(study: Study, session: Session) -> Iterator[str]:
-    """Yield why nothing of a session's takes is measured, unless its lists are empty for that."""
-    takes = [take for take in session.takes.values() if len(take.cameras) > 1]
-    ways, wanted = session.calibrations(), session.parameters["take_calibrations"]
-    if takes and ways and wanted and not session.take_calibrations():
-        yield (
-            f"{study.where(session, 'take_calibrations')}: expected one of the calibrations {ways} "
-            f"of session {session.name}, by which its takes are measured, found {wanted}; name one "
-            "in both lists, or none in the session's `override`"
-        )
-    alone = "people" in session.parameters["calibrations"] and session.court is None
-    if takes and not ways and alone and not session.has_scale():
-        yield f"{study.where(session, 'calibrations')}: session {session.name}: {UNSCALED}"
-    if takes and ways and wanted and not any(map(session.fusions_of, takes)):
-        yield (
-            f"{study.where(session, 'fusions')}: expected one whose cameras film a take of session "
-            f"{session.name}, found {session.parameters['fusions']}; add all-robust, or its set of "
-            "cameras to the session's `views`"
         )
 
 
