@@ -13,6 +13,7 @@ from courtside.geometry import picture_size
 from courtside.study.configuration import configuration, schemas, yaml_files
 from courtside.study.configuration.sessions import FEWEST_ALONE
 from courtside.study.errors import InputError, StrPath
+from courtside.study.methods import UNSCALED
 
 MARK = "# guess:"
 PLAIN = re.compile(r"[A-Za-z0-9_./+-]+( [A-Za-z0-9_./+-]+)*")
@@ -426,6 +427,8 @@ def to_check(guess: Guess, path: StrPath, court_points: str | None, study: StrPa
 def _of_cameras(guess: Guess, court_points: str | None) -> Iterator[str]:
     """Yield how the cameras will be found, and what that takes."""
     if court_points is None:
+        if guess.walks and any(guess.takes.values()):
+            yield f"Court: {UNSCALED}."
         if not guess.walks:
             alone = "; or use the draft's line for people alone" * bool(_people_alone(guess))
             yield (

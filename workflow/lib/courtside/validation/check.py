@@ -10,7 +10,7 @@ from courtside.records.devices.clocks import are_stated
 from courtside.study.configuration.session_files import is_there
 from courtside.study.configuration.sessions import Session, Study, Take
 from courtside.study.errors import InputError
-from courtside.study.methods import Calibration, fewer_images
+from courtside.study.methods import UNSCALED, Calibration, fewer_images
 from courtside.validation import (
     boards,
     bodies,
@@ -133,7 +133,7 @@ class _Session:
     def remarks(self) -> Iterator[str]:
         """Yield what is worth a look."""
         board = boards.remarks(self._session.board)
-        for line in (*bodies.remarks(self._session.subjects), *board):
+        for line in (*bodies.remarks(self._session.subjects), *board, *self._unscaled()):
             yield f"{self._session.file}: {line}"
         yield from self._points[1]
         for name, take in self._session.takes.items():
@@ -198,6 +198,12 @@ class _Session:
                 f"walks: expected {most} pictures or more, found {n_there}; take more, or ask for "
                 f"fewer by `{fewer_images(n_there)}`"
             )
+
+    def _unscaled(self) -> Iterator[str]:
+        """Yield why the cameras of a walk measure no take, where no court tells metres."""
+        filmed = any(len(take.cameras) > 1 for take in self._session.takes.values())
+        if filmed and self._session.unscaled() and not self._session.take_calibrations():
+            yield f"court: {UNSCALED}"
 
     def _sizes(self) -> dict[str, dict[str, tuple[int, int]]]:
         found: dict[str, dict[str, tuple[int, int]]] = {}
