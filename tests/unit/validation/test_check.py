@@ -15,10 +15,14 @@ from courtside.geometry import camera as geometry
 from courtside.records.cameras import clicks
 from courtside.study.configuration import configuration, schemas, session_faults
 from courtside.study.configuration.sessions import Study
+from courtside.study.errors import InputError
+from courtside.validation import check
+from courtside.validation.remembered import Remembered
 from fixtures.recordings import rooms_filmed, video_files
 from fixtures.recordings.real_data import REAL, needs_real
 
 ROOT = Path(__file__).parents[3]
+PARAMETERS = yaml.safe_load((ROOT / "config" / "config.yaml").read_text(encoding="utf-8"))
 
 
 def test_recordings_as_they_should_be_say_nothing(hall):
@@ -399,3 +403,24 @@ def test_what_the_check_accepts_the_import_makes(hall, monkeypatch):
     for camera in geometry.read_toml(out[0]):
         assert camera.size == rooms_filmed.SIZE
         assert np.allclose(camera.K[[0, 0, 1], [0, 2, 2]], [150, (330 - 20 + 0.5) / 2 - 0.5, 89.75])
+
+
+def test_the_file_of_a_court_is_checked_before_anybody_has_clicked_its_points(hall):
+    court = yaml.safe_load(Path("config/courts/volleyball.yaml").read_text(encoding="utf-8"))
+    (hall.root / "courts").mkdir()
+    hall.content["court"] = "mine"
+
+    def said(**changes):
+        (hall.root / "courts" / "mine.yaml").write_text(yaml.safe_dump(court | changes))
+        study = Study({"hall": hall.session()}, {}, {}, PARAMETERS, folder=hall.root)
+        try:
+            return check.check(study, Remembered(hall.root / "looks.json"))
+        except InputError as error:
+            return error.lines
+
+    assert said() == []
+    (millimetres, _) = said(size_m=[9000, 18000])
+    where = f"{hall.root}/courts/mine.yaml: "
+    assert millimetres.startswith(f"{where}size_m.0: expected at most 1000 (metres above 0), found")
+    (exchanged,) = said(size_m=court["size_m"][::-1])
+    assert exchanged.startswith(f"{where}expected size_m as [short side, long side], found [18")

@@ -6,6 +6,7 @@ Recordings that jobs make or fetch are checked once they are there.
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from courtside.calibration.court import court
 from courtside.records.devices.clocks import are_stated
 from courtside.study.configuration.session_files import is_there
 from courtside.study.configuration.sessions import Session, Study, Take
@@ -32,7 +33,7 @@ def check(study: Study, remembered: Remembered) -> list[str]:
 
     An `InputError` has every fault, one line each, with the session's file.
     """
-    faults: list[str] = []
+    faults = [*_court_faults(study)]
     remarks: list[str] = []
     for session in study.sessions.values():
         if not session.virtual:
@@ -45,6 +46,16 @@ def check(study: Study, remembered: Remembered) -> list[str]:
     if faults:
         raise InputError(*dict.fromkeys(faults))
     return remarks
+
+
+def _court_faults(study: Study) -> Iterator[str]:
+    """Yield what is wrong in the files of the courts, which jobs read before points are clicked."""
+    for path in dict.fromkeys(map(study.court_file, study.sessions.values())):
+        try:
+            if path:
+                court.read(path)
+        except InputError as error:
+            yield from error.lines
 
 
 class _Session:
