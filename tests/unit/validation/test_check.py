@@ -329,6 +329,22 @@ def test_too_few_photos_are_told_with_keys_that_help(hall, n_photos, n_cameras):
         assert [said in line for line in remarks] == [True] * bool(cameras)
 
 
+@pytest.mark.parametrize(("n", "n_there"), [(38, 21), (41, 22)])
+def test_filmed_walks_that_are_too_short_are_told(hall, n, n_there):
+    """Of two walks at 10 Hz a frame is taken every 0.5 s, the first one too."""
+    walks = {}
+    for name, n_frames in (("door", n), ("window", 61)):
+        walks[name] = {"video": str(rooms_filmed.film(hall.root / f"{name}.mp4", 1, n=n_frames))}
+    hall.content |= {"walks": walks, "cameras": {}, "takes": {}}
+    del hall.content["calibration"]
+    hall.content["override"] = {"sweep": {"n_images": [n_there + 1]}}
+    said = hall.fault()
+    assert "hall.yaml: walks: expected " in said
+    assert f"found {n_there} in videos, one every 0.5 s; film longer, or ask for fewer by" in said
+    hall.content |= yaml.safe_load(re.findall("`(.+?)`", said)[0])
+    assert hall.said() == ([], [])
+
+
 @pytest.mark.parametrize("pair", [(), ("left", "back"), ("right", "back")])
 def test_exchanged_cameras_are_told_by_points_at_rest(hall, pair):
     """Names in the calibration exchanged: each camera looks at the same points from elsewhere."""

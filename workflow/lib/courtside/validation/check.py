@@ -93,8 +93,10 @@ class _Session:
             for take in session.takes.values()
             for line in devices.faults(take, remembered, study.skeleton_yaml)
         ]
+        self._filmed: dict[str, Glance] = {}  # other videos: of walks, and by devices
         for path in (*session.walks.values(), *_filmed_by_devices(session)):
-            self._look(path)
+            for look in self._look(path):
+                self._filmed[path] = look
             self._look_at_photos(path)
 
     def _look(
@@ -198,17 +200,28 @@ class _Session:
 
     def _few_pictures(self) -> Iterator[str]:
         """Yield whether walks give fewer pictures than are asked for, where that is known."""
-        session, n_there = self._session, self._session.n_walk_frames()
+        session, photographed = self._session, self._session.n_walk_frames()
+        every_s = session.parameters["extract_frames"]["every_s"]
+        n_there = self._n_frames(every_s) if photographed is None else photographed
         if n_there is None or not session.walks:
             return
         ways = [Calibration.parse(way).variant for way in session.calibrations()]
         wanted = session.variants() if not session.cameras else list(filter(None, ways))
         most = max((variant.n_images for variant in wanted), default=0)
         if most > n_there:
+            found = f"found {n_there} in videos, one every {every_s:g} s; film longer"
+            found = found if photographed is None else f"found {n_there}; take more"
             yield (
-                f"walks: expected {most} pictures or more, found {n_there}; take more, or ask for "
-                f"fewer by `{fewer_images(n_there)}`"
+                f"walks: expected {most} pictures or more, {found}, or ask for fewer by "
+                f"`{fewer_images(n_there)}`"
             )
+
+    def _n_frames(self, every_s: float) -> int | None:
+        """Return how many frames filmed walks give at most; None where that is not known."""
+        walks = self._session.walks.values()
+        lengths = [self._filmed[path].duration_s for path in walks if path in self._filmed]
+        known_s = [length_s for length_s in lengths if length_s is not None]
+        return sum(int(s / every_s) + 1 for s in known_s) if len(known_s) == len(walks) else None
 
     def _unscaled(self) -> Iterator[str]:
         """Yield why the cameras of a walk measure no take, where no court tells metres."""
