@@ -231,6 +231,8 @@ def test_one_file_of_a_board_or_of_the_empty_court_for_two_cameras_is_told(hall)
 def test_one_file_may_be_two_takes_of_its_camera(hall):
     hall.content["takes"]["lob"]["videos"] = dict(hall.content["takes"]["serve"]["videos"])
     hall.content["takes"]["lob"]["trim_s"] = [1.0, 2.0]
+    assert hall.said()[0] == []
+    hall.content["takes"]["serve"]["trim_s"] = [0.0, 1.0]
     assert hall.said() == ([], [])
 
 

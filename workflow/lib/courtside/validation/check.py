@@ -146,7 +146,7 @@ class _Session:
     def remarks(self) -> Iterator[str]:
         """Yield what is worth a look."""
         board = boards.remarks(self._session.board)
-        for line in (*bodies.remarks(self._session.subjects), *board, *self._unscaled()):
+        for line in (*bodies.remarks(self._session.subjects), *board, *self._of_session()):
             yield f"{self._session.file}: {line}"
         yield from self._points[1]
         for name, take in self._session.takes.items():
@@ -223,8 +223,9 @@ class _Session:
         known_s = [length_s for length_s in lengths if length_s is not None]
         return sum(int(s / every_s) + 1 for s in known_s) if len(known_s) == len(walks) else None
 
-    def _unscaled(self) -> Iterator[str]:
-        """Yield why the cameras of a walk measure no take, where no court tells metres."""
+    def _of_session(self) -> Iterator[str]:
+        """Yield why the cameras of a walk measure no take, and takes of the same video."""
+        yield from stated_times.repeated(self._session)
         filmed = any(len(take.cameras) > 1 for take in self._session.takes.values())
         if filmed and self._session.unscaled() and not self._session.take_calibrations():
             yield f"court: {UNSCALED}"
