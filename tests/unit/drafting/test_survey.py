@@ -169,6 +169,14 @@ def test_a_path_other_than_a_folder_is_refused(gym):
         survey.survey(gym / "data" / "My Gym" / "notes.txt", root=gym)
 
 
+def test_a_path_with_braces_is_unusable(tmp_path):
+    """Snakemake takes what is in them for a wildcard."""
+    (tmp_path / "hall {A}").mkdir()
+    (tmp_path / "hall {A}" / "suit.bvh").touch()
+    (found,) = survey.survey(tmp_path / "hall {A}", root=tmp_path)
+    assert (found.kind, found.note) == ("unusable", "braces in its path; rename it")
+
+
 def test_a_name_with_control_characters_is_unusable(tmp_path):
     (tmp_path / "a\nb.bvh").write_text("HIERARCHY\n")
     (found,) = survey.survey(tmp_path, root=tmp_path)

@@ -129,6 +129,10 @@ def test_a_fault_of_the_study_names_key_and_value(folder, changes, parts):
     ("session", "parts"),
     [
         (changed("takes", "t1", "videos", "left", value="gone.mp4"), ["videos.left", "gone.mp4"]),
+        (
+            changed("takes", "t1", "videos", "left", value="{a}/l.mp4"),
+            ["videos.left: expected a path from", "without { and }, found '{a}/l.mp4'"],
+        ),
         (changed("takes", "t1", "trim_s", value=[3, 1]), ["trim_s", "start before the stop"]),
         (changed("takes", "t1", "subjects", value=["p2"]), ["subjects", "'p2'"]),
         (changed("takes", "t1", "videos", value={"left": "l.mp4"}), ["videos", "at least 2"]),

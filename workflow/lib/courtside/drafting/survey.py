@@ -95,6 +95,8 @@ def _described(path: Path, folder: Path, root: StrPath, reader: Reader) -> Recor
     keys: dict[str, Any] = {"path": written(path, root), "parts": parts}
     if any(not letter.isprintable() for letter in keys["path"]):
         return Recording(**keys, kind="unusable", note="a control character in its name; rename it")
+    if {"{", "}"} & set(keys["path"]):
+        return Recording(**keys, kind="unusable", note="braces in its path; rename it")
     try:
         more = reader(path)
     except InputError as error:
