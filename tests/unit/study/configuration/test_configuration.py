@@ -567,6 +567,19 @@ def test_takes_that_nothing_measures_are_told_where_the_value_stands(folder, ses
     assert " of session hall, " in line
 
 
+def test_another_number_of_bridging_images_is_told_with_the_line_to_write(folder):
+    """The fault stands in the default file, which a user leaves as it is."""
+    for override, own, advice in (
+        (["file-people"], [], "override: {{take_calibrations: [file-people]}}` to {hall}, beside"),
+        ([], ["file-people"], "add `take_calibrations: [file-people]` to mine.yaml, beside"),
+    ):
+        session = SESSION | ({"override": {"calibrations": override}} if override else {})
+        with pytest.raises(InputError) as caught:
+            load_own(folder, session, {"calibrations": own} if own else {})
+        advice = advice.format(hall=folder / "sessions" / "hall.yaml")
+        assert f"{advice} `calibrations`" in str(caught.value)
+
+
 def test_a_fault_is_told_of_the_file_in_which_its_value_stands(folder):
     usual = yaml_files.read(folder / "config.yaml")
     usual["models"], usual["sweep"]["mappers"] = ["resnet"], ["glomap"]

@@ -150,8 +150,8 @@ def unmeasured(study: Study, session: Session) -> Iterator[str]:
     if takes and ways and wanted and not set(ways) & set(wanted):
         yield (
             f"{study.where(session, 'take_calibrations')}: expected one of the calibrations {ways} "
-            f"of session {session.name}, by which its takes are measured, found {wanted}; name one "
-            "in both lists, or none in the session's `override`"
+            f"of session {session.name}, by which its takes are measured, found {wanted}; "
+            f"{_measuring(study, session, ways)}"
         )
     alone = "people" in named and session.court is None
     if takes and not ways and alone and not session.has_scale():
@@ -165,6 +165,19 @@ def unmeasured(study: Study, session: Session) -> Iterator[str]:
             f"{session.name}, found {session.parameters['fusions']}; add all-robust, or its set of "
             "cameras to the session's `views`"
         )
+
+
+def _measuring(study: Study, session: Session, ways: list[str]) -> str:
+    """Return what to do where no calibration of a session measures its takes."""
+    default = f"{study.folder / sessions.DEFAULT}: "
+    own = study.where(session, "calibrations")
+    stated = study.where(session, "take_calibrations")
+    if stated.startswith(default) and not own.startswith(default):
+        file, _, key = own.partition(": ")
+        line = f"take_calibrations: [{', '.join(ways)}]"
+        line = f"override: {{{line}}}" if key.startswith("override") else line
+        return f"add `{line}` to {file}, beside `calibrations`"
+    return "name one in both lists, or none in the session's `override`"
 
 
 def _impossible(study: Study, session: Session) -> str:
