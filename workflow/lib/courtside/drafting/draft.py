@@ -34,7 +34,7 @@ def text(guess: Guess, *, title: str, folder: str, court: str | None = None) -> 
     """
     if not guess.walks and not guess.takes and not guess.static:
         raise InputError(
-            f"{folder}: expected videos, photos or files of devices, found "
+            f"{folder}: expected videos, photos, keypoints or files of devices, found "
             f"{_what_is_there(guess)}; put the videos of the fixed cameras and of the walk there"
         )
     measured = guess.calibration is None and bool(guess.cameras) and not unfilmed(guess)

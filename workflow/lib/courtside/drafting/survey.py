@@ -80,6 +80,8 @@ def _readers(
         yield at, _keypoints
     for path in files:
         reader = READERS.get(path.suffix.lower())
+        if path.name.startswith("alphapose") and path.suffix == ".json":
+            reader = _points_of_all_frames
         if reader and not (together and path in photos):
             yield path, reader
 
@@ -140,6 +142,12 @@ def _keypoints(path: Path) -> dict[str, Any] | None:
         return None
     skeletons, n_files = openpose.skeletons(path), len(frame_numbers.numbered(path))
     return {"kind": "keypoints", "n_frames": n_files, "skeleton": skeletons}
+
+
+def _points_of_all_frames(path: Path) -> dict[str, Any] | None:
+    """Describe AlphaPose's file of all frames; None of other JSON files."""
+    note = f"a file of all frames; {frame_numbers.OF_ALPHAPOSE}"
+    return {"kind": "unusable", "note": note} if frame_numbers.is_of_all_frames(path) else None
 
 
 def _table(path: Path) -> dict[str, Any] | None:
