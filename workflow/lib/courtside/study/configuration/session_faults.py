@@ -24,6 +24,8 @@ UNSCALED = (
     "expected `height_m` of every person of one take or more, for the calibration `people`, found "
     "no such take; state the heights, or `known_lengths`: nothing else defines the scale"
 )
+# Of cameras in a calibration file; the first also of those in the file of `lenses`.
+OF_CALIBRATED = ("name_in_calibration", "crop_px", "scale")
 OWN_COURT = "config/README.md, A court of your own"
 # What else to do where nobody has clicked the points of a court yet.
 BY_CLICKS = ", or give every camera `static`, and the study makes a page to click them on"
@@ -47,6 +49,7 @@ def find(
     yield from _virtual_faults(file, content) if virtual else _recorded_faults(file, content, root)
     yield from _static_point_faults(file, content)
     yield from _replacement_faults(file, content)
+    yield from _useless_keys(file, content)
     yield from _people_faults(file, content)
     yield from consent.faults(file, content)
     yield from sighting_faults.find(file, content)
@@ -158,6 +161,19 @@ def _replacement_faults(file: Path, content: Content) -> Iterator[str]:
             f"{where}: expected `{missing}` beside `{there}`, found none; numbers of a file are "
             "replaced for a stated reason only"
         )
+
+
+def _useless_keys(file: Path, content: Content) -> Iterator[str]:
+    """Yield the keys of cameras that say how they are in a file which the session does not have."""
+    lenses = any("lenses" in content.get(target, {}) for target in ("board", "wand"))
+    used = OF_CALIBRATED if "calibration" in content else OF_CALIBRATED[:1] if lenses else ()
+    for name, camera in content["cameras"].items():
+        for key in (key for key in OF_CALIBRATED if key in camera and key not in used):
+            more = " (or `lenses` of a board or wand)" if key == OF_CALIBRATED[0] else ""
+            yield (
+                f"{file}: cameras.{name}.{key}: expected it with a `calibration` file{more} only, "
+                "found it without; remove it"
+            )
 
 
 def _take_paths(where: str, take: Content) -> Iterator[tuple[str, str]]:
