@@ -136,7 +136,16 @@ def test_a_fault_of_the_study_names_key_and_value(folder, changes, parts):
         (changed("takes", "t1", "trim_s", value=[3, 1]), ["trim_s", "start before the stop"]),
         (changed("takes", "t1", "subjects", value=["p2"]), ["subjects", "'p2'"]),
         (changed("takes", "t1", "videos", value={"left": "l.mp4"}), ["videos", "at least 2"]),
-        (changed("court", value="squash"), ["court", "'squash'"]),
+        (changed("court", value="squash"), ["court", "'squash'; correct the name, or describe"]),
+        (changed("court", value="badmington"), ["found 'badmington'; did you mean 'badminton'?"]),
+        (
+            changed("takes", "t1", "videos", "lefft", value="l.mp4"),
+            ["videos: expected one of ['left', 'right'], found 'lefft'; did you mean 'left'?"],
+        ),
+        (
+            changed("subjects", "p1", value={"consent": ["analyse"]}),
+            ["found 'analyse'; did you mean 'analysis'?"],
+        ),
         (changed("subjects", "p1", value={"height_m": 174}), ["height_m", "at most 2.5", "174"]),
         (changed("cameras", "left", value={"crop": [0, 0, 1, 1]}), ["did you mean 'crop_px'?"]),
         (changed("takes", "Take 1", value={}), ["takes", "lower-case letters"]),
@@ -679,7 +688,7 @@ def test_networks_that_are_compared_are_known(folder):
     networks = ["blazepose-full", "blazepose-huge"]
     (line,) = faults(folder, **changed_step("compare_networks", networks=networks))
     assert line.startswith("config/config.yaml: compare_networks.networks: expected one of [")
-    assert line.endswith("found 'blazepose-huge'")
+    assert line.endswith("found 'blazepose-huge'; did you mean 'blazepose-heavy'?")
 
 
 @pytest.mark.parametrize("sessions", [[], ["hall"], ["other"]])

@@ -105,7 +105,8 @@ def test_a_length_of_a_target_states_the_unit(target, key, value, limit):
 def test_names_and_kinds_of_values_are_described_in_words():
     session = {"court": "Badminton", "cameras": {}, "takes": {"Take 1": None, "t": {"trim_s": 1}}}
     found = schemas.faults(session, "session", Path("s.yaml"))
-    assert "s.yaml: court: expected 'none' or a file of config/courts, found 'Badminton'" in found
+    court = "'none' or the name of a file of config/courts, such as badminton"
+    assert f"s.yaml: court: expected {court}, found 'Badminton'" in found
     name = "at most 64 lower-case letters, digits, _ and -; no device of Windows such as con, and "
     name += "none of na, nan, none and null"
     assert f"s.yaml: takes: expected {name}, found 'Take 1'" in found

@@ -713,7 +713,7 @@ def test_a_fault_of_a_condition_is_one_line(content, parts):
 def test_unknown_variations_are_named():
     config = {"variations": ["sped"], "conditions": {"speed": {}}}
     assert session_faults.conditions("config.yaml", config, FOUND) == [
-        "config.yaml: variations: expected one of ['speed'], found 'sped'"
+        "config.yaml: variations: expected one of ['speed'], found 'sped'; did you mean 'speed'?"
     ]
 
 

@@ -160,6 +160,10 @@ def _lines(error: Any) -> Iterator[str]:  # of jsonschema, whose types leave all
             found = f"{shortened(twice)} again"
         if error.validator == "type" and _is_unquoted(error.instance, error.validator_value):
             found += "; put it in quotes"
+        if error.validator == "enum" and isinstance(error.instance, str):
+            known = [one for one in error.validator_value if isinstance(one, str)]
+            advice = nearest(error.instance, known, "")
+            found += f"; {advice}" * bool(advice)
         yield f"{where}: expected {wanted}, found {found}"
 
 

@@ -15,6 +15,7 @@ from courtside.study.configuration.session_files import (
 )
 from courtside.study.configuration.sessions import FEWEST_ALONE
 from courtside.study.configuration.yaml_files import Content
+from courtside.study.errors import nearest
 from courtside.study.execution.artefacts import Artefact
 from courtside.study.paths import EXTERNAL, VIRTUAL
 
@@ -43,8 +44,9 @@ def find(
     cameras, subjects = content["cameras"], content.get("subjects", {})
     court, virtual = content["court"], "virtual" in content
     if court != "none" and not (folder / "courts" / f"{court}.yaml").is_file():
-        known_courts = sorted(path.stem for path in (folder / "courts").glob("*.yaml"))
-        yield f"{file}: court: expected 'none' or one of {known_courts}, found {court!r}"
+        courts = sorted(path.stem for path in (folder / "courts").glob("*.yaml"))
+        advice = nearest(court, courts, f"correct the name, or describe it ({OWN_COURT})")
+        yield f"{file}: court: expected 'none' or one of {courts}, found {court!r}; {advice}"
     yield from _name_faults(file, content)
     yield from _virtual_faults(file, content) if virtual else _recorded_faults(file, content, root)
     yield from _static_point_faults(file, content)
