@@ -200,6 +200,7 @@ def _wanted(error: Any) -> str:
         "minItems": "at least {} entries",
         "maxItems": "at most {} entries",
         "minProperties": "at least {} entries",
+        "maxProperties": "at most {} entries",
         "multipleOf": "a multiple of {}",
         "uniqueItems": "entries that differ",
     }
