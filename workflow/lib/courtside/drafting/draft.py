@@ -69,7 +69,8 @@ def write(path: Path, content: str) -> None:
             found = f"capital letters; give --name {small}"
         raise InputError(
             f"{path.stem}: expected a session's name of at most 64 of a-z, 0-9, _ and -, begun "
-            "with a letter or digit, no device of Windows such as con, and none of na, nan, none, null, "
+            "with a letter or digit, no device of Windows such as con, and none of na, nan, none, "
+            "null, "
             f"{', '.join(configuration.RESERVED)}, found {found}"
         )
     try:
