@@ -133,6 +133,8 @@ def test_a_fault_of_the_study_names_key_and_value(folder, changes, parts):
             changed("takes", "t1", "videos", "left", value="{a}/l.mp4"),
             ["videos.left: expected a path from", "without { and }, found '{a}/l.mp4'"],
         ),
+        (changed("subjects", "p1", value={"weight": 66}), ["'weight'; did you mean 'mass_kg'?"]),
+        (changed("takes", "t1", "fps", value=60), ["found 'fps'; did you mean 'rate_hz'?"]),
         (changed("takes", "t1", "trim_s", value=[3, 1]), ["trim_s", "start before the stop"]),
         (changed("takes", "t1", "subjects", value=["p2"]), ["subjects", "'p2'"]),
         (changed("takes", "t1", "videos", value={"left": "l.mp4"}), ["videos", "at least 2"]),

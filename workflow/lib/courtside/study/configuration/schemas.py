@@ -42,6 +42,12 @@ OF_STUDY = (
 # Schemas that use the `$defs` of another one, too.
 SHARED = dict.fromkeys(("external", "models", "plan", "session"), "config")
 SHARED |= {"detectors": "models"}
+MEANT = {  # keys by other words for them
+    **dict.fromkeys(("weight", "weight_kg", "mass"), "mass_kg"),
+    **dict.fromkeys(("fps", "rate", "frame_rate"), "rate_hz"),
+    "gender": "sex",
+    "calib": "calibration",
+}
 REPLACED = {  # keys of former versions: what to use now
     "measure_kinematics": "remove it: kinematics are measured on the exported skeletons, whose "
     "filter and cut-offs are those of filter_motion"
@@ -185,7 +191,8 @@ def _key_lines(error: Any, where: str) -> Iterator[str]:
             if key in REPLACED:
                 yield f"{where}: expected no key {key!r} any more, found it; {REPLACED[key]}"
                 continue
-            advice = nearest(key, known, "remove it")
+            meant = MEANT.get(key, key)
+            advice = nearest(meant if meant in known else key, known, "remove it")
             yield f"{where}: expected keys of {known}, found {key!r}; {advice}"
 
 
