@@ -84,7 +84,7 @@ def read(path: StrPath, unit: str | None = None) -> list[Camera]:
         scale = np.array([1, 1, 1, metres])
         found = [replace(c, cam_from_world=c.cam_from_world * scale) for c in found]
     for camera in camera_fields.check_distinct(path, found):
-        far_m = np.linalg.norm(camera.centre_in_world)
+        far_m = float(np.linalg.norm(camera.centre_in_world))
         if far_m > FARTHEST_M:
             raise InputError(
                 f"{path}: camera {camera.name}: expected it within {FARTHEST_M:g} m of the world's "
