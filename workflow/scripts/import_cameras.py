@@ -24,7 +24,7 @@ def main(
 ):
     in_file = file_formats.read(calibration_path, unit)
     theirs = file_formats.rename(calibration_path, in_file, names)
-    file_formats.check_apart(calibration_path, theirs)
+    file_formats.check_apart(calibration_path, theirs, unit)
     points_px = override.get("principal_point_px", {})
     found = file_formats.with_principal_points(theirs, points_px)
     stated.check(calibration_path, found)

@@ -76,3 +76,12 @@ def test_cameras_that_count_otherwise_are_refused(tmp_path):
     message = r"found 0 to 3 \(a\), 1700000000 to 1700000001 \(b\); number them alike"
     with pytest.raises(InputError, match=message):
         frame_numbers.common(given)
+
+
+def test_a_file_of_all_frames_is_told_with_what_to_do(tmp_path):
+    (tmp_path / "alphapose-results.json").write_text('[{"image_id": "0.jpg"}]')
+    with pytest.raises(InputError, match="found a file of all frames; run AlphaPose with"):
+        frame_numbers.numbered(tmp_path)
+    (tmp_path / "alphapose-results.json").write_text("{}")
+    with pytest.raises(InputError, match="found none; rename it"):
+        frame_numbers.numbered(tmp_path)

@@ -72,7 +72,24 @@ def test_cameras_that_the_session_does_not_have_are_told():
     assert "Odd: the session has no camera left: correct the name, or add it to `cameras`." in lines
 
 
-@pytest.mark.parametrize("more", [{}, {"virtual": {}}])
-def test_a_file_that_has_all_takes_is_left_with_advice(more):
+def test_a_file_that_has_all_takes_is_left_with_advice():
     with pytest.raises(InputError, match="expected no file of that name, or takes in data/north"):
-        said(yaml.safe_load(SESSION) | more, *["b"] * bool(more))
+        said(yaml.safe_load(SESSION))
+
+
+@pytest.mark.parametrize(
+    ("content", "found"),
+    [
+        (SESSION.replace("data/north/", "data/south/"), "one of recordings in data/south"),
+        (SESSION.partition("takes:")[0] + "walks: {w: {video: d/w.mp4}}", "one of recordings in d"),
+        (SESSION.partition("takes:")[0] + "virtual: {}", "that of a virtual session"),
+    ],
+)
+def test_takes_are_not_poured_into_a_session_of_another_folder(content, found):
+    """Two folders may give one name; takes of another day have other cameras."""
+    with pytest.raises(InputError) as caught:
+        said(yaml.safe_load(content), "b")
+    assert str(caught.value) == (
+        "north.yaml: expected no file of that name, or one of recordings in data/north, found "
+        f"{found} and left it; give this session another name by --name"
+    )

@@ -325,6 +325,8 @@ def test_no_page_for_clicks_is_promised_without_a_court():
     assert not any(part in said for part in ("Court points", "No walk", "people alone"))
     walked = session_draft.to_check(draft(*THREE, WALK, court="none")[0], "n.yaml", None, "s.yaml")
     assert not any(line.startswith(("Cameras", "Court points")) for line in walked)
+    (court,) = (line for line in walked if line.startswith("Court: "))
+    assert "gives no metres without a court, so takes are not measured; name a court" in court
     for others in ((CALIBRATION,), (WALK,)):
         assert "calibrations: [people]" not in draft(*THREE, *others, court="none")[1]
     assert "calibrations: [people]" not in draft(*THREE)[1]

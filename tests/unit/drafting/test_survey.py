@@ -169,6 +169,23 @@ def test_a_path_other_than_a_folder_is_refused(gym):
         survey.survey(gym / "data" / "My Gym" / "notes.txt", root=gym)
 
 
+def test_keypoints_of_all_frames_in_one_file_are_told_with_what_to_do(tmp_path):
+    (tmp_path / "left_json").mkdir()
+    (tmp_path / "left_json" / "alphapose-results.json").write_text('[{"image_id": "0.jpg"}]')
+    (tmp_path / "notes.json").write_text("[]")
+    (found,) = survey.survey(tmp_path, root=tmp_path)
+    assert (found.path, found.kind) == ("left_json/alphapose-results.json", "unusable")
+    assert "run AlphaPose with `--format open`, and name its folder `sep-json`" in found.note
+
+
+def test_a_path_with_braces_is_unusable(tmp_path):
+    """Snakemake takes what is in them for a wildcard."""
+    (tmp_path / "hall {A}").mkdir()
+    (tmp_path / "hall {A}" / "suit.bvh").touch()
+    (found,) = survey.survey(tmp_path / "hall {A}", root=tmp_path)
+    assert (found.kind, found.note) == ("unusable", "braces in its path; rename it")
+
+
 def test_a_name_with_control_characters_is_unusable(tmp_path):
     (tmp_path / "a\nb.bvh").write_text("HIERARCHY\n")
     (found,) = survey.survey(tmp_path, root=tmp_path)

@@ -8,6 +8,7 @@ import pytest
 from courtside.calibration.records import covariance
 from courtside.geometry import camera as geometry
 from courtside.validation import calibrated
+from fixtures.recordings import rooms_filmed
 
 SIZES = {name: {f"{name}.mp4": (320, 180)} for name in ("left", "right", "back")}
 
@@ -63,3 +64,20 @@ def test_one_pose_of_two_cameras_is_told_with_their_names(hall):
     geometry.write_toml(hall.root / "cameras.toml", cameras, source="test")
     (line,) = faults(hall)
     assert line.startswith(f"{hall.root / 'cameras.toml'}: cameras left and right: expected a pose")
+
+
+def test_a_unit_that_the_session_states_wrongly_is_not_advised_again(hall):
+    path = hall.root / "cameras.toml"
+    lines = path.read_text().splitlines(keepends=True)
+    path.write_text("".join(line for line in lines if not line.startswith("unit")))
+    assert faults(hall) == []
+    hall.content["calibration"]["unit"] = "mm"
+    (line,) = faults(hall)
+    assert "cameras 0.1 to 150 m apart, found 0.002 m between the farthest with `unit: mm`" in line
+    assert line.endswith("of the session file; correct it, or remove it: in m it would be 2 m")
+    hall.calibrate(rooms_filmed.SIZE, apart=400)
+    lines = path.read_text().splitlines(keepends=True)
+    path.write_text("".join(line for line in lines if not line.startswith("unit")))
+    hall.content["calibration"]["unit"] = "m"
+    (line,) = faults(hall)
+    assert "300 m of the world's origin, found 400 m with `unit: m` of the session file" in line

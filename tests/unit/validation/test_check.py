@@ -13,12 +13,16 @@ import yaml
 
 from courtside.geometry import camera as geometry
 from courtside.records.cameras import clicks
-from courtside.study.configuration import schemas, session_faults
+from courtside.study.configuration import configuration, schemas, session_faults
 from courtside.study.configuration.sessions import Study
+from courtside.study.errors import InputError
+from courtside.validation import check
+from courtside.validation.remembered import Remembered
 from fixtures.recordings import rooms_filmed, video_files
 from fixtures.recordings.real_data import REAL, needs_real
 
 ROOT = Path(__file__).parents[3]
+PARAMETERS = yaml.safe_load((ROOT / "config" / "config.yaml").read_text(encoding="utf-8"))
 
 
 def test_recordings_as_they_should_be_say_nothing(hall):
@@ -227,6 +231,8 @@ def test_one_file_of_a_board_or_of_the_empty_court_for_two_cameras_is_told(hall)
 def test_one_file_may_be_two_takes_of_its_camera(hall):
     hall.content["takes"]["lob"]["videos"] = dict(hall.content["takes"]["serve"]["videos"])
     hall.content["takes"]["lob"]["trim_s"] = [1.0, 2.0]
+    assert hall.said()[0] == []
+    hall.content["takes"]["serve"]["trim_s"] = [0.0, 1.0]
     assert hall.said() == ([], [])
 
 
@@ -316,10 +322,29 @@ def test_too_few_photos_are_told_with_keys_that_help(hall, n_photos, n_cameras):
     found = session_faults.find(Path("config"), Path("hall.yaml"), hall.content, None, hall.root)
     session = hall.session()
     study = Study({"hall": session}, {}, {}, session.parameters)
-    assert [*found, *session_faults.unmeasured(study, session)] == []
-    assert hall.session().take_calibrations() == [f"sfm-n{max(2, n_photos)}"] * bool(cameras)
+    assert [*found, *configuration.unmeasured(study, session)] == []
+    assert hall.session().calibrations() == [f"sfm-n{max(2, n_photos)}"] * bool(cameras)
     if n_photos > 1:
-        assert hall.said() == ([], [])
+        faults, remarks = hall.said()
+        assert faults == []
+        said = "hall.yaml: court: the walk gives no metres without a court, so takes are not"
+        assert [said in line for line in remarks] == [True] * bool(cameras)
+
+
+@pytest.mark.parametrize(("n", "n_there"), [(38, 21), (41, 22)])
+def test_filmed_walks_that_are_too_short_are_told(hall, n, n_there):
+    """Of two walks at 10 Hz a frame is taken every 0.5 s, the first one too."""
+    walks = {}
+    for name, n_frames in (("door", n), ("window", 61)):
+        walks[name] = {"video": str(rooms_filmed.film(hall.root / f"{name}.mp4", 1, n=n_frames))}
+    hall.content |= {"walks": walks, "cameras": {}, "takes": {}}
+    del hall.content["calibration"]
+    hall.content["override"] = {"sweep": {"n_images": [n_there + 1]}}
+    said = hall.fault()
+    assert "hall.yaml: walks: expected " in said
+    assert f"found {n_there} in videos, one every 0.5 s; film longer, or ask for fewer by" in said
+    hall.content |= yaml.safe_load(re.findall("`(.+?)`", said)[0])
+    assert hall.said() == ([], [])
 
 
 @pytest.mark.parametrize("pair", [(), ("left", "back"), ("right", "back")])
@@ -396,3 +421,24 @@ def test_what_the_check_accepts_the_import_makes(hall, monkeypatch):
     for camera in geometry.read_toml(out[0]):
         assert camera.size == rooms_filmed.SIZE
         assert np.allclose(camera.K[[0, 0, 1], [0, 2, 2]], [150, (330 - 20 + 0.5) / 2 - 0.5, 89.75])
+
+
+def test_the_file_of_a_court_is_checked_before_anybody_has_clicked_its_points(hall):
+    court = yaml.safe_load(Path("config/courts/volleyball.yaml").read_text(encoding="utf-8"))
+    (hall.root / "courts").mkdir()
+    hall.content["court"] = "mine"
+
+    def said(**changes):
+        (hall.root / "courts" / "mine.yaml").write_text(yaml.safe_dump(court | changes))
+        study = Study({"hall": hall.session()}, {}, {}, PARAMETERS, folder=hall.root)
+        try:
+            return check.check(study, Remembered(hall.root / "looks.json"))
+        except InputError as error:
+            return error.lines
+
+    assert said() == []
+    (millimetres, _) = said(size_m=[9000, 18000])
+    where = f"{hall.root}/courts/mine.yaml: "
+    assert millimetres.startswith(f"{where}size_m.0: expected at most 1000 (metres above 0), found")
+    (exchanged,) = said(size_m=court["size_m"][::-1])
+    assert exchanged.startswith(f"{where}expected size_m as [short side, long side], found [18")

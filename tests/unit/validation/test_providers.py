@@ -51,4 +51,6 @@ def test_what_the_whole_study_lacks_is_one_line():
     with pytest.raises(InputError) as caught:
         providers.check(configuration.load(content, "config/config.yaml", CONFIG))
     (line,) = caught.value.lines
-    assert line.startswith("detect_pose.providers: expected the execution provider cuda")
+    assert line.startswith(
+        "config/config.yaml: detect_pose.providers: expected the execution provider cuda"
+    )

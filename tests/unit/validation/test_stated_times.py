@@ -74,3 +74,18 @@ def test_an_offset_in_milliseconds_is_told(hall):
     assert said.endswith("found offset_s 150; state the offset in seconds")
     take["clocks"]["right"] = {"offset_s": -0.5}
     assert hall.said() == ([], [])
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "is_told"),
+    [(None, None, True), ([0, 1], [0.5, 2], True), ([1, 2], None, True), ([0, 1], [1, 2], False)],
+)
+def test_one_video_in_two_takes_is_told_unless_each_has_a_part_of_it(hall, one, other, is_told):
+    takes = hall.content["takes"]
+    takes["lob"]["videos"] = dict(takes["serve"]["videos"])
+    for name, trim_s in (("serve", one), ("lob", other)):
+        takes[name] |= {"trim_s": trim_s} if trim_s else {}
+    faults, remarks = hall.said()
+    assert faults == []
+    said = "takes.serve and takes.lob: the same video of camera left, right, back, and their times"
+    assert [said in line for line in remarks] == [True] * is_told

@@ -129,10 +129,25 @@ def test_a_fault_of_the_study_names_key_and_value(folder, changes, parts):
     ("session", "parts"),
     [
         (changed("takes", "t1", "videos", "left", value="gone.mp4"), ["videos.left", "gone.mp4"]),
+        (
+            changed("takes", "t1", "videos", "left", value="{a}/l.mp4"),
+            ["videos.left: expected a path from", "without { and }, found '{a}/l.mp4'"],
+        ),
+        (changed("subjects", "p1", value={"weight": 66}), ["'weight'; did you mean 'mass_kg'?"]),
+        (changed("takes", "t1", "fps", value=60), ["found 'fps'; did you mean 'rate_hz'?"]),
         (changed("takes", "t1", "trim_s", value=[3, 1]), ["trim_s", "start before the stop"]),
         (changed("takes", "t1", "subjects", value=["p2"]), ["subjects", "'p2'"]),
         (changed("takes", "t1", "videos", value={"left": "l.mp4"}), ["videos", "at least 2"]),
-        (changed("court", value="squash"), ["court", "'squash'"]),
+        (changed("court", value="squash"), ["court", "'squash'; correct the name, or describe"]),
+        (changed("court", value="badmington"), ["found 'badmington'; did you mean 'badminton'?"]),
+        (
+            changed("takes", "t1", "videos", "lefft", value="l.mp4"),
+            ["videos: expected one of ['left', 'right'], found 'lefft'; did you mean 'left'?"],
+        ),
+        (
+            changed("subjects", "p1", value={"consent": ["analyse"]}),
+            ["found 'analyse'; did you mean 'analysis'?"],
+        ),
         (changed("subjects", "p1", value={"height_m": 174}), ["height_m", "at most 2.5", "174"]),
         (changed("cameras", "left", value={"crop": [0, 0, 1, 1]}), ["did you mean 'crop_px'?"]),
         (changed("takes", "Take 1", value={}), ["takes", "lower-case letters"]),
@@ -563,6 +578,19 @@ def test_takes_that_nothing_measures_are_told_where_the_value_stands(folder, ses
     assert " of session hall, " in line
 
 
+def test_another_number_of_bridging_images_is_told_with_the_line_to_write(folder):
+    """The fault stands in the default file, which a user leaves as it is."""
+    for override, own, advice in (
+        (["file-people"], [], "override: {{take_calibrations: [file-people]}}` to {hall}, beside"),
+        ([], ["file-people"], "add `take_calibrations: [file-people]` to mine.yaml, beside"),
+    ):
+        session = SESSION | ({"override": {"calibrations": override}} if override else {})
+        with pytest.raises(InputError) as caught:
+            load_own(folder, session, {"calibrations": own} if own else {})
+        advice = advice.format(hall=folder / "sessions" / "hall.yaml")
+        assert f"{advice} `calibrations`" in str(caught.value)
+
+
 def test_a_fault_is_told_of_the_file_in_which_its_value_stands(folder):
     usual = yaml_files.read(folder / "config.yaml")
     usual["models"], usual["sweep"]["mappers"] = ["resnet"], ["glomap"]
@@ -620,6 +648,40 @@ def test_people_alone_without_heights_are_told_where_nothing_else_is_wanted(fold
     assert study.sessions["hall"].calibrations() == ["people"]
 
 
+@pytest.mark.parametrize(
+    ("override", "own", "stands", "found"),
+    [
+        (["board"], {}, "{sessions}/hall.yaml: override.calibrations", ["board"]),
+        (["known18", "sfm-n40"], {}, "{sessions}/hall.yaml: override.calibrations", None),
+        (None, {"calibrations": ["wand"]}, "mine.yaml: calibrations", ["wand"]),
+    ],
+)
+def test_calibrations_that_are_all_impossible_are_told(folder, override, own, stands, found):
+    session = SESSION | ({"override": {"calibrations": override}} if override else {})
+    with pytest.raises(InputError) as caught:
+        load_own(folder, session, own)
+    (line,) = caught.value.lines
+    stands = stands.format(sessions=folder / "sessions")
+    assert line.startswith(f"{stands}: expected a calibration that the recordings and the court ")
+    assert f"of session hall allow, such as file, found {found or override}; name another" in line
+
+
+def test_impossible_calibrations_are_no_fault_where_no_take_is_to_be_measured(folder):
+    override = {"calibrations": ["board"], "take_calibrations": []}
+    study = load(folder, SESSION | {"override": override})
+    assert study.sessions["hall"].calibrations() == []
+
+
+def test_a_session_that_waits_for_clicks_has_no_calibration_yet(folder):
+    (folder.parent / "empty.mp4").touch()
+    session = changed("cameras", value={key: {"static": "empty.mp4"} for key in ("left", "right")})
+    session |= {"court": "badminton", "court_points": "clicks.csv"}
+    session = {key: value for key, value in session.items() if key != "calibration"}
+    study = load(folder, session)
+    assert study.sessions["hall"].unclicked == "clicks.csv"
+    assert study.sessions["hall"].calibrations() == []
+
+
 def changed_step(step, **change):
     return {step: yaml_files.read(CONFIG / "config.yaml")[step] | change}
 
@@ -628,7 +690,7 @@ def test_networks_that_are_compared_are_known(folder):
     networks = ["blazepose-full", "blazepose-huge"]
     (line,) = faults(folder, **changed_step("compare_networks", networks=networks))
     assert line.startswith("config/config.yaml: compare_networks.networks: expected one of [")
-    assert line.endswith("found 'blazepose-huge'")
+    assert line.endswith("found 'blazepose-huge'; did you mean 'blazepose-heavy'?")
 
 
 @pytest.mark.parametrize("sessions", [[], ["hall"], ["other"]])

@@ -105,9 +105,12 @@ def test_a_length_of_a_target_states_the_unit(target, key, value, limit):
 def test_names_and_kinds_of_values_are_described_in_words():
     session = {"court": "Badminton", "cameras": {}, "takes": {"Take 1": None, "t": {"trim_s": 1}}}
     found = schemas.faults(session, "session", Path("s.yaml"))
-    assert "s.yaml: court: expected 'none' or a file of config/courts, found 'Badminton'" in found
-    name = "at most 64 lower-case letters, digits, _ and -; no device of Windows such as con, and "
-    name += "none of na, nan, none and null"
+    court = "'none' or the name of a file of config/courts, such as badminton"
+    assert f"s.yaml: court: expected {court}, found 'Badminton'" in found
+    name = (
+        "at most 64 lower-case letters, digits, _ and -, begun with a letter or digit; no device "
+    )
+    name += "of Windows such as con, and none of na, nan, none and null"
     assert f"s.yaml: takes: expected {name}, found 'Take 1'" in found
     assert any("takes.t.trim_s: expected a list ([start, stop] in" in line for line in found)
 
@@ -170,3 +173,26 @@ def test_a_calibration_that_takes_are_measured_with_has_the_name_of_one():
     (line,) = schemas.faults(session, "session", Path("s.yaml"))
     assert line.startswith("s.yaml: override.take_calibrations.1: expected file, known, board")
     assert line.endswith("found 'sfm-40'")
+
+
+@pytest.mark.parametrize(
+    ("key", "said", "line"),
+    [
+        ("calibration", "c.toml", "calibration: expected keys and values (`{file: PATH}`), found"),
+        (
+            "walks",
+            "w.mp4",
+            "walks: expected keys and values (such as `walk1: {video: PATH}`), found",
+        ),
+        ("subjects", ["p1"], "subjects: expected keys and values (such as `p1: {height_m: 1.74}`)"),
+        (
+            "walks",
+            {"w": {"video": "a", "images": "b"}},
+            "walks.w: expected at most 1 entries (either `video` or `images`), found",
+        ),
+    ],
+)
+def test_shapes_that_a_newcomer_writes_are_told_with_the_right_one(key, said, line):
+    session = {"description": "x", "court": "none", "cameras": {}, key: said}
+    (found,) = schemas.faults(session, "session", "s.yaml")
+    assert found.startswith(f"s.yaml: {line}")

@@ -715,7 +715,7 @@ def test_a_fault_of_a_condition_is_one_line(content, parts):
 def test_unknown_variations_are_named():
     config = {"variations": ["sped"], "conditions": {"speed": {}}}
     assert session_faults.conditions("config.yaml", config, FOUND) == [
-        "config.yaml: variations: expected one of ['speed'], found 'sped'"
+        "config.yaml: variations: expected one of ['speed'], found 'sped'; did you mean 'speed'?"
     ]
 
 
@@ -760,3 +760,25 @@ def test_networks_are_compared_with_a_truth_or_with_keypoints_that_are_there(ste
     lines = list(take_faults.evaluated("config.yaml", step, ["full"], found))
     assert len(lines) == (part is not None)
     assert all(re.search(part, line) and line.startswith("config.yaml: ") for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("session", "useless"),
+    [
+        (RECORDED, ["name_in_calibration", "crop_px", "scale"]),
+        (BOARDED, ["crop_px", "scale"]),
+        (
+            BOARDED | {"board": without(BOARD, "lenses")},
+            ["name_in_calibration", "crop_px", "scale"],
+        ),
+        (without(RECORDED, "walks") | {"calibration": {"file": "c.toml"}}, []),
+    ],
+)
+def test_keys_of_cameras_that_a_session_does_not_use_are_told(root, session, useless):
+    keys = {"name_in_calibration": "A", "crop_px": [0, 0, 9, 9], "scale": 0.5}
+    cameras = {name: said | keys for name, said in session["cameras"].items()}
+    found = find(root, session | {"cameras": cameras})
+    assert [line.split(": ")[1] for line in found] == [
+        f"cameras.{name}.{key}" for name in cameras for key in useless
+    ]
+    assert all("expected it with a `calibration` file" in line for line in found)

@@ -219,6 +219,19 @@ def test_takes_are_measured_with_those_calibrations_that_the_study_names():
     assert found.take_calibrations() == ["known18", "known8"]
 
 
+def test_a_walk_measures_takes_only_where_a_court_gives_metres():
+    ways = ["sfm-n40", "sfm-n40-people", "file"]
+    parameters = {"calibrations": ways, "take_calibrations": ways}
+    walked = session(walks={"w": "w.mp4"}, takes=FILMED, parameters=parameters)
+    assert walked.calibrations() == ["sfm-n40"]
+    assert (walked.take_calibrations(), walked.unscaled()) == ([], ["sfm-n40"])
+    beside = replace(walked, calibration_file="c.toml")
+    assert (beside.calibrations(), beside.take_calibrations()) == (["sfm-n40", "file"], ["file"])
+    on_court = replace(walked, court="badminton", court_points="p.csv")
+    assert on_court.take_calibrations() == on_court.calibrations() == ["sfm-n40", "sfm-n40-people"]
+    assert on_court.unscaled() == []
+
+
 def test_fixed_cameras_measure_a_take_that_enough_of_them_see_where_they_are_calibrated():
     parameters = {"calibrations": WAYS, "take_calibrations": ["file"], "fusions": ["all-robust"]}
     found = session(calibration_file="c.toml", parameters=parameters)

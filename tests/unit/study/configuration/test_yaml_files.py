@@ -122,3 +122,12 @@ def test_a_value_stands_in_the_default_file_if_that_has_the_same_one(tmp_path, k
     found = yaml_files.file_of(key, merged, "mine.yaml", default)
     assert found == (str(default) if file == "config.yaml" else file)
     assert yaml_files.file_of(key, merged, "mine.yaml", tmp_path / "absent.yaml") == "mine.yaml"
+
+
+def test_a_wide_space_as_indent_is_told(tmp_path):
+    """It is a letter of the name to YAML, and the key stands on another level."""
+    path = tmp_path / "s.yaml"
+    path.write_text("takes:\n\u3000smash1: {}\n", encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        yaml_files.read(path)
+    assert str(caught.value) == f"{path}: line 2: found a wide space (U+3000); write plain spaces"

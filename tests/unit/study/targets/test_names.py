@@ -61,3 +61,13 @@ def test_rules_and_their_files_and_files_on_the_disk_are_no_fault(tmp_path, monk
     rules.append(Rule("other", "results/north/ab.png"))
     (line,) = names.faults(["results/north/ab.png"], rules, study, [])
     assert line.startswith("north.yaml: expected a take of a, b, found 'ab'; did you mean")
+
+
+def test_a_rule_of_many_files_is_no_advice():
+    """Snakemake refuses its name: it would not say which file is wanted."""
+    rules = [Rule("draw_wrist_arcs", "results/{session}/{take}.png"), Rule("draw_tables", "a.csv")]
+    study = SimpleNamespace(sessions={"north": None})
+    (line,) = names.faults(["wrist_arcs"], rules, study, [])
+    assert line.endswith("found neither; see docs/results.md")
+    (line,) = names.faults(["draw_table"], rules, study, [])
+    assert line.endswith("did you mean 'draw_tables'?")

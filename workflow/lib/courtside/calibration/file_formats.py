@@ -84,17 +84,29 @@ def read(path: StrPath, unit: str | None = None) -> list[Camera]:
         scale = np.array([1, 1, 1, metres])
         found = [replace(c, cam_from_world=c.cam_from_world * scale) for c in found]
     for camera in camera_fields.check_distinct(path, found):
-        far_m = np.linalg.norm(camera.centre_in_world)
+        far_m = float(np.linalg.norm(camera.centre_in_world))
         if far_m > FARTHEST_M:
             raise InputError(
                 f"{path}: camera {camera.name}: expected it within {FARTHEST_M:g} m of the world's "
-                f"origin, found {far_m:.0f} m; {CORRECT_UNIT}"
+                f"origin, found {far_m:.0f} m{_correct_unit(unit, far_m)}"
             )
     return found
 
 
-def check_apart(path: StrPath, cameras: Sequence[Camera]) -> None:
-    """Raise `InputError` if the cameras of a session are no plausible distance apart."""
+def _correct_unit(unit: str | None, found_m: float) -> str:
+    """Return what to do about an impossible length, if a session has stated the `unit` or not."""
+    if unit is None:
+        return f"; {CORRECT_UNIT}"
+    stated = f" with `unit: {unit}` of the session file; correct it"
+    in_m = f", or remove it: in m it would be {found_m / camera_fields.METRES[unit]:.3g} m"
+    return stated + in_m * (unit != "m")
+
+
+def check_apart(path: StrPath, cameras: Sequence[Camera], unit: str | None = None) -> None:
+    """Raise `InputError` if the cameras of a session are no plausible distance apart.
+
+    `unit` is that of the file's lengths, where the session states it.
+    """
     if len(cameras) < 2:
         return
     centres = np.array([camera.centre_in_world for camera in cameras])
@@ -102,7 +114,7 @@ def check_apart(path: StrPath, cameras: Sequence[Camera]) -> None:
     if not APART_M[0] <= apart_m <= APART_M[1]:
         raise InputError(
             f"{path}: expected cameras {APART_M[0]:g} to {APART_M[1]:g} m apart, found "
-            f"{apart_m:.3g} m between the farthest; {CORRECT_UNIT}"
+            f"{apart_m:.3g} m between the farthest{_correct_unit(unit, apart_m)}"
         )
 
 

@@ -5,11 +5,12 @@ import re
 from collections.abc import Collection, Mapping
 from pathlib import Path
 
-from courtside.study.errors import InputError, StrPath
+from courtside.study.errors import LONGEST, InputError, StrPath
 
 # ASSUME: of fewer files, numbers without gaps may be those of frames by chance.
 LEAST_FILES = 10
 RENUMBER = "number the files by the frames of the video, from 0, or name the video of these files"
+OF_ALPHAPOSE = "run AlphaPose with `--format open`, and name its folder `sep-json`"
 # ASSUME: in a take somebody is seen in more than one of so many frames.
 SPARSEST = 20
 
@@ -76,6 +77,15 @@ def _ordinal(number: int) -> str:
     return {2: "second", 3: "third"}.get(number, f"{number}th")
 
 
+def is_of_all_frames(path: StrPath) -> bool:
+    """Tell whether a JSON file holds a list, as AlphaPose writes the points of all frames."""
+    try:
+        with Path(path).open(encoding="utf-8") as stream:
+            return stream.read(LONGEST).lstrip().startswith("[")
+    except (OSError, ValueError):
+        return False
+
+
 def numbered(folder: StrPath) -> dict[int, str]:
     """Return the names of the JSON files of a folder by the last number in them.
 
@@ -90,8 +100,11 @@ def numbered(folder: StrPath) -> dict[int, str]:
     for name in (name for name in names if name[0] != "."):
         digits = re.findall(r"[0-9]+", name.removesuffix(".json"))
         if not digits:
+            found = "none; rename it"
+            if is_of_all_frames(folder / name):
+                found = f"a file of all frames; {OF_ALPHAPOSE}"
             raise InputError(
-                f"{folder / name}: expected the frame's number in the name, found none; rename it"
+                f"{folder / name}: expected the frame's number in the name, found {found}"
             )
         number = int(digits[-1])
         if number in files:

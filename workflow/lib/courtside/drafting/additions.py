@@ -7,6 +7,7 @@ from pathlib import Path
 from courtside.drafting import draft
 from courtside.drafting.guess import Guess, Take
 from courtside.drafting.names import distinct
+from courtside.drafting.survey import written
 from courtside.study.configuration.yaml_files import Content
 from courtside.study.errors import InputError, StrPath
 
@@ -16,10 +17,12 @@ def to_paste(guess: Guess, content: Content, *, path: StrPath, folder: str) -> l
 
     `content` is the file's, as its schema allows it, `path` its own; `folder` is that of the
     recordings. A take is missing if the file names none of its recordings. Takes and cameras are
-    called as in the file. An `InputError` if nothing is missing, or the session is virtual.
+    called as in the file. An `InputError` if nothing is missing, or the session is another one:
+    virtual, or of recordings elsewhere alone.
     """
+    _check_folder(content, path, folder)
     new = missing(guess, content)
-    if "virtual" in content or not new.takes:
+    if not new.takes:
         raise InputError(
             f"{path}: expected no file of that name, or takes in {folder} that it does not name, "
             "found one that has all and left it; delete it to draft it anew, or give another name "
@@ -39,6 +42,21 @@ def to_paste(guess: Guess, content: Content, *, path: StrPath, folder: str) -> l
         *filter(None, [guesses]),
         "Write new persons into its `subjects`, with their consent.",
     ]
+
+
+def _check_folder(content: Content, path: StrPath, folder: str) -> None:
+    """Refuse a file of another session: takes of other days have other cameras."""
+    walks = [path for walk in content.get("walks", {}).values() for path in (walk or {}).values()]
+    there = [*_recordings(content), *(Path(path).resolve() for path in walks)]
+    if any(file.is_relative_to(Path(folder).resolve()) for file in there):
+        return
+    found = f"one of recordings in {written(there[0].parent, Path.cwd())}" if there else ""
+    found = "that of a virtual session" if "virtual" in content else found
+    if found:
+        raise InputError(
+            f"{path}: expected no file of that name, or one of recordings in {folder}, found "
+            f"{found} and left it; give this session another name by --name"
+        )
 
 
 def missing(guess: Guess, content: Content) -> Guess:

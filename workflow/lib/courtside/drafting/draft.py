@@ -13,6 +13,7 @@ from courtside.geometry import picture_size
 from courtside.study.configuration import configuration, schemas, yaml_files
 from courtside.study.configuration.sessions import FEWEST_ALONE
 from courtside.study.errors import InputError, StrPath
+from courtside.study.methods import UNSCALED
 
 MARK = "# guess:"
 PLAIN = re.compile(r"[A-Za-z0-9_./+-]+( [A-Za-z0-9_./+-]+)*")
@@ -33,7 +34,7 @@ def text(guess: Guess, *, title: str, folder: str, court: str | None = None) -> 
     """
     if not guess.walks and not guess.takes and not guess.static:
         raise InputError(
-            f"{folder}: expected videos, photos or files of devices, found "
+            f"{folder}: expected videos, photos, keypoints or files of devices, found "
             f"{_what_is_there(guess)}; put the videos of the fixed cameras and of the walk there"
         )
     measured = guess.calibration is None and bool(guess.cameras) and not unfilmed(guess)
@@ -67,8 +68,9 @@ def write(path: Path, content: str) -> None:
         if _is_free(small):
             found = f"capital letters; give --name {small}"
         raise InputError(
-            f"{path.stem}: expected a session's name of at most 64 of a-z, 0-9, _ and -, no "
-            "device of Windows such as con, and none of na, nan, none, null, "
+            f"{path.stem}: expected a session's name of at most 64 of a-z, 0-9, _ and -, begun "
+            "with a letter or digit, no device of Windows such as con, and none of na, nan, none, "
+            "null, "
             f"{', '.join(configuration.RESERVED)}, found {found}"
         )
     try:
@@ -426,6 +428,8 @@ def to_check(guess: Guess, path: StrPath, court_points: str | None, study: StrPa
 def _of_cameras(guess: Guess, court_points: str | None) -> Iterator[str]:
     """Yield how the cameras will be found, and what that takes."""
     if court_points is None:
+        if guess.walks and any(guess.takes.values()):
+            yield f"Court: {UNSCALED}."
         if not guess.walks:
             alone = "; or use the draft's line for people alone" * bool(_people_alone(guess))
             yield (

@@ -80,6 +80,8 @@ def _readers(
         yield at, _keypoints
     for path in files:
         reader = READERS.get(path.suffix.lower())
+        if path.name.startswith("alphapose") and path.suffix == ".json":
+            reader = _points_of_all_frames
         if reader and not (together and path in photos):
             yield path, reader
 
@@ -95,6 +97,8 @@ def _described(path: Path, folder: Path, root: StrPath, reader: Reader) -> Recor
     keys: dict[str, Any] = {"path": written(path, root), "parts": parts}
     if any(not letter.isprintable() for letter in keys["path"]):
         return Recording(**keys, kind="unusable", note="a control character in its name; rename it")
+    if {"{", "}"} & set(keys["path"]):
+        return Recording(**keys, kind="unusable", note="braces in its path; rename it")
     try:
         more = reader(path)
     except InputError as error:
@@ -138,6 +142,12 @@ def _keypoints(path: Path) -> dict[str, Any] | None:
         return None
     skeletons, n_files = openpose.skeletons(path), len(frame_numbers.numbered(path))
     return {"kind": "keypoints", "n_frames": n_files, "skeleton": skeletons}
+
+
+def _points_of_all_frames(path: Path) -> dict[str, Any] | None:
+    """Describe AlphaPose's file of all frames; None of other JSON files."""
+    note = f"a file of all frames; {frame_numbers.OF_ALPHAPOSE}"
+    return {"kind": "unusable", "note": note} if frame_numbers.is_of_all_frames(path) else None
 
 
 def _table(path: Path) -> dict[str, Any] | None:

@@ -55,7 +55,7 @@ def faults(session: Session, sizes: Sizes) -> Iterator[str]:
         there = _named(
             session, {o: known[theirs] for o, theirs in names.items() if theirs in known}
         )
-        file_formats.check_apart(path, list(there.values()))
+        file_formats.check_apart(path, list(there.values()), session.calibration_unit)
         stated.check(path, list(there.values()))
         shown = {name: _shown(session, name, camera) for name, camera in there.items()}
         yield from _exchanged_by_points(session, shown) if not missing else ()

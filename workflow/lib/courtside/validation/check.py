@@ -6,11 +6,12 @@ Recordings that jobs make or fetch are checked once they are there.
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from courtside.calibration.court import court
 from courtside.records.devices.clocks import are_stated
 from courtside.study.configuration.session_files import is_there
 from courtside.study.configuration.sessions import Session, Study, Take
 from courtside.study.errors import InputError
-from courtside.study.methods import Calibration, fewer_images
+from courtside.study.methods import UNSCALED, Calibration, fewer_images
 from courtside.validation import (
     boards,
     bodies,
@@ -32,7 +33,7 @@ def check(study: Study, remembered: Remembered) -> list[str]:
 
     An `InputError` has every fault, one line each, with the session's file.
     """
-    faults: list[str] = []
+    faults = [*_court_faults(study)]
     remarks: list[str] = []
     for session in study.sessions.values():
         if not session.virtual:
@@ -45,6 +46,16 @@ def check(study: Study, remembered: Remembered) -> list[str]:
     if faults:
         raise InputError(*dict.fromkeys(faults))
     return remarks
+
+
+def _court_faults(study: Study) -> Iterator[str]:
+    """Yield what is wrong in the files of the courts, which jobs read before points are clicked."""
+    for path in dict.fromkeys(map(study.court_file, study.sessions.values())):
+        try:
+            if path:
+                court.read(path)
+        except InputError as error:
+            yield from error.lines
 
 
 class _Session:
@@ -82,8 +93,10 @@ class _Session:
             for take in session.takes.values()
             for line in devices.faults(take, remembered, study.skeleton_yaml)
         ]
+        self._filmed: dict[str, Glance] = {}  # other videos: of walks, and by devices
         for path in (*session.walks.values(), *_filmed_by_devices(session)):
-            self._look(path)
+            for look in self._look(path):
+                self._filmed[path] = look
             self._look_at_photos(path)
 
     def _look(
@@ -133,7 +146,7 @@ class _Session:
     def remarks(self) -> Iterator[str]:
         """Yield what is worth a look."""
         board = boards.remarks(self._session.board)
-        for line in (*bodies.remarks(self._session.subjects), *board):
+        for line in (*bodies.remarks(self._session.subjects), *board, *self._of_session()):
             yield f"{self._session.file}: {line}"
         yield from self._points[1]
         for name, take in self._session.takes.items():
@@ -187,17 +200,35 @@ class _Session:
 
     def _few_pictures(self) -> Iterator[str]:
         """Yield whether walks give fewer pictures than are asked for, where that is known."""
-        session, n_there = self._session, self._session.n_walk_frames()
+        session, photographed = self._session, self._session.n_walk_frames()
+        every_s = session.parameters["extract_frames"]["every_s"]
+        n_there = self._n_frames(every_s) if photographed is None else photographed
         if n_there is None or not session.walks:
             return
         ways = [Calibration.parse(way).variant for way in session.calibrations()]
         wanted = session.variants() if not session.cameras else list(filter(None, ways))
         most = max((variant.n_images for variant in wanted), default=0)
         if most > n_there:
+            found = f"found {n_there} in videos, one every {every_s:g} s; film longer"
+            found = found if photographed is None else f"found {n_there}; take more"
             yield (
-                f"walks: expected {most} pictures or more, found {n_there}; take more, or ask for "
-                f"fewer by `{fewer_images(n_there)}`"
+                f"walks: expected {most} pictures or more, {found}, or ask for fewer by "
+                f"`{fewer_images(n_there)}`"
             )
+
+    def _n_frames(self, every_s: float) -> int | None:
+        """Return how many frames filmed walks give at most; None where that is not known."""
+        walks = self._session.walks.values()
+        lengths = [self._filmed[path].duration_s for path in walks if path in self._filmed]
+        known_s = [length_s for length_s in lengths if length_s is not None]
+        return sum(int(s / every_s) + 1 for s in known_s) if len(known_s) == len(walks) else None
+
+    def _of_session(self) -> Iterator[str]:
+        """Yield why the cameras of a walk measure no take, and takes of the same video."""
+        yield from stated_times.repeated(self._session)
+        filmed = any(len(take.cameras) > 1 for take in self._session.takes.values())
+        if filmed and self._session.unscaled() and not self._session.take_calibrations():
+            yield f"court: {UNSCALED}"
 
     def _sizes(self) -> dict[str, dict[str, tuple[int, int]]]:
         found: dict[str, dict[str, tuple[int, int]]] = {}

@@ -1,6 +1,8 @@
 """Times and pixels that a session states of its videos, against the videos."""
 
 from collections.abc import Iterator, Mapping
+from itertools import combinations
+from math import inf
 from pathlib import Path
 
 from courtside.records.keypoints import sightings
@@ -41,6 +43,19 @@ def named(session: Session, looks: Mapping[str, Looks]) -> Iterator[str]:
                 yield from (f"{one.where}: expected {line}" for line in lines)
     except InputError as error:
         yield from error.lines
+
+
+def repeated(session: Session) -> Iterator[str]:
+    """Yield takes that use the same part of a camera's video, as copied lines of a file do."""
+    for one, other in combinations(session.takes.values(), 2):
+        same = [name for name, path in one.videos.items() if other.videos.get(name) == path]
+        (start_s, stop_s), (begin_s, end_s) = (t.trim_s or (0.0, inf) for t in (one, other))
+        if same and max(start_s, begin_s) < min(stop_s, end_s):
+            yield (
+                f"takes.{one.name} and takes.{other.name}: the same video of camera "
+                f"{', '.join(same)}, and their times overlap: if they are two recordings, correct "
+                "one path; if one video has both, state a `trim_s` of each"
+            )
 
 
 def remarks(take: Take, looks: Looks) -> Iterator[str]:

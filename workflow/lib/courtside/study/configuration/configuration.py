@@ -3,6 +3,7 @@
 import itertools
 import re
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 from courtside.study.configuration import (
@@ -22,6 +23,8 @@ from courtside.study.execution.artefacts import Artefact
 
 # Folders of results/ that are no session.
 RESERVED = ("external", "networks", "run", "figures", "virtual", "plans")
+# Calibrations that need different things, one of each.
+USUAL_WAYS = ("file", "sfm-n40", "known", "board", "wand", "people")
 OF_SESSION = {"description", "court", "cameras"}  # keys of every session, and of no study
 
 # Names of folders and files: none leaves its folder, is an option, or a device of Windows; and none
@@ -134,9 +137,60 @@ def _unknown_models(file: Path, content: Content, models: Content | None) -> lis
 def _take_faults(study: Study, root: Path) -> Iterator[str]:
     """Yield why takes cannot be measured as their sessions and the study together ask."""
     for session in study.sessions.values():
-        yield from session_faults.unmeasured(study, session)
+        yield from unmeasured(study, session)
     yield from _unmade_cameras(study, root)
     yield from _device_faults(study)
+
+
+def unmeasured(study: Study, session: Session) -> Iterator[str]:
+    """Yield why nothing of a session's takes is measured, unless its lists are empty for that."""
+    takes = [take for take in session.takes.values() if len(take.cameras) > 1]
+    ways, named = session.calibrations(), session.parameters["calibrations"]
+    wanted = session.parameters["take_calibrations"]
+    if takes and ways and wanted and not set(ways) & set(wanted):
+        yield (
+            f"{study.where(session, 'take_calibrations')}: expected one of the calibrations {ways} "
+            f"of session {session.name}, by which its takes are measured, found {wanted}; "
+            f"{_measuring(study, session, ways)}"
+        )
+    alone = "people" in named and session.court is None
+    if takes and not ways and alone and not session.has_scale():
+        where = study.where(session, "calibrations")
+        yield f"{where}: session {session.name}: {session_faults.UNSCALED}"
+    elif takes and not ways and wanted and not session.unclicked:
+        yield _impossible(study, session)
+    if takes and ways and wanted and not any(map(session.fusions_of, takes)):
+        yield (
+            f"{study.where(session, 'fusions')}: expected one whose cameras film a take of session "
+            f"{session.name}, found {session.parameters['fusions']}; add all-robust, or its set of "
+            "cameras to the session's `views`"
+        )
+
+
+def _measuring(study: Study, session: Session, ways: list[str]) -> str:
+    """Return what to do where no calibration of a session measures its takes."""
+    default = f"{study.folder / sessions.DEFAULT}: "
+    own = study.where(session, "calibrations")
+    stated = study.where(session, "take_calibrations")
+    if stated.startswith(default) and not own.startswith(default):
+        file, _, key = own.partition(": ")
+        line = f"take_calibrations: [{', '.join(ways)}]"
+        line = f"override: {{{line}}}" if key.startswith("override") else line
+        return f"add `{line}` to {file}, beside `calibrations`"
+    return "name one in both lists, or none in the session's `override`"
+
+
+def _impossible(study: Study, session: Session) -> str:
+    """Return the fault of a session whose calibrations all need what it does not have."""
+    of_session = session.parameters | {"calibrations": list(USUAL_WAYS)}
+    possible = replace(session, parameters=of_session).calibrations()
+    such = f", such as {', '.join(possible)}" if possible else ""
+    return (
+        f"{study.where(session, 'calibrations')}: expected a calibration that the recordings and "
+        f"the court of session {session.name} allow{such}, found "
+        f"{session.parameters['calibrations']}; name another, or add what these need "
+        "(config/README.md, Keys of `config.yaml`)"
+    )
 
 
 def _unmade_cameras(study: Study, root: Path) -> Iterator[str]:

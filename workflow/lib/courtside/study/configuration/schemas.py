@@ -42,6 +42,12 @@ OF_STUDY = (
 # Schemas that use the `$defs` of another one, too.
 SHARED = dict.fromkeys(("external", "models", "plan", "session"), "config")
 SHARED |= {"detectors": "models"}
+MEANT = {  # keys by other words for them
+    **dict.fromkeys(("weight", "weight_kg", "mass"), "mass_kg"),
+    **dict.fromkeys(("fps", "rate", "frame_rate"), "rate_hz"),
+    "gender": "sex",
+    "calib": "calibration",
+}
 REPLACED = {  # keys of former versions: what to use now
     "measure_kinematics": "remove it: kinematics are measured on the exported skeletons, whose "
     "filter and cut-offs are those of filter_motion"
@@ -160,6 +166,10 @@ def _lines(error: Any) -> Iterator[str]:  # of jsonschema, whose types leave all
             found = f"{shortened(twice)} again"
         if error.validator == "type" and _is_unquoted(error.instance, error.validator_value):
             found += "; put it in quotes"
+        if error.validator == "enum" and isinstance(error.instance, str):
+            known = [one for one in error.validator_value if isinstance(one, str)]
+            advice = nearest(error.instance, known, "")
+            found += f"; {advice}" * bool(advice)
         yield f"{where}: expected {wanted}, found {found}"
 
 
@@ -181,7 +191,8 @@ def _key_lines(error: Any, where: str) -> Iterator[str]:
             if key in REPLACED:
                 yield f"{where}: expected no key {key!r} any more, found it; {REPLACED[key]}"
                 continue
-            advice = nearest(key, known, "remove it")
+            meant = MEANT.get(key, key)
+            advice = nearest(meant if meant in known else key, known, "remove it")
             yield f"{where}: expected keys of {known}, found {key!r}; {advice}"
 
 
@@ -196,6 +207,7 @@ def _wanted(error: Any) -> str:
         "minItems": "at least {} entries",
         "maxItems": "at most {} entries",
         "minProperties": "at least {} entries",
+        "maxProperties": "at most {} entries",
         "multipleOf": "a multiple of {}",
         "uniqueItems": "entries that differ",
     }

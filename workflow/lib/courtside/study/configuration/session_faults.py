@@ -13,8 +13,9 @@ from courtside.study.configuration.session_files import (
     is_there,
     of_configuration,
 )
-from courtside.study.configuration.sessions import FEWEST_ALONE, Session, Study
+from courtside.study.configuration.sessions import FEWEST_ALONE
 from courtside.study.configuration.yaml_files import Content
+from courtside.study.errors import nearest
 from courtside.study.execution.artefacts import Artefact
 from courtside.study.paths import EXTERNAL, VIRTUAL
 
@@ -24,6 +25,8 @@ UNSCALED = (
     "expected `height_m` of every person of one take or more, for the calibration `people`, found "
     "no such take; state the heights, or `known_lengths`: nothing else defines the scale"
 )
+# Of cameras in a calibration file; the first also of those in the file of `lenses`.
+OF_CALIBRATED = ("name_in_calibration", "crop_px", "scale")
 OWN_COURT = "config/README.md, A court of your own"
 # What else to do where nobody has clicked the points of a court yet.
 BY_CLICKS = ", or give every camera `static`, and the study makes a page to click them on"
@@ -41,12 +44,14 @@ def find(
     cameras, subjects = content["cameras"], content.get("subjects", {})
     court, virtual = content["court"], "virtual" in content
     if court != "none" and not (folder / "courts" / f"{court}.yaml").is_file():
-        known_courts = sorted(path.stem for path in (folder / "courts").glob("*.yaml"))
-        yield f"{file}: court: expected 'none' or one of {known_courts}, found {court!r}"
+        courts = sorted(path.stem for path in (folder / "courts").glob("*.yaml"))
+        advice = nearest(court, courts, f"correct the name, or describe it ({OWN_COURT})")
+        yield f"{file}: court: expected 'none' or one of {courts}, found {court!r}; {advice}"
     yield from _name_faults(file, content)
     yield from _virtual_faults(file, content) if virtual else _recorded_faults(file, content, root)
     yield from _static_point_faults(file, content)
     yield from _replacement_faults(file, content)
+    yield from _useless_keys(file, content)
     yield from _people_faults(file, content)
     yield from consent.faults(file, content)
     yield from sighting_faults.find(file, content)
@@ -88,27 +93,6 @@ def _view_faults(file: Path, content: Content) -> Iterator[str]:
         yield (
             f"{file}: halfbody: expected three different cameras, found {', '.join(players)}; "
             "correct one"
-        )
-
-
-def unmeasured(study: Study, session: Session) -> Iterator[str]:
-    """Yield why nothing of a session's takes is measured, unless its lists are empty for that."""
-    takes = [take for take in session.takes.values() if len(take.cameras) > 1]
-    ways, wanted = session.calibrations(), session.parameters["take_calibrations"]
-    if takes and ways and wanted and not session.take_calibrations():
-        yield (
-            f"{study.where(session, 'take_calibrations')}: expected one of the calibrations {ways} "
-            f"of session {session.name}, by which its takes are measured, found {wanted}; name one "
-            "in both lists, or none in the session's `override`"
-        )
-    alone = "people" in session.parameters["calibrations"] and session.court is None
-    if takes and not ways and alone and not session.has_scale():
-        yield f"{study.where(session, 'calibrations')}: session {session.name}: {UNSCALED}"
-    if takes and ways and wanted and not any(map(session.fusions_of, takes)):
-        yield (
-            f"{study.where(session, 'fusions')}: expected one whose cameras film a take of session "
-            f"{session.name}, found {session.parameters['fusions']}; add all-robust, or its set of "
-            "cameras to the session's `views`"
         )
 
 
@@ -179,6 +163,19 @@ def _replacement_faults(file: Path, content: Content) -> Iterator[str]:
             f"{where}: expected `{missing}` beside `{there}`, found none; numbers of a file are "
             "replaced for a stated reason only"
         )
+
+
+def _useless_keys(file: Path, content: Content) -> Iterator[str]:
+    """Yield the keys of cameras that say how they are in a file which the session does not have."""
+    lenses = any("lenses" in content.get(target, {}) for target in ("board", "wand"))
+    used = OF_CALIBRATED if "calibration" in content else OF_CALIBRATED[:1] if lenses else ()
+    for name, camera in content["cameras"].items():
+        for key in (key for key in OF_CALIBRATED if key in camera and key not in used):
+            more = " (or `lenses` of a board or wand)" if key == OF_CALIBRATED[0] else ""
+            yield (
+                f"{file}: cameras.{name}.{key}: expected it with a `calibration` file{more} only, "
+                "found it without; remove it"
+            )
 
 
 def _take_paths(where: str, take: Content) -> Iterator[tuple[str, str]]:

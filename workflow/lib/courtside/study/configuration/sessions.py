@@ -179,7 +179,7 @@ class Session:
 
         def allowed(way: Calibration) -> bool:
             if way.base:
-                return filmed and allowed(Calibration.parse(way.base))
+                return filmed and self._in_metres(way) and allowed(Calibration.parse(way.base))
             if way.lines and not clicked:
                 return False
             if way.n_points and self.point_sets and way.n_points not in self.point_sets:
@@ -195,6 +195,16 @@ class Session:
         """Return whether the covariance of the cameras of a calibration is known."""
         return way.has_covariance or (way.kind == "file" and self.file_covariance is not None)
 
+    def _in_metres(self, way: Calibration) -> bool:
+        """Say whether a calibration gives metres: those of walks do by the points of a court."""
+        return way.variant is None or self.court is not None
+
+    def unscaled(self) -> list[str]:
+        """Return those of `take_calibrations` that measure no take, as they give no metres."""
+        wanted = self.parameters["take_calibrations"]
+        ways = (way for way in self.calibrations() if way in wanted)
+        return [way for way in ways if not self._in_metres(Calibration.parse(way))]
+
     def has_scale(self) -> bool:
         """Say whether people alone give lengths in metres.
 
@@ -206,8 +216,8 @@ class Session:
 
     def take_calibrations(self) -> list[str]:
         """Return the session's calibrations that its takes are measured with."""
-        wanted = self.parameters["take_calibrations"]
-        return [way for way in self.calibrations() if way in wanted]
+        wanted, unscaled = self.parameters["take_calibrations"], self.unscaled()
+        return [way for way in self.calibrations() if way in wanted and way not in unscaled]
 
     def fusions(self, key: str = "fusions") -> list[str]:
         """Return the study's fusions for which this session names cameras."""

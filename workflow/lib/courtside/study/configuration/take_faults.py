@@ -6,6 +6,7 @@ from pathlib import Path
 from courtside.study.configuration.session_files import KINDS, kind_of
 from courtside.study.configuration.sessions import SUITS
 from courtside.study.configuration.yaml_files import Content
+from courtside.study.errors import nearest
 from courtside.study.methods import STAGE_WORDS
 
 MEANT_FOR = {"unit": ("inertial", "nuitrack"), "angles": ("inertial",)}  # keys of devices
@@ -279,9 +280,9 @@ def _simulated_faults(where: str, made: Content) -> Iterator[str]:
 
 
 def unknown(where: str, names: Iterable[str], known: Collection[str]) -> list[str]:
-    """Return a fault for each name that is not known."""
+    """Return a fault for each name that is not known, with the nearest one where one is near."""
+    strange = [(name, nearest(name, list(known), "")) for name in names if name not in known]
     return [
-        f"{where}: expected one of {sorted(known)}, found {name!r}"
-        for name in names
-        if name not in known
+        f"{where}: expected one of {sorted(known)}, found {name!r}" + f"; {advice}" * bool(advice)
+        for name, advice in strange
     ]

@@ -31,6 +31,8 @@ class _StrictLoader(yaml.SafeLoader):
                 problem = f"expected a name, found {key!r}; put it in quotes"
                 if node.flow_style and isinstance(key, int | float):
                     problem += ", or, if it is the rest of a number such as 1,74, write 1.74"
+            elif key[:1].isspace() and key[0] != " ":  # of Japanese input, or one that never breaks
+                problem = f"found a wide space (U+{ord(key[0]):04X}); write plain spaces"
             elif key in seen:
                 problem = f"expected each key once, found {key!r} again"
             if problem:

@@ -3,6 +3,7 @@
 import os
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -25,14 +26,15 @@ def faults(
     `by_default` are the files of the study that it makes without being asked.
     """
     named = {rule.name: rule for rule in rules}
+    files = {name: [str(file) for file in rule.products()] for name, rule in named.items()}
+    plain = [name for name, made in files.items() if not any("{" in file for file in made)]
     asked = {os.path.normpath(name).replace(os.sep, "/") for name in wanted if name not in named}
-    made, lines = None, []
+    made, lines = list(chain.from_iterable(files.values())), []
     for path in sorted(name for name in asked if not Path(name).exists()):
         makers = [rule for rule in named.values() if rule.is_producer(path)]
         misnamed = [_misnamed(study, rule.get_wildcards(path)) for rule in makers]
         if not makers:
-            made = made or [str(file) for rule in named.values() for file in rule.products()]
-            lines.append(fault(path, list(study.sessions), [*named, *made, *by_default]))
+            lines.append(fault(path, list(study.sessions), [*plain, *made, *by_default]))
         elif all(misnamed):
             lines += misnamed[0]
     return lines
