@@ -28,20 +28,21 @@ SUBSAMPLES = 3  # per pixel and axis
 
 
 @cache
-def rays():
+def rays(f_px=600, dist=tuple(DIST)):
     """Return where each sample's ray meets the z = 1 plane, homogeneous."""
+    lens = np.array([[f_px, 0, K[0, 2]], [0, f_px, K[1, 2]], [0, 0, 1]])
     grid = np.meshgrid(np.arange(SIZE[0] * SUBSAMPLES), np.arange(SIZE[1] * SUBSAMPLES))
     xy = (np.stack(grid, axis=-1).reshape(-1, 1, 2) + 0.5) / SUBSAMPLES - 0.5
-    plane = cv2.undistortPoints(xy, K, DIST, None, None, None, (3, 40, 1e-9))[:, 0]
+    plane = cv2.undistortPoints(xy, lens, np.array(dist), None, None, None, (3, 40, 1e-9))[:, 0]
     return np.column_stack([plane, np.ones(len(plane))])
 
 
-def draw(turn_deg, shift, blur_px=0.7):
+def draw(turn_deg, shift, blur_px=0.7, away=15, lens=()):
     """Draw a board of unit squares seen through the lens: each sample's ray meets its plane."""
     rotation = rotations.rotation_from_rodrigues(np.radians(turn_deg))
-    place = np.array([*shift, 0]) * 4 + [0, 0, 15] - rotation @ [3, 2, 0]
+    place = np.array([*shift, 0]) * 4 + [0, 0, away] - rotation @ [3, 2, 0]
     board_from_ray = np.linalg.inv(np.column_stack([rotation[:, :2], place]))
-    on_board = rays() @ board_from_ray.T
+    on_board = rays(*lens) @ board_from_ray.T
     u, v = (on_board[:, :2] / on_board[:, 2:]).T
     dark = (np.floor(u) + np.floor(v)) % 2 == 0
     inside = (u > -1) & (u < INNER[0]) & (v > -1) & (v < INNER[1])
@@ -100,6 +101,28 @@ def test_unseen_and_blurred_boards_are_dropped_and_counted(folder, tmp_path):
     dropped = {path.name: why for path, why in lens.dropped.items()}
     assert dropped["6.png"] == "unseen" and dropped["7.png"] in ("unseen", "blurred")
     assert lens.n_used == 6
+
+
+def test_a_large_board_before_a_wide_lens_is_no_misread_one(tmp_path):
+    """An action camera bends the rows of a board by more than a twentieth of a square."""
+    action = 320, (-0.25, 0.07, 0.0, 0.0, 0.0)
+    cv2.imwrite(str(tmp_path / "0.png"), draw((15, 0, 0), (0.3, 0), away=4.5, lens=action))
+    boards = chessboard.find(tmp_path, INNER)
+    assert boards.dropped == {} and chessboard._off(boards.xy[0], INNER) > 0.055
+
+
+def test_corners_of_no_plane_grid_are_misread(folder, tmp_path, monkeypatch):
+    """Another corner in place of one, a row that is one square off, and columns that are."""
+    (true,) = chessboard.find(some(folder, tmp_path, [2]), INNER).xy
+    grid = true.reshape(5, 7, 2)
+    swapped, row, columns = grid.copy(), grid.copy(), grid.copy()
+    swapped[2, 3] = grid[2, 4]
+    row[4] = grid[3]
+    columns[:, 5:] = grid[:, 4:6]
+    for wrong in (swapped, row, columns):
+        found = (True, wrong.reshape(-1, 1, 2).astype(np.float32))
+        monkeypatch.setattr(cv2, "findChessboardCornersSB", lambda *_, given=found, **__: given)
+        assert list(chessboard.find(tmp_path, INNER).dropped.values()) == ["misread"]
 
 
 def test_a_board_that_the_others_contradict_is_left_out(find):

@@ -15,6 +15,9 @@ from courtside.video import images
 PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp")
 FEWEST = 4  # ASSUME: boards; two in different poses are the minimum, four show a wrong one
 MISREAD = 0.05  # ASSUME: of a square: corners that miss a plane grid by more are not of one board
+# Lens distortions that may bend the grid: radii from the picture's middle are divided by
+# 1 + b (r / half the diagonal)^2 (Fitzgibbon 2001). An action camera has -0.4.
+BENDS = np.linspace(-0.8, 0.2, 21)
 BLURRED = 0.25  # ASSUME: of a square: width of the edges between black and white
 OUTLIER = 3.0  # ASSUME: times the median error of all boards
 FINE_PX = 0.5  # ASSUME: a board with less error is never left out
@@ -110,17 +113,27 @@ def _corners(image: NDArray, inner_corners: tuple[int, int]) -> tuple[NDArray | 
     if not seen:
         return None, "unseen"
     xy = xy.reshape(-1, 2)
+    middle = (np.array(image.shape[1::-1]) - 1) / 2
+    away = (xy - middle) / np.linalg.norm(middle)
+    square = (away**2).sum(axis=1, keepdims=True)
+    if min(_off(away / (1 + bend * square), inner_corners) for bend in BENDS) > MISREAD:
+        return None, "misread"
     steps = np.linalg.norm(np.diff(xy.reshape(rows, columns, 2), axis=1), axis=2)
-    matrix, _ = cv2.findHomography(_grid(inner_corners), xy)
-    if matrix is None:
-        return None, "misread"
-    flat = cv2.perspectiveTransform(_grid(inner_corners)[:, None], matrix)[:, 0]
-    if np.sqrt(np.mean((flat - xy) ** 2)) > MISREAD * np.median(steps):
-        return None, "misread"
     sharpness, _ = cv2.estimateChessboardSharpness(image, inner_corners, xy)
     if sharpness[0] > BLURRED * np.median(steps):
         return None, "blurred"
     return xy, ""
+
+
+def _off(xy: NDArray, inner_corners: tuple[int, int]) -> float:
+    """Return by how much corners (N, 2) miss a plane grid, rms per axis, in squares."""
+    columns, rows = inner_corners
+    matrix, _ = cv2.findHomography(_grid(inner_corners), xy)
+    if matrix is None:
+        return np.inf
+    flat = cv2.perspectiveTransform(_grid(inner_corners)[:, None], matrix)[:, 0]
+    steps = np.linalg.norm(np.diff(xy.reshape(rows, columns, 2), axis=1), axis=2)
+    return float(np.sqrt(np.mean((flat - xy) ** 2)) / np.median(steps))
 
 
 def _grid(inner_corners: tuple[int, int]) -> NDArray:
