@@ -16,6 +16,9 @@ MARKER_SHARE = 0.75  # of a square, where the session does not say it: as most p
 # Of Kalibr's AprilGrid: family, cells of black around the bits, and the share as in its examples.
 FAMILY, BORDER, GRID_SHARE = "DICT_APRILTAG_36h11", 2, 1 / 1.3
 SADDLE_SHARE = 0.12  # of a tag: looked so far around its corners; its bits begin at 0.2
+# Of a tag: looked so far from its edges, but this or more; its bits begin at 0.11 or more.
+EDGE_SHARE, LEAST_REACH_PX = 0.06, 1.5
+STEEPEST = 4  # rounds in which the steepest points of an edge stand still
 Y_UP = np.array([1.0, -1.0, 1.0])  # OpenCV's boards have y down: with y up, z points at who looks
 
 
@@ -132,8 +135,6 @@ class Board:
     def _tags(self, image: NDArray) -> tuple[NDArray, NDArray]:
         looks = cv2.aruco.DetectorParameters()
         grid = self.kind == "aprilgrid"
-        if not grid:
-            looks.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_SUBPIX
         looks.markerBorderBits = BORDER if grid else 1
         detector = cv2.aruco.ArucoDetector(self._printed.getDictionary(), looks)
         squares, ids, _ = detector.detectMarkers(image)
@@ -141,7 +142,8 @@ class Board:
         seen = {} if ids is None else dict(zip(ids.ravel().tolist(), squares, strict=True))
         numbers = [self._numbers(known.index(tag)) for tag in seen if tag in known]
         xy = [square.reshape(4, 2) for tag, square in seen.items() if tag in known]
-        xy = [_saddles(image, square) for square in xy] if grid else xy
+        fine, shades = (_saddles, image) if grid else (_ends, image.astype(np.float32))
+        xy = [fine(shades, square) for square in xy]
         return _pairs(np.array(numbers), np.array(xy)) if numbers else _pairs(None, None)
 
     def _numbers(self, tag: int) -> NDArray:
@@ -180,6 +182,41 @@ def _saddles(image: NDArray, square: NDArray) -> NDArray:
     stop = cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 40, 0.01
     start = np.ascontiguousarray(square, dtype=np.float32)
     return cv2.cornerSubPix(image, start, (reach, reach), (-1, -1), stop)
+
+
+def _ends(image: NDArray, square: NDArray) -> NDArray:
+    """Refine the corners (4, 2) px of a dark tag to where straight lines along its edges meet.
+
+    Blur rounds a corner off: its own brightness says it lies up to 0.4 px inside the tag, so that
+    all tags look too small. Where an edge is steepest does not depend on blur.
+    """
+    for _ in range(2):  # from the corners of the first round, edges are seen square on
+        side = np.roll(square, -1, axis=0) - square
+        length = np.linalg.norm(side, axis=1)
+        inwards = np.column_stack([-side[:, 1], side[:, 0]]) / length[:, None]
+        reach = max(LEAST_REACH_PX, EDGE_SHARE * float(length.min()))
+        off = np.linspace(-reach, reach, 2 * int(np.ceil(4 * reach)) + 1)
+        along = np.linspace(0.1, 0.9, max(8, int(length.max())))
+        at = square[:, None] + along[:, None] * side[:, None]
+        steepest = _steepest(image, at[:, :, None] + off[:, None] * inwards[:, None, None], off)
+        start, rise = np.polynomial.polynomial.polyfit(along, steepest.T, 1)
+        # Each corner begins one edge and ends the one before it.
+        both = np.stack([inwards, np.roll(inwards, 1, axis=0)], axis=1)
+        shift = np.stack([start, np.roll(start + rise, 1)], axis=1)
+        square = square + np.linalg.solve(both, shift[:, :, None])[:, :, 0]
+    return square
+
+
+def _steepest(image: NDArray, at: NDArray, off: NDArray) -> NDArray:
+    """Return at which of the distances `off` (K,) it darkens most, of places (4, L, K, 2) px."""
+    places = at.reshape(-1, len(off), 2).astype(np.float32)
+    seen = cv2.remap(image, places, None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    slope = np.maximum(-np.gradient(seen.astype(float), axis=1), 0.0) ** 2 + 1e-6
+    found = np.zeros((len(seen), 1))
+    for _ in range(STEEPEST):
+        weight = slope * np.exp(-0.5 * ((off - found) / (0.4 * off[-1])) ** 2)
+        found = (weight @ off)[:, None] / weight.sum(axis=1, keepdims=True)
+    return found.reshape(at.shape[:2])
 
 
 def _brightness(image: NDArray, xy: NDArray) -> float:
