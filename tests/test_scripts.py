@@ -14,7 +14,8 @@ PARTS = ("input", "output", "params")
 DRAWN = {"figure", "session_figure", "study_figure", "device_figure", "calibrated_figure"}
 FILES_OF_A_FIGURE = {"pdf", "png", "csv"}
 # Files that a script finds by another one: members of folders, assets, what a simulation writes.
-FOR_SNAKEMAKE = {"assets", "files", "photos", "videos", "boards", "clicks", "devices", "racket"}
+FOR_SNAKEMAKE = {"assets", "files", "of_cameras", "photos", "videos", "boards", "clicks"}
+FOR_SNAKEMAKE |= {"devices", "racket"}
 WILDCARDS = {
     *("session", "take", "camera", "person", "device", "source", "model", "calibration"),
     *("mapper", "n_images", "offset", "threads"),
