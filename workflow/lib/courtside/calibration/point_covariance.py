@@ -74,9 +74,8 @@ def field(
 ) -> Callable[[NDArray], NDArray]:
     """Return a function from places (N, 3) m to how far errors of the cameras move points there.
 
-    With the `cameras` of the network, points are placed by those that show them (`views`).
-
-    The result is (N, 3, R) m. The R errors are independent, each of one standard deviation, and the
+    With the `cameras` of the network, points are placed by those that show them (`views`). The
+    result is (N, 3, R) m. The R errors are independent, each of one standard deviation, and the
     same for all places: those at two places are correlated as the covariance says. Parameters as
     for `point_covariance`, which is the product of the result with its transpose.
     """
@@ -86,9 +85,11 @@ def field(
     root = unit[:, None] * (axes * np.sqrt(np.maximum(extent, 0.0)))[:, extent > 0]
 
     def at(xyz: NDArray) -> NDArray:
-        seen = [None if cameras is None else views(cameras, part) for part in _parts(xyz)]
-        each = zip(_parts(xyz), seen, strict=True)
-        return np.concatenate([sensitivity(network, part, own) @ root for part, own in each])
+        found = []
+        for part in _parts(xyz):
+            seen = None if cameras is None else views(cameras, part)
+            found.append(sensitivity(network, part, seen) @ root)
+        return np.concatenate(found)
 
     return at
 

@@ -10,7 +10,9 @@ from courtside.study.errors import LONGEST, InputError, StrPath
 # ASSUME: of fewer files, numbers without gaps may be those of frames by chance.
 LEAST_FILES = 10
 RENUMBER = "number the files by the frames of the video, from 0, or name the video of these files"
-OF_ALPHAPOSE = "run AlphaPose with `--format open`, and name its folder `sep-json`"
+OF_ALPHAPOSE = (
+    "a file of all frames; run AlphaPose with `--format open`, and name its folder `sep-json`"
+)
 # ASSUME: in a take somebody is seen in more than one of so many frames.
 SPARSEST = 20
 
@@ -102,7 +104,7 @@ def numbered(folder: StrPath) -> dict[int, str]:
         if not digits:
             found = "none; rename it"
             if is_of_all_frames(folder / name):
-                found = f"a file of all frames; {OF_ALPHAPOSE}"
+                found = OF_ALPHAPOSE
             raise InputError(
                 f"{folder / name}: expected the frame's number in the name, found {found}"
             )

@@ -13,7 +13,7 @@ from courtside.geometry import picture_size
 from courtside.study.configuration import configuration, schemas, yaml_files
 from courtside.study.configuration.sessions import FEWEST_ALONE
 from courtside.study.errors import InputError, StrPath
-from courtside.study.methods import UNSCALED
+from courtside.study.methods import NEEDS_COURT
 
 MARK = "# guess:"
 PLAIN = re.compile(r"[A-Za-z0-9_./+-]+( [A-Za-z0-9_./+-]+)*")
@@ -70,8 +70,7 @@ def write(path: Path, content: str) -> None:
         raise InputError(
             f"{path.stem}: expected a session's name of at most 64 of a-z, 0-9, _ and -, begun "
             "with a letter or digit, no device of Windows such as con, and none of na, nan, none, "
-            "null, "
-            f"{', '.join(configuration.RESERVED)}, found {found}"
+            f"null, {', '.join(configuration.RESERVED)}, found {found}"
         )
     try:
         with path.open("x", encoding="utf-8") as stream:
@@ -429,7 +428,7 @@ def _of_cameras(guess: Guess, court_points: str | None) -> Iterator[str]:
     """Yield how the cameras will be found, and what that takes."""
     if court_points is None:
         if guess.walks and any(guess.takes.values()):
-            yield f"Court: {UNSCALED}."
+            yield f"Court: {NEEDS_COURT}."
         if not guess.walks:
             alone = "; or use the draft's line for people alone" * bool(_people_alone(guess))
             yield (

@@ -146,8 +146,9 @@ def _keypoints(path: Path) -> dict[str, Any] | None:
 
 def _points_of_all_frames(path: Path) -> dict[str, Any] | None:
     """Describe AlphaPose's file of all frames; None of other JSON files."""
-    note = f"a file of all frames; {frame_numbers.OF_ALPHAPOSE}"
-    return {"kind": "unusable", "note": note} if frame_numbers.is_of_all_frames(path) else None
+    if not frame_numbers.is_of_all_frames(path):
+        return None
+    return {"kind": "unusable", "note": frame_numbers.OF_ALPHAPOSE}
 
 
 def _table(path: Path) -> dict[str, Any] | None:

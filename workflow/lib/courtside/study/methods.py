@@ -21,7 +21,7 @@ HALFBODY = "halfbody"  # the paper's rule for three cameras
 # Stages of skeletons in words.
 STAGE_WORDS = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
 # Of takes of a session with a walk and no court.
-UNSCALED = (
+NEEDS_COURT = (
     "the walk gives no metres without a court, so takes are not measured; name a court, or "
     "describe one (config/README.md, A court of your own)"
 )

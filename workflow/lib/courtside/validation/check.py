@@ -11,7 +11,7 @@ from courtside.records.devices.clocks import are_stated
 from courtside.study.configuration.session_files import is_there
 from courtside.study.configuration.sessions import Session, Study, Take
 from courtside.study.errors import InputError
-from courtside.study.methods import UNSCALED, Calibration, fewer_images
+from courtside.study.methods import NEEDS_COURT, Calibration, fewer_images
 from courtside.validation import (
     boards,
     bodies,
@@ -228,7 +228,7 @@ class _Session:
         yield from stated_times.repeated(self._session)
         filmed = any(len(take.cameras) > 1 for take in self._session.takes.values())
         if filmed and self._session.unscaled() and not self._session.take_calibrations():
-            yield f"court: {UNSCALED}"
+            yield f"court: {NEEDS_COURT}"
 
     def _sizes(self) -> dict[str, dict[str, tuple[int, int]]]:
         found: dict[str, dict[str, tuple[int, int]]] = {}
