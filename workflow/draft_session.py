@@ -16,7 +16,7 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 COURTS = REPOSITORY / "config" / "courts"
 sys.path.insert(0, str(REPOSITORY / "workflow" / "lib"))
 
-from courtside.drafting import additions, draft, guess, survey
+from courtside.drafting import additions, advice, draft, guess, survey
 from courtside.drafting import names as file_names
 from courtside.study.configuration import schemas, session_files
 from courtside.study.configuration.configuration import RESERVED
@@ -45,7 +45,7 @@ def main(folder, name, court, sessions):
     filmed = [t for t, films in found.takes.items() if films and t not in draft.unfilmed(found)]
     said = [f"Wrote {shown(path)}.", draft.write_study(study, name, filmed)]
     points = None if court == "none" else draft.court_points(found, written)
-    return [*said, *draft.to_check(found, shown(path), points, study)]
+    return [*said, *advice.to_check(found, shown(path), points, study)]
 
 
 def check_court(court):

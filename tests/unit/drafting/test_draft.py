@@ -3,29 +3,12 @@
 import pytest
 import yaml
 
+from courtside.drafting import advice
 from courtside.drafting import draft as session_draft
-from courtside.drafting import guess as session_guess
 from courtside.drafting.guess import Recording
 from courtside.study.configuration import schemas, session_faults, session_files, yaml_files
 from courtside.study.errors import InputError
-
-
-def recording(path, kind="video", **more):
-    parts = tuple(path.removeprefix("data/").rpartition(".")[0].split("/")[1:])
-    keys = {"size": (64, 48), "rate_hz": 30.0, "duration_s": 5.0}
-    return Recording(path, parts or (path,), kind, **(keys | more))
-
-
-def draft(*recordings, title="North", folder="data/north", **options):
-    guess = session_guess.guess(list(recordings))
-    text = session_draft.text(guess, title=title, folder=folder, **options)
-    content = yaml.safe_load(text)
-    assert schemas.faults(content, "session", "draft") == []
-    return guess, text, content
-
-
-TAKE = (recording("data/north/a_left.mp4"), recording("data/north/a_right.mp4"))
-WALK = recording("data/north/walk.mp4", rate_hz=60.0, duration_s=95.2)
+from fixtures.study.drafts import CALIBRATION, TAKE, THREE, WALK, draft, recording
 
 
 def test_a_whole_session_has_all_its_keys():
@@ -128,9 +111,6 @@ def folder(path, skeletons=(25, ("body25b", "body25"))):
 
 
 KEYPOINTS = tuple(folder(f"data/north/pose/{name}_json") for name in ("left", "right"))
-CALIBRATION = recording(
-    "data/north/Calib.toml", "calibration", cameras={"left": (64, 48), "right": (64, 48)}
-)
 
 
 def test_a_court_that_is_asked_for_is_written_beside_a_calibration_file():
@@ -148,17 +128,17 @@ def test_keypoints_without_videos_are_a_session_that_wants_their_rate(tmp_path):
     assert (content["court"], content["synchronised"]) == ("none", True)
     assert f"# rate_hz: 60  {session_draft.MARK} no file states it" in text
     assert "25 points are body25b or body25: the points look like body25b" in text
-    advice = session_draft.to_check(guess, "north.yaml", "points.csv", "config/north.yaml")
-    assert "Keypoints without videos: state `rate_hz` of take1." in advice
+    said = advice.to_check(guess, "north.yaml", "points.csv", "config/north.yaml")
+    assert "Keypoints without videos: state `rate_hz` of take1." in said
     folder = schemas.SCHEMAS.parents[1] / "config"
     content["takes"]["take1"]["rate_hz"] = 60
     found = session_faults.find(folder, tmp_path / "north.yaml", content, None, tmp_path)
     assert [line for line in found if "expected a file, found none" not in line] == []
     guess, _, content = draft(*KEYPOINTS)
     assert "court_points" not in content
-    advice = session_draft.to_check(guess, "north.yaml", "points.csv", "config/north.yaml")
-    assert any("put the calibration file into the folder" in line for line in advice)
-    assert not any("Court points" in line or "No walk" in line for line in advice)
+    said = advice.to_check(guess, "north.yaml", "points.csv", "config/north.yaml")
+    assert any("put the calibration file into the folder" in line for line in said)
+    assert not any("Court points" in line or "No walk" in line for line in said)
 
 
 def test_keypoints_beside_videos_are_used_where_all_takes_have_them():
@@ -200,18 +180,6 @@ def test_devices_and_left_over_files_are_told():
     }
     assert '#   "data/north/bad_left.mp4": expected a video, found none\n' in text
     assert '"data/north/chess.x"' in text
-
-
-def test_files_that_are_not_used_are_told_at_once():
-    """Otherwise a video that is cut short is one camera less, and nobody notices."""
-    bad = recording("data/north/a_back.mp4", "unusable", note="expected a video,\nfound none")
-    more = [recording(f"data/north/{at}.mp4", "unusable", note="cut short") for at in range(6)]
-    said = session_draft.to_check(draft(*TAKE, bad)[0], "n.yaml", "c.csv", "s.yaml")
-    assert said[1] == "Not used: data/north/a_back.mp4: expected a video, found none"
-    said = session_draft.to_check(draft(*TAKE, bad, *more)[0], "n.yaml", "c.csv", "s.yaml")
-    assert said[6] == "Not used: 2 more"
-    said = session_draft.to_check(draft(*TAKE)[0], "n.yaml", "c.csv", "s.yaml")
-    assert not any("Not used" in line for line in said)
 
 
 def test_names_that_a_session_may_not_have_are_replaced():
@@ -286,9 +254,6 @@ def test_without_a_walk_takes_rest_on_the_clicked_points():
     assert "override" not in draft(*TAKE, court="none")[2]
 
 
-THREE = (*TAKE, recording("data/north/a_back.mp4"))
-
-
 def uncommented(text):
     """Return a draft in which the line on people alone counts, in place of another `override`."""
     lines = [line for line in text.splitlines() if not line.startswith("override:")]
@@ -313,63 +278,8 @@ def test_three_cameras_without_a_court_may_be_calibrated_by_people_alone(tmp_pat
     parameters = yaml_files.read("config/config.yaml")
     session = session_files.session("north", "config/sessions/north.yaml", alone, parameters)
     assert session.take_calibrations() == ["people"]
-    said = "\n".join(session_draft.to_check(guess, "north.yaml", None, "config/north.yaml"))
+    said = "\n".join(advice.to_check(guess, "north.yaml", None, "config/north.yaml"))
     assert "or use the draft's line for people alone" in said
-
-
-def test_no_page_for_clicks_is_promised_without_a_court():
-    guess, text, _ = draft(*TAKE, court="none")
-    assert "calibrations" not in text
-    said = "\n".join(session_draft.to_check(guess, "n.yaml", None, "s.yaml"))
-    assert "Cameras: nothing in the folder tells how they stand" in said
-    assert not any(part in said for part in ("Court points", "No walk", "people alone"))
-    walked = session_draft.to_check(draft(*THREE, WALK, court="none")[0], "n.yaml", None, "s.yaml")
-    assert not any(line.startswith(("Cameras", "Court points")) for line in walked)
-    (court,) = (line for line in walked if line.startswith("Court: "))
-    assert "gives no metres without a court, so takes are not measured; name a court" in court
-    for others in ((CALIBRATION,), (WALK,)):
-        assert "calibrations: [people]" not in draft(*THREE, *others, court="none")[1]
-    assert "calibrations: [people]" not in draft(*THREE)[1]
-
-
-def test_a_page_for_clicks_needs_a_static_recording_of_every_camera():
-    static = [recording(f"data/north/{name}_empty.mp4") for name in ("left", "right")]
-    for films, start in (
-        (static, "Court points: the first run makes a page"),
-        ((), "Court points: give every camera a `static` recording, and"),
-    ):
-        guess = draft(*TAKE, *films)[0]
-        said = session_draft.to_check(guess, "n.yaml", "c.csv", "s.yaml")
-        assert sum(line.startswith(start) and line.endswith("for c.csv.") for line in said) == 1
-
-
-def guessed(*recordings):
-    return session_guess.guess(list(recordings))
-
-
-def test_what_to_check_names_what_is_odd(tmp_path):
-    slow = recording("data/north/a_right.mp4", rate_hz=25.0, duration_s=60.0, size=(32, 48))
-    static = recording("data/north/right_empty.mp4"), recording("data/north/left_empty.mp4")
-    walk = recording("data/north/walk.mp4", note="frames come at irregular times")
-    guess = guessed(TAKE[0], slow, *static, walk)
-    points = "data/north/court_points.csv"
-    lines = session_draft.to_check(guess, tmp_path / "north.yaml", points, "config/north.yaml")
-    said = "\n".join(lines)
-    for part in ("camera right has pictures of 32x48 and 64x48", "25 and 30 Hz", "twofold"):
-        assert part in said
-    assert "walk.mp4: frames come at irregular times" in said
-    assert "data/north/court_points.csv" in said
-    assert "--configfile config/north.yaml" in said
-    assert "No walk" not in said
-    lines = session_draft.to_check(guessed(*TAKE), tmp_path / "north.yaml", "c.csv", "n.yaml")
-    assert any(line.startswith("No walk") for line in lines)
-    assert [line for line in lines if line.startswith("Odd")] == [
-        "Odd: take a is 5.0 s long: in less than 15 s the clocks of cameras are seldom found; "
-        "say `synchronised: true` if they share one"
-    ]
-    long = [recording(r.path, duration_s=15.0) for r in TAKE]
-    lines = session_draft.to_check(guessed(*long), tmp_path / "north.yaml", "c.csv", "n.yaml")
-    assert not any(line.startswith("Odd") for line in lines)
 
 
 def test_a_study_of_the_session_alone_is_written_once(tmp_path):
@@ -433,20 +343,11 @@ def test_as_many_frames_are_taken_for_one_clock():
     guess, text, content = draft(*alike)
     assert content["synchronised"] is True
     assert "remove it if they were started by hand" in text
-    lines = session_draft.to_check(guess, "north.yaml", "c.csv", "n.yaml")
+    lines = advice.to_check(guess, "north.yaml", "c.csv", "n.yaml")
     assert any(line.startswith("Clocks: as many frames") for line in lines)
     other = [alike[0], recording(TAKE[1].path, n_frames=151)]
     assert "synchronised" not in draft(*other)[2]
     assert "synchronised" not in draft(*TAKE)[2]
-
-
-def test_names_of_another_script_are_said():
-    videos = [recording(f"data/north/{c}カメラ_試技1.mp4") for c in ("左", "右")]
-    guess, _, content = draft(*videos)
-    assert list(content["cameras"]) == ["left", "right"]
-    said = "\n".join(session_draft.to_check(guess, "north.yaml", "c.csv", "n.yaml"))
-    assert "camera left (data/north/左カメラ_試技1.mp4)" in said
-    assert "take trial1 (data/north/左カメラ_試技1.mp4)" in said
 
 
 def test_few_pictures_of_a_walk_are_asked_for():
@@ -471,7 +372,7 @@ def test_devices_alone_make_a_session():
         "jump": {"devices": {"mocopi": {"file": "data/suit/jump.bvh"}}},
         "arm_raise": {"devices": {"mocopi": {"file": "data/suit/arm raise.bvh"}}},
     }
-    lines = session_draft.to_check(guess, "suit.yaml", "c.csv", "n.yaml")
+    lines = advice.to_check(guess, "suit.yaml", "c.csv", "n.yaml")
     assert not any(line.startswith(("Odd", "No walk", "Court")) for line in lines)
 
 
@@ -483,7 +384,7 @@ def test_a_single_view_is_a_take_of_devices():
     assert content["takes"] == {
         "balance": {"devices": {"webcam": {"file": film.path}, "mocopi": {"file": suit.path}}}
     }
-    lines = session_draft.to_check(guess, "room.yaml", None, "n.yaml")
+    lines = advice.to_check(guess, "room.yaml", None, "n.yaml")
     assert f"Odd: {film.path}: {film.note}" in lines
     assert not any(line.startswith(("No walk", "Court", "Cameras")) for line in lines)
 

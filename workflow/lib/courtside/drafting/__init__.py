@@ -4,5 +4,6 @@ survey: `survey`: what every file of a folder is; `written`: its path as a sessi
 guess: `guess`: cameras, walks and takes, from the names of files
 names: `words_of`, `name`, `distinct`, `alike`: words of any script; `device_names`: of recorders
 additions: `to_paste`: takes that a session's file has not yet
-draft: `text`, `write`, `write_study`: the session's file and its study; `to_check`: advice
+draft: `text`, `write`, `write_study`: the session's file and its study
+advice: `to_check`: what a user should check after that
 """

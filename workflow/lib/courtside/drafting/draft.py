@@ -1,4 +1,4 @@
-"""Draft a session's YAML file from a folder of recordings, with advice on what is missing."""
+"""Draft a session's YAML file from a folder of recordings."""
 
 import json
 import re
@@ -12,8 +12,7 @@ from courtside.drafting.guess import Guess, Recording, Take
 from courtside.geometry import picture_size
 from courtside.study.configuration import configuration, schemas, yaml_files
 from courtside.study.configuration.sessions import FEWEST_ALONE
-from courtside.study.errors import InputError, StrPath
-from courtside.study.methods import NEEDS_COURT
+from courtside.study.errors import InputError
 
 MARK = "# guess:"
 PLAIN = re.compile(r"[A-Za-z0-9_./+-]+( [A-Za-z0-9_./+-]+)*")
@@ -50,10 +49,10 @@ def text(guess: Guess, *, title: str, folder: str, court: str | None = None) -> 
         lines += ["subjects:", f"  p1: {{consent: [analysis, pictures]}}  {MARK} {SUBJECTS}"]
     clicked = measured and court != "none"
     lines += [*_cameras(guess), *_walks(guess), *_places(guess, folder, clicked)]
-    lines += [*_people(guess, folder), *_synchronised(guess), *_takes(guess)]
+    lines += [*_people(guess, folder), *synchronised(guess), *_takes(guess)]
     lines += _override(guess)
     if measured and court == "none" and not guess.walks:
-        lines += _people_alone(guess)
+        lines += people_alone(guess)
     return "\n".join([*lines, *_unused(guess)]) + "\n"
 
 
@@ -199,16 +198,17 @@ def court_points(guess: Guess, folder: str) -> str:
     return guess.court_points.path if guess.court_points else f"{folder}/court_points.csv"
 
 
-def _synchronised(guess: Guess) -> list[str]:
+def synchronised(guess: Guess) -> list[str]:
     """Return the key by which all cameras share a clock, if every take looks like it."""
     filmed = [take for take in guess.takes.values() if take]
-    if not filmed or not all(_as_many_frames(take) for take in filmed):
+    if not filmed or not all(as_many_frames(take) for take in filmed):
         return []
     remark = "as many frames in all cameras of a take; remove it if they were started by hand"
     return [f"synchronised: true  {MARK} {remark}"]
 
 
-def _as_many_frames(take: Take) -> bool:
+def as_many_frames(take: Take) -> bool:
+    """Say whether all cameras of a take have as many frames, which cameras of one clock have."""
     counts = {recording.n_frames for recording in take.values()}
     return len(counts) == 1 and None not in counts and len(take) > 1
 
@@ -288,7 +288,7 @@ def _imported(guess: Guess) -> list[str]:
     return [f"models: [{', '.join(dict.fromkeys(found))}]"]
 
 
-def _people_alone(guess: Guess) -> list[str]:
+def people_alone(guess: Guess) -> list[str]:
     """Return a line to be uncommented by which people tell how three cameras or more stand."""
     if not any(guess.takes.values()) or len(guess.cameras) < FEWEST_ALONE:
         return []
@@ -321,11 +321,11 @@ def _bridging_images(recording: Recording) -> int:
 
 
 def _unused(guess: Guess) -> list[str]:
-    lines = [f"#   {json.dumps(path)}: {why}" for path, why in _left_out(guess)]
+    lines = [f"#   {json.dumps(path)}: {why}" for path, why in left_out(guess)]
     return ["# not used:", *lines] if lines else []
 
 
-def _left_out(guess: Guess) -> list[tuple[str, str]]:
+def left_out(guess: Guess) -> list[tuple[str, str]]:
     """Return the path of each file that the draft does not use, with the reason in one line."""
     found = [(r.path, _one_line(why)) for r, why in guess.unused]
     found += [(r.path, f"{d} of no take") for take, d, r in guess.devices if not take]
@@ -367,8 +367,6 @@ def _quoted(value: str) -> str:
 WAYS = ("file", "sfm-n40", "known", "board", "wand")  # of `calibrations` in config.yaml
 USUAL_IMAGES, EVERY_S = 40, 0.5  # `sweep.n_images` and `extract_frames.every_s` of config.yaml
 USABLE = 0.8  # ASSUME: share of a walk's frames that are sharp and differ
-SHOWN = 5  # files that are not used, on the terminal; the draft lists all
-SHORT_S = 15  # ASSUME: in shorter takes the clocks of cameras are seldom found
 
 
 def write_study(path: Path, session: str, takes: Iterable[str]) -> str:
@@ -391,100 +389,3 @@ def write_study(path: Path, session: str, takes: Iterable[str]) -> str:
     except FileExistsError:
         return f"Left {path} as it is: name {session} among its `sessions`."
     return f"Wrote {path}."
-
-
-def to_check(guess: Guess, path: StrPath, court_points: str | None, study: StrPath) -> list[str]:
-    """List what a user should check after drafting, in order.
-
-    `path` is the draft, `court_points` where clicked court points are expected, None without a
-    court, `study` the study that names the session.
-    """
-    lines = [f"Look at {path}: every line with `{MARK}`, and everything under `not used`."]
-    left_out = _left_out(guess)
-    lines += [f"Not used: {file}: {why}" for file, why in left_out[:SHOWN]]
-    lines += [f"Not used: {len(left_out) - SHOWN} more"] * (len(left_out) > SHOWN)
-    lines += [f"Odd: {line}" for line in _odd(guess)]
-    lines += _translated(guess)
-    if _synchronised(guess):
-        lines.append(
-            "Clocks: as many frames in all cameras, so `synchronised: true`; remove it if the "
-            "cameras were started by hand."
-        )
-    if unfilmed(guess):
-        wanted = f"state `rate_hz` of {', '.join(unfilmed(guess))}"
-        if guess.calibration is None:
-            wanted += "; put the calibration file into the folder and name it as `calibration`"
-        lines.append(f"Keypoints without videos: {wanted}.")
-    elif guess.calibration is None and guess.cameras:
-        lines += _of_cameras(guess, court_points)
-    lines.append(
-        f"`snakemake -n -q rules --configfile {study}` checks it and counts what will be made."
-    )
-    lines.append(f"`snakemake --configfile {study}` makes it.")
-    return lines
-
-
-def _of_cameras(guess: Guess, court_points: str | None) -> Iterator[str]:
-    """Yield how the cameras will be found, and what that takes."""
-    if court_points is None:
-        if guess.walks and any(guess.takes.values()):
-            yield f"Court: {NEEDS_COURT}."
-        if not guess.walks:
-            alone = "; or use the draft's line for people alone" * bool(_people_alone(guess))
-            yield (
-                "Cameras: nothing in the folder tells how they stand, and without a court there is "
-                "no page for clicks: add a `calibration` file, `court_points` with your own "
-                f"coordinates, a `board` or a `wand` (config/README.md){alone}."
-            )
-        return
-    if guess.court_points is None:
-        page = "the first run makes a page to click them on"
-        if not set(guess.cameras) <= set(guess.static):
-            page = f"give every camera a `static` recording, and {page}"
-        yield f"Court points: {page}, for {court_points}."
-    if not guess.walks:
-        yield "No walk was found: the cameras will be calibrated from clicked court points alone."
-
-
-def _translated(guess: Guess) -> list[str]:
-    """Return a line on names that stand for words of another script; empty where there are none."""
-    said = []
-    for camera in guess.cameras:
-        films = guess.films(camera)
-        said += [f"camera {camera} ({r.path})" for r in films[:1] if not r.path.isascii()]
-    for name, take in guess.takes.items():
-        films = [r for r in take.values() if not r.path.isascii()]
-        said += [f"take {name} ({films[0].path})"] if films else []
-    return [f"Names, with one of their files each: {', '.join(said)}."] if said else []
-
-
-def _odd(guess: Guess) -> Iterator[str]:
-    """Yield unusual sizes, rates and lengths."""
-    for camera in guess.cameras:
-        films = [*guess.films(camera), *filter(None, [guess.static.get(camera)])]
-        sizes = sorted({film.size for film in films if film.size is not None})
-        if len(sizes) > 1:
-            found = " and ".join(f"{width}x{height}" for width, height in sizes)
-            yield f"camera {camera} has pictures of {found} pixels"
-    for name, take in guess.takes.items():
-        yield from _odd_take(name, take)
-    filmed = [recording for take in guess.takes.values() for recording in take.values()]
-    for recording in [*guess.walks.values(), *filmed, *(r for *_, r in guess.devices)]:
-        if recording.note:
-            yield f"{recording.path}: {recording.note}"
-
-
-def _odd_take(name: str, take: Take) -> Iterator[str]:
-    if not take or any(recording.kind == "keypoints" for recording in take.values()):
-        return
-    rates = {round(r.rate_hz or 0) for r in take.values()}
-    if len(rates) > 1:
-        yield f"take {name} has videos of {' and '.join(map(str, sorted(rates)))} Hz"
-    lengths = [r.duration_s for r in take.values() if r.duration_s is not None]
-    if max(lengths) > 2 * min(lengths):
-        yield f"take {name} has videos whose lengths differ more than twofold"
-    if len(lengths) > 1 and min(lengths) < SHORT_S and not _as_many_frames(take):
-        yield (
-            f"take {name} is {min(lengths):.1f} s long: in less than {SHORT_S} s the clocks of "
-            "cameras are seldom found; say `synchronised: true` if they share one"
-        )

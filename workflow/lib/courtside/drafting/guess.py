@@ -310,7 +310,12 @@ def _sort_pictures(
 
 
 def _is_walk(recording: Recording, camera: str | None, cameras: Words) -> bool:
-    return camera is None and bool(cameras or _has(recording, WALK))
+    return camera is None and bool(cameras or is_called_walk(recording))
+
+
+def is_called_walk(recording: Recording) -> bool:
+    """Say whether the name of a recording says that it is a walk."""
+    return _has(recording, WALK)
 
 
 def _keep(found: Guess, place: Take, recording: Recording, camera: str | None, reason: str) -> None:
