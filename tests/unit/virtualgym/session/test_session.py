@@ -12,6 +12,7 @@ from courtside.geometry import camera as projection
 from courtside.geometry.camera import Camera
 from courtside.records.cameras import clicks
 from courtside.records.truth import session_truth
+from courtside.study.configuration import yaml_files
 from courtside.video import reader
 from fixtures.cameras import scene
 from fixtures.recordings import coarse_halls
@@ -19,7 +20,8 @@ from virtualgym import worlds
 from virtualgym.cameras import layouts, row_warp
 from virtualgym.session import click_model, session
 
-COURT = court_files.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
+CONFIG = Path(__file__).parents[4] / "config"
+COURT = court_files.read(CONFIG / "courts" / "badminton.yaml")
 SETTINGS = session.Settings(
     preset="rich", layout="a", seed=3, size_px=[480, 270], walk_frames=4, static_frames=3,
     boards=True, people=2, stabiliser=True,
@@ -263,3 +265,10 @@ def contrast(image, project):
         xy = project(middles + np.array([aside_m, 0, 0])).astype(np.float32)
         level[aside_m] = cv2.remap(grey, xy[:, 0], xy[:, 1], cv2.INTER_LINEAR).mean()
     return level[0.0] - max(level[-0.15], level[0.15])
+
+
+def test_repeated_takes_of_several_players_do_not_share_random_numbers():
+    """Players of one seed move alike, and 15 repeats would be worth five."""
+    takes = yaml_files.read(CONFIG / "sessions" / "repeats.yaml")["takes"].values()
+    seeds = [take["virtual"]["seed"] for take in takes]
+    assert len(seeds) == len(set(seeds)) == 15
