@@ -11,6 +11,7 @@ import pytest
 from courtside.calibration import file_formats
 from courtside.geometry import camera as cameras
 from courtside.study.errors import InputError
+from fixtures.cameras import scene
 from fixtures.recordings.real_data import REAL, needs_real
 
 ROTATION_VECTOR = np.array([1.2, -0.7, 0.4])
@@ -374,3 +375,20 @@ def test_a_camera_looks_at_its_aim_and_roll_turns_it_about_its_axis():
         down, [np.sin(np.radians(10)), np.cos(np.radians(10)), 0], atol=1e-12
     )
     np.testing.assert_allclose(rolled[:, :3] @ [0, -5, 1] + rolled[:, 3], 0, atol=1e-12)
+
+
+def test_slopes_of_the_picture_are_differences_and_never_flat():
+    lens = scene.ring(1, dist=(-0.25, 0.07, 1e-3, -5e-4, -0.007))[0]
+    places = np.random.default_rng(0).uniform(-0.8, 0.8, (50, 2))
+
+    def seen(plane):
+        in_cam = np.column_stack([plane, np.ones(len(plane))])
+        at_origin = replace(lens, cam_from_world=np.eye(3, 4))
+        return cameras.project(at_origin, in_cam)
+
+    steps = 1e-6 * np.eye(2)
+    expected = np.stack([(seen(places + d) - seen(places - d)) / 2e-6 for d in steps], axis=-1)
+    np.testing.assert_allclose(cameras.picture_slopes(lens, places), expected, atol=1e-3)
+    at_fold = np.array([[lens.fold_radius, 0.0]])
+    slopes = np.linalg.svd(cameras.picture_slopes(lens, at_fold)[0], compute_uv=False)
+    assert slopes.min() == pytest.approx(cameras.LEAST_SLOPE * lens.K[0, 0])

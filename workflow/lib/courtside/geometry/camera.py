@@ -18,6 +18,7 @@ OTHER_TABLES = ("metadata", "capture_volume", "charuco", "checkerboard")  # as P
 TOLERANCE_PX = 1e-10  # of `undistort`: far below the noise of any keypoint, above rounding errors
 MAX_ITERATIONS = 50  # ASSUME: enough for Newton's method; pixels not solved by then become NaN
 ENTRIES = 2048  # radii tabulated for its start, which so lies within about 1 %
+LEAST_SLOPE = 0.3  # ASSUME: no lens that is calibrated well shows its pictures' edges smaller
 LONG_DIST = 9  # coefficients of a lens that no calibration here estimates
 NEGLIGIBLE = 1e-30  # dividing by a coefficient this much smaller than the others overflows
 
@@ -338,6 +339,21 @@ def _slopes(dist: NDArray, normalised: NDArray) -> tuple[NDArray, NDArray, NDArr
     return along_x, mixed, along_y
 
 
+def picture_slopes(camera: Camera, normalised: NDArray) -> NDArray:
+    """Return the derivative (..., 2, 2) px of places in the picture by undistorted ones (..., 2).
+
+    These lie on the z = 1 plane. In no direction is it less than `LEAST_SLOPE` focal lengths, for
+    at the fold of a lens model, where it is 0, any place would agree with a keypoint.
+    """
+    along_x, mixed, along_y = _slopes(camera.dist, normalised)
+    lens = _matrices(along_x, mixed, along_y)
+    least = (along_x + along_y) / 2 - np.hypot((along_x - along_y) / 2, mixed)
+    if (flat := least < LEAST_SLOPE).any():
+        slopes, axes = np.linalg.eigh(lens[flat])
+        lens[flat] = axes * np.maximum(slopes, LEAST_SLOPE)[:, None] @ axes.mT
+    return _focal(camera)[:, None] * lens
+
+
 def jacobian_by_place(dist: NDArray, normalised: NDArray, depth: NDArray) -> NDArray:
     """Return the derivative (..., 2, 3) of distorted points with respect to camera coordinates.
 
@@ -347,9 +363,12 @@ def jacobian_by_place(dist: NDArray, normalised: NDArray, depth: NDArray) -> NDA
     pinhole = np.zeros((*normalised.shape, 3))
     pinhole[..., 0, 0] = pinhole[..., 1, 1] = 1.0
     pinhole[..., 2] = -normalised
-    along_x, mixed, along_y = _slopes(dist, normalised)
-    lens = np.stack([along_x, mixed, mixed, along_y], axis=-1).reshape(*mixed.shape, 2, 2)
-    return lens @ pinhole / depth[..., np.newaxis]
+    return _matrices(*_slopes(dist, normalised)) @ pinhole / depth[..., np.newaxis]
+
+
+def _matrices(along_x: NDArray, mixed: NDArray, along_y: NDArray) -> NDArray:
+    """Return symmetric matrices (..., 2, 2) of their elements (...)."""
+    return np.stack([along_x, mixed, mixed, along_y], axis=-1).reshape(*mixed.shape, 2, 2)
 
 
 def _radial(dist: NDArray, square: Any) -> Any:  # a float for a float, else an array

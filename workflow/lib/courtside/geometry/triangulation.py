@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from courtside.geometry import epipolar
-from courtside.geometry.camera import Camera, project, undistort
+from courtside.geometry.camera import Camera, picture_slopes, project, undistort
 
 FADE = 4 / 3  # default of `fade_px`, in units of the limit
 # ASSUME: the schedule of the robust kernel; outliers of 80 to 400 px are left out (tests).
@@ -282,7 +281,8 @@ def _select_and_refine(
 
 def _linear(views: Views) -> NDArray:
     """Return points (N, 3) by weighted DLT, then one step of least squares."""
-    xyz = triangulate(views.xy, np.sqrt(views.weight) * views.focal_px[:, None], views.matrix)
+    scale_px = np.sqrt(np.abs(np.linalg.det(views.px_per_plane)))
+    xyz = triangulate(views.xy, np.sqrt(views.weight) * scale_px, views.matrix)
     return views.stepped(xyz, views.weight)
 
 
@@ -324,20 +324,27 @@ def _reprojection_px(cameras: Sequence[Camera], xy: NDArray, xyz: NDArray) -> ND
 
 
 class Views:
-    """Keypoints of C cameras: `xy` (C, N, 2) px, and `weight` (C, N) in px^-2, 1 for score 1."""
+    """Keypoints of C cameras: `xy` (C, N, 2) px, and `weight` (C, N) in px^-2, 1 for score 1.
+
+    Residuals are on the undistorted plane, times the slopes of the lens at the keypoint: to first
+    order they are px of the picture, as the noise of keypoints is.
+    """
 
     def __init__(self, cameras: Sequence[Camera], xy: NDArray, weight: NDArray) -> None:
         self.xy = np.stack([undistort(c, points) for c, points in zip(cameras, xy, strict=True)])
         self.weight = np.where(np.isfinite(self.xy).all(axis=-1), weight, 0.0)
         self.xy = np.nan_to_num(self.xy)
         self.matrix = np.stack([camera.cam_from_world for camera in cameras])
-        self.focal_px = np.array([epipolar.focal_px(camera) for camera in cameras])
+        # (C, N, 2, 2) px: the derivative of places in the picture by those on the plane.
+        self.px_per_plane = np.stack(
+            [picture_slopes(camera, plane) for camera, plane in zip(cameras, self.xy, strict=True)]
+        )
 
     def of(self, at: NDArray) -> Views:
         """Return the same views of some of the points only."""
         part = object.__new__(Views)
-        part.xy, part.weight = self.xy[:, at], self.weight[:, at]
-        part.matrix, part.focal_px = self.matrix, self.focal_px
+        part.xy, part.weight, part.matrix = self.xy[:, at], self.weight[:, at], self.matrix
+        part.px_per_plane = self.px_per_plane[:, at]
         return part
 
     def residuals(self, xyz: NDArray) -> tuple[NDArray, NDArray]:
@@ -345,8 +352,7 @@ class Views:
         rotation, shift = self.matrix[:, :, :3], self.matrix[:, :, 3]
         in_cam = xyz[None] @ rotation.transpose(0, 2, 1) + shift[:, None]
         depth = np.where(np.abs(in_cam[..., 2:]) < 1e-9, 1e-9, in_cam[..., 2:])
-        residual = (in_cam[..., :2] / depth - self.xy) * self.focal_px[:, None, None]
-        return residual, in_cam
+        return self._in_picture((in_cam[..., :2] / depth - self.xy)[..., None])[..., 0], in_cam
 
     def jacobians(self, in_cam: NDArray, weight: NDArray) -> tuple[NDArray, NDArray]:
         """Return the derivative J (N, 2 C, 3) of residuals by points, and J'W (N, 3, 2 C).
@@ -354,13 +360,17 @@ class Views:
         NaN for a point at a camera, where two cameras in one place put it.
         """
         depth = np.where(in_cam[..., 2:] == 0, np.nan, in_cam[..., 2:])
-        scale = self.focal_px[:, None] / depth[..., 0]
         ratio = in_cam[..., :2] / depth
         rows = self.matrix[:, None, :2, :3] - ratio[..., None] * self.matrix[:, None, 2:3, :3]
-        rows = rows * scale[..., None, None]
+        rows = self._in_picture(rows / depth[..., None])
         weighted = rows * weight[..., None, None]
         flat = rows.transpose(1, 0, 2, 3).reshape(rows.shape[1], -1, 3)
         return flat, weighted.transpose(1, 3, 0, 2).reshape(rows.shape[1], 3, -1)
+
+    def _in_picture(self, plane: NDArray) -> NDArray:
+        """Return columns (C, N, 2, K) of small steps on the undistorted plane in px."""
+        along_x = self.px_per_plane[..., 0, None] * plane[..., :1, :]
+        return along_x + self.px_per_plane[..., 1, None] * plane[..., 1:, :]
 
     def stepped(self, xyz: NDArray, weight: NDArray) -> NDArray:
         """Return points (N, 3) after a Gauss-Newton step; one whose system is singular stays."""
