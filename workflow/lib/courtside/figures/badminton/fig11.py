@@ -74,8 +74,7 @@ def table(
     at = [list(points.joints).index(joint) for joint in joints]
     parts = []
     for camera, one in enumerate(footage):
-        own = one.frame_at(points.time_s[frame])
-        reprojected, raw = one.reprojected(points, own), one.view.xy[:, own]
+        raw, reprojected = picture_crops.joints_at(one, points, frame)
         seen = picture_crops.as_fused(points, frame, one.camera.name, raw, mirror)
         for person, name in enumerate(points.person_id):
             both = known[person, :, :, camera].sum(axis=0)
@@ -125,7 +124,8 @@ def draw(
         picture_crops.show(axis, images[name], picture_crops.box(both, size, ASPECT))
         picture_crops.compare(axis, *both, stick.bones, line)
         axis.set_title(name)
-        _mark(axis, rows[(rows.camera == name) & rows.disagrees], 7 * line)
+        if images[name].size:
+            _mark(axis, rows[(rows.camera == name) & rows.disagrees], 7 * line)
     upper.legend(*_legend(limit_torso, line), loc="outside lower center", ncols=3)
     upper.suptitle(f"frame at {rows.time_s.iloc[0]:.2f} s", fontsize=8)
     _draw_shares(lower, rows)
