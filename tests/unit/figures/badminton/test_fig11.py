@@ -208,6 +208,23 @@ def test_a_camera_that_does_not_film_then_is_not_said_to_agree():
     assert [text.get_text() for text in drawing.axes[1].texts] == ["does not film then"]
 
 
+def test_shares_are_of_the_frames_with_both_and_few_of_them_are_told():
+    record, seen = moved((FRAME, "left_wrist", 1, 60), (3, "left_wrist", 1, 60))
+    record.reproj_error_px[:, 12:, AT("left_wrist"), 1] = np.nan
+    record.reproj_error_px[:, 8:, AT("right_wrist"), 1] = np.nan
+    nowhere = {name: np.full((1, 14, 2), np.nan) for name in takes_made.pictures()}
+    drawing = fig11.draw(
+        table(record, seen), takes_made.pictures(), nowhere, nowhere, takes_made.STICK, LIMIT
+    )
+    axis = drawing.axes[3]
+    cells = [text.get_text() for text in axis.texts[12:24]]  # of c1
+    joints = list(takes_made.LIMBS)
+    assert cells[joints.index("left_wrist")] == "17"  # 2 of 12, of 20 frames in the take
+    assert cells[joints.index("right_wrist")] == "0 (8)"
+    assert sum("(" in text.get_text() for text in axis.texts) == 1
+    assert "of the frames with both" in axis.get_title()
+
+
 def test_rings_are_drawn_where_the_moved_joints_were_detected():
     record, seen = moved((FRAME, "left_wrist", 1, 60), (FRAME, "right_ankle", 1, 70))
     rows = table(record, seen)
