@@ -261,6 +261,25 @@ def test_errors_are_coloured_with_a_legend(opened):
     assert page.evaluate("courtside.viewer.state()")["scale_end"] == 50
 
 
+@pytest.mark.parametrize("up_deg", [-30, 0, 20, 40])
+def test_through_a_camera_the_eye_stands_where_it_stands_and_looks_its_way(opened, up_deg):
+    page, _ = opened
+    up = np.radians(up_deg)
+    camera = {"centre": [1.0, -6.0, 0.4], "forward": [0, np.cos(up), np.sin(up)], "focal": 0.9}
+    look = """([camera, points]) => {
+      const eye = new Eye();
+      eye.through(camera, [0, 4, 1.2]);
+      const found = [eye.place, eye.forward];
+      eye.turn(0.1, 0);
+      eye.fit(points);
+      return [...found, eye.forward];
+    }"""
+    place, forward, after = page.evaluate(look, [camera, [[0, 0, 0], [1, 1, 2]]])
+    np.testing.assert_allclose(place, camera["centre"], atol=1e-9)
+    np.testing.assert_allclose(forward, camera["forward"], atol=1e-9)
+    assert after[2] < 0.2  # by hand it does not look up from below the floor
+
+
 DISTANCES = """async () => {
   const unpacked = courtside.data("layers").map((one) => Layer.unpack(one, [0, 0, 0], 0));
   const [first, other] = await Promise.all(unpacked);
