@@ -261,6 +261,67 @@ def test_errors_are_coloured_with_a_legend(opened):
     assert page.evaluate("courtside.viewer.state()")["scale_end"] == 50
 
 
+@pytest.mark.parametrize("up_deg", [-30, 0, 20, 40])
+def test_through_a_camera_the_eye_stands_where_it_stands_and_looks_its_way(opened, up_deg):
+    page, _ = opened
+    up = np.radians(up_deg)
+    camera = {"centre": [1.0, -6.0, 0.4], "forward": [0, np.cos(up), np.sin(up)], "focal": 0.9}
+    look = """([camera, points]) => {
+      const eye = new Eye();
+      eye.through(camera, [0, 4, 1.2]);
+      const found = [eye.place, eye.forward];
+      eye.turn(0.1, 0);
+      eye.fit(points);
+      return [...found, eye.forward];
+    }"""
+    place, forward, after = page.evaluate(look, [camera, [[0, 0, 0], [1, 1, 2]]])
+    np.testing.assert_allclose(place, camera["centre"], atol=1e-9)
+    np.testing.assert_allclose(forward, camera["forward"], atol=1e-9)
+    assert after[2] < 0.2  # by hand it does not look up from below the floor
+
+
+DISTANCES = """async () => {
+  const unpacked = courtside.data("layers").map((one) => Layer.unpack(one, [0, 0, 0], 0));
+  const [first, other] = await Promise.all(unpacked);
+  return other.time_s.map((_, frame) => other.distanceMm(first, 0, 0, frame));
+}"""
+
+
+def circling(time_s, missing=()):
+    """Return a layer whose joint goes round at 6 m/s."""
+    angle = 10 * np.asarray(time_s)
+    xyz = np.stack([0.6 * np.cos(angle), 0.6 * np.sin(angle), 1 + 0 * angle], axis=-1)
+    xyz[list(missing)] = np.nan
+    shape = ["right_wrist"], [], np.array(["p1"])
+    return viewer_layers.Layer(f"{len(time_s)}", *shape, np.asarray(time_s), xyz[None, :, None])
+
+
+def test_the_same_motion_at_two_rates_is_at_no_distance(open_page, tmp_path):
+    first = circling(np.arange(120) / 30, missing=[60])
+    other = circling(0.004 + np.arange(239) / 60)
+    path = tmp_path / "viewer.html"
+    pages.write(path, viewer.build("A take", [first, other]))
+    page = open_page(path)
+    page.evaluate("courtside.viewer.ready")
+    found = np.array(page.evaluate(DISTANCES), float)
+    beside = (other.time_s > 59 / 30) & (other.time_s < 61 / 30)
+    assert np.isnan(found[beside]).all() and 3 <= beside.sum() <= 4
+    known = found[~beside & (other.time_s <= first.time_s[-1])]
+    assert known.max() < 10  # mm; the chord of a thirtieth of a second lies 8.3 mm off the circle
+
+
+def test_a_distance_needs_no_neighbour_on_a_frame_and_bridges_no_gap(open_page, tmp_path):
+    times_s = np.delete(np.arange(60) / 30, [20, 21, 22])
+    first, other = circling(times_s, missing=[40]), circling(np.arange(60) / 30)
+    path = tmp_path / "viewer.html"
+    pages.write(path, viewer.build("A take", [replace(first, name="first"), other]))
+    page = open_page(path)
+    page.evaluate("courtside.viewer.ready")
+    found = np.array(page.evaluate(DISTANCES), float)
+    assert np.flatnonzero(np.isnan(found)).tolist() == [20, 21, 22, 43]
+    assert np.nanmax(found) == 0
+
+
 @pytest.mark.parametrize("width", [400, 1280])
 def test_numbers_of_four_methods_are_in_sight(open_page, tmp_path, width):
     names = ("d415-depth", "d415-rgb", "mocopi", "mocopi-corrected")

@@ -5,7 +5,6 @@ Reads 2D keypoints, people, clocks, 3D keypoints and videos; writes figure and C
 
 from courtside.figures.style import picture_crops, style
 from courtside.figures.take import overlay
-from courtside.pose import privacy
 from courtside.reconstruction import camera_shake
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution.script import run
@@ -18,12 +17,7 @@ def main(paths, pdf, png, csv, *, n_frames, blur_faces):
     shown = overlay.frames(points, n_frames)
 
     def picture(one, frame):
-        at = one.frame_at(points.time_s[frame])
-        both, when_s = overlay.seen(points, one, frame, joints), one.view.time_s[at]
-        everybody = privacy.around(one.tracklets.time_s, one.tracklets.xy, at)
-        return picture_crops.read(
-            one.video, when_s, both, joints, others=everybody, hidden=blur_faces
-        )
+        return picture_crops.at_frame(one, points, frame, joints, hidden=blur_faces)[0]
 
     images = [[picture(one, frame) for one in seen] for frame in shown]
     drawing = overlay.draw(points, seen, shown, images, joints)

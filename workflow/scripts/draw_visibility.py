@@ -2,7 +2,6 @@
 
 from courtside.figures.style import style
 from courtside.figures.take import visibility
-from courtside.reconstruction import resampling
 from courtside.records.cameras import footage
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution.script import run
@@ -11,10 +10,7 @@ from courtside.study.execution.script import run
 def main(paths, pdf, png, csv):
     points = keypoints.read_3d(paths.pose3d)
     seen = footage.read(paths.cameras, paths.pose2d, paths.people, paths.sync)
-    scores = {
-        one.camera.name: one.view.score[:, resampling.nearest(one.view, points.time_s, one.clock)]
-        for one in seen
-    }
+    scores = {one.camera.name: visibility.scores(one, points.time_s) for one in seen}
     rows = visibility.table(points, scores)
     style.save(visibility.draw(rows, skeleton.read(paths.skeleton)), rows, pdf, png, csv)
 

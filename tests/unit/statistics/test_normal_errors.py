@@ -31,3 +31,11 @@ def test_factors_of_a_standard_deviation_are_those_of_normal_errors():
     assert np.median(sizes) * normal_errors.MEDIAN_TO_SIGMA == pytest.approx(1, abs=0.01)
     lengths = np.linalg.norm(DRAWS[:, :2], axis=1)
     assert np.median(lengths) == pytest.approx(normal_errors.MEDIAN_2D, abs=0.01)
+
+
+@pytest.mark.parametrize("n", [2, 3, 20])
+def test_one_more_value_lies_within_the_deviations_of_the_others(n):
+    values = np.random.default_rng(n).normal(5, 2, (100_000, n + 1))
+    others = values[:, :n]
+    away = np.abs(values[:, n] - others.mean(axis=1)) / others.std(axis=1, ddof=1)
+    assert np.mean(away <= normal_errors.one_more(n, 0.9)) == pytest.approx(0.9, abs=0.004)

@@ -4,8 +4,9 @@ import numpy as np
 import pandas as pd
 
 from courtside.figures.badminton import fig09
+from courtside.figures.style import picture_crops
 from fixtures.cameras import scene
-from fixtures.people import takes_made
+from fixtures.people import takes_made, walker
 
 FRAME = 8
 
@@ -70,3 +71,22 @@ def test_boxes_in_the_pictures_hold_the_person_that_is_enlarged():
         own = rows[rows.camera == name]
         assert own.detected_x_px.between(*enlarged.get_xlim()).all()
         assert own.detected_y_px.between(*sorted(enlarged.get_ylim())).all()
+
+
+def test_a_camera_that_does_not_film_then_says_so_in_place_of_a_picture():
+    record, seen = takes_made.take()
+    seen[1] = takes_made.stopped(seen[1], 5)
+    rows = fig09.table(record, seen, FRAME, takes_made.STICK)
+    empty = rows[["detected_x_px", "reprojected_x_px"]].isna().all(axis=1)
+    assert set(rows[empty].camera) == {"c1"} and empty.sum() == 14
+    assert rows.x_m.notna().all()
+    images = takes_made.pictures()
+    images["c1"], *_ = picture_crops.at_frame(seen[1], record, FRAME, walker.SKELETON, hidden=True)
+    drawing = fig09.draw(
+        rows, images, record, takes_made.CAMERAS, takes_made.STICK, measured(record)
+    )
+    panels = [*drawing.axes[:6], *drawing.axes[-3:]]
+    words = [[text.get_text() for text in axis.texts] for axis in panels]
+    assert words == [[], ["does not film then"], []] * 3
+    assert [len(axis.patches) for axis in drawing.axes[:3]] == [1, 0, 1]
+    drawing.draw_without_rendering()

@@ -3,7 +3,7 @@
 import numpy as np
 
 from courtside.figures.badminton import fig10
-from courtside.figures.style import oblique_view
+from courtside.figures.style import oblique_view, picture_crops
 from fixtures.people import takes_made, walker
 
 FRAMES = slice(2, 19)
@@ -67,3 +67,23 @@ def test_all_rows_are_to_one_scale_and_show_one_part_of_each_picture():
         assert len(limits) == 1
     assert [axis.get_title() for axis in drawing.axes[:3]] == ["c0", "c1", "c2"]
     drawing.draw_without_rendering()
+
+
+def test_a_camera_that_films_later_shows_the_same_part_then():
+    record, seen = takes_made.take()
+    shown, images = fig10.instants(FRAMES, 3), takes_made.pictures()
+
+    def pictures(first):
+        rows = [{n: (image, np.full((1, 14, 2), np.nan)) for n, image in images.items()}] * 3
+        return [{**rows[0], "c1": (first, rows[0]["c1"][1])}, *rows[1:]]
+
+    none = picture_crops.at_frame(
+        takes_made.stopped(seen[1], 5), record, shown[-1], walker.SKELETON, hidden=True
+    )[0]
+    whole, late = (
+        fig10.draw(record, takes_made.STICK, FRAMES, shown, pictures(first)).axes
+        for first in (images["c1"], none)
+    )
+    assert late[1].get_xlim() == late[5].get_xlim() == whole[1].get_xlim()
+    assert [text.get_text() for text in late[1].texts] == ["does not film then"]
+    assert not late[5].texts

@@ -191,6 +191,40 @@ def test_a_knock_of_14_px_is_no_swap_and_no_disagreement():
     assert left[0].any()
 
 
+def test_a_camera_that_does_not_film_then_is_not_said_to_agree():
+    record, seen = takes_made.take()
+    record.reproj_error_px[:, 5:, :, 1] = np.nan
+    seen[1] = takes_made.stopped(seen[1], 5)
+    rows = table(record, seen)
+    assert rows.detected_x_px.isna().equals(rows.camera == "c1")
+    images, both = takes_made.pictures(), ({}, {})
+    images["c1"], *_ = picture_crops.at_frame(seen[1], record, FRAME, walker.SKELETON, hidden=True)
+    for one in seen:
+        for kind, xy in zip(both, picture_crops.joints_at(one, record, FRAME), strict=True):
+            kind[one.camera.name] = takes_made.STICK.of(xy)
+    drawing = fig11.draw(rows, images, *both, takes_made.STICK, LIMIT)
+    labels = [axis.get_xlabel() for axis in drawing.axes[:3]]
+    assert labels == ["none above the limit", "", "none above the limit"]
+    assert [text.get_text() for text in drawing.axes[1].texts] == ["does not film then"]
+
+
+def test_shares_are_of_the_frames_with_both_and_few_of_them_are_told():
+    record, seen = moved((FRAME, "left_wrist", 1, 60), (3, "left_wrist", 1, 60))
+    record.reproj_error_px[:, 12:, AT("left_wrist"), 1] = np.nan
+    record.reproj_error_px[:, 8:, AT("right_wrist"), 1] = np.nan
+    nowhere = {name: np.full((1, 14, 2), np.nan) for name in takes_made.pictures()}
+    drawing = fig11.draw(
+        table(record, seen), takes_made.pictures(), nowhere, nowhere, takes_made.STICK, LIMIT
+    )
+    axis = drawing.axes[3]
+    cells = [text.get_text() for text in axis.texts[12:24]]  # of c1
+    joints = list(takes_made.LIMBS)
+    assert cells[joints.index("left_wrist")] == "17"  # 2 of 12, of 20 frames in the take
+    assert cells[joints.index("right_wrist")] == "0 (8)"
+    assert sum("(" in text.get_text() for text in axis.texts) == 1
+    assert "of the frames with both" in axis.get_title()
+
+
 def test_rings_are_drawn_where_the_moved_joints_were_detected():
     record, seen = moved((FRAME, "left_wrist", 1, 60), (FRAME, "right_ankle", 1, 70))
     rows = table(record, seen)

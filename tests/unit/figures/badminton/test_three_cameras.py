@@ -52,6 +52,16 @@ def test_no_two_fusions_have_the_same_words_although_they_have_the_same_cameras(
     assert len(set(words)) == len(words) == len(OFFSET_M)
 
 
+def test_the_legend_of_six_cameras_lies_on_the_page():
+    names = ["oblique", "back", "mirror", "front", "left", "right"]
+    drawing = three_cameras.draw(made(), dict.fromkeys(three_cameras.WAYS, names))
+    drawing.draw_without_rendering()
+    (legend,) = drawing.legends
+    box, page = legend.get_window_extent(), drawing.bbox
+    assert page.x0 <= box.x0 and box.x1 <= page.x1
+    assert page.y0 <= box.y0 and box.y1 < drawing.axes[0].get_tightbbox().y0
+
+
 def test_numbers_are_those_of_the_evaluation():
     rows = made()
     assert set(rows["joint"]) == set(three_cameras.ROWS)

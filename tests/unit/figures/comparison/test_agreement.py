@@ -57,3 +57,42 @@ def test_points_and_limits_are_drawn_at_the_tables_values():
     segments = [s for c in summary.collections for s in getattr(c, "get_segments", list)()]
     wide = row["upper"] / row["detectable"]
     assert any(np.isclose(s[:, 0].max(), wide) and s[0, 1] == 1 for s in segments)
+
+
+def panel_of(pairs, measure):
+    table = exchange.compare(pairs, NETWORKS)
+    axes = agreement.draw(pairs, table, NETWORKS).axes
+    return axes[agreement.choose(table).index(measure)]
+
+
+def points_of(panel):
+    return [line for line in panel.lines if line.get_marker() in agreement.MARKERS]
+
+
+def test_every_difference_lies_in_its_panel():
+    pairs, _ = made()
+    at = pairs.index[pairs["measure"] == "a"][7]
+    pairs.loc[at, "second"] += 30
+    for measure in ("a", "e"):
+        panel = panel_of(pairs, measure)
+        low, high = panel.get_ylim()
+        drawn = np.concatenate([line.get_ydata() for line in points_of(panel)])
+        assert len(drawn) == 20
+        assert low < drawn.min() and drawn.max() < high
+
+
+def test_subjects_with_too_few_repeats_are_hollow():
+    pairs, _ = made()
+    few = pairs[(pairs["subject"] == "p2") & pairs["take"].isin(["p2-0", "p2-1"])]
+    panel = panel_of(pd.concat([pairs, few.assign(subject="p0")]), "a")
+    faces = [line.get_markerfacecolor() for line in points_of(panel)]
+    assert faces == ["white", *["#444444"] * 4]
+
+
+def test_limits_beyond_the_axis_have_arrows():
+    pairs, table = made()
+    for name, reach in (("lower", 8.5), ("upper", 9), ("upper_to", 10)):
+        table.loc[table["measure"] == "e", name] = reach * table["detectable"]
+    summary = agreement.draw(pairs, table, NETWORKS).axes[-1]
+    ends = [c.get_offsets().tolist() for c in summary.collections if hasattr(c, "get_sizes")]
+    assert [tuple(at) for points in ends for at in points] == [(agreement.FURTHEST, 4)]

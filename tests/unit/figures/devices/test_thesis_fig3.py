@@ -52,6 +52,20 @@ def test_squares_mark_the_tpose_and_circles_the_clap():
     assert named == {"left wrist": pytest.approx(1), "right wrist": pytest.approx(-1)}
 
 
+def test_a_wrist_that_is_lost_at_the_clap_has_no_mark_of_it():
+    odd = PATHS.copy()
+    right = odd.index[(odd["source"] == "mocopi") & (odd["side"] == "right")]
+    odd.loc[right[-2:], ["x", "z"]] = np.nan
+    odd.loc[odd.index[(odd["source"] == "mocopi") & (odd["side"] == "left")][0], ["x", "z"]] = (
+        np.nan
+    )
+    (axis,) = thesis_fig3.draw(odd, DISTORTION, "mocopi").axes
+    marks = {m: [a.get_xydata()[0] for a in axis.lines if a.get_marker() == m] for m in "so"}
+    shown = {m: [at for at in found if np.isfinite(at).all()] for m, found in marks.items()}
+    np.testing.assert_allclose(shown["s"], [[-1, 0]], atol=1e-9)
+    np.testing.assert_allclose(shown["o"], [[0, np.sqrt(0.4)]], atol=1e-9)
+
+
 def test_the_title_says_how_far_the_path_is_from_its_arc():
     title = thesis_fig3.draw(PATHS, DISTORTION, "mocopi").axes[0].get_title()
     assert title.startswith("mocopi: 61 frames in 1.00 s")

@@ -1,10 +1,13 @@
 """What windows of a long take show, against lines whose quantiles and rates are known."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from courtside.figures.style import style, windows
 
+WORKFLOW = Path(__file__).parents[4] / "workflow"
 TIMES = -0.5 + np.arange(6000) / 10  # 600 s
 
 
@@ -44,3 +47,12 @@ def test_events_are_counted_by_the_time_in_which_somebody_is_seen():
     assert found.loc[204:294].isna().all()
     assert found.loc[304] == pytest.approx(120, rel=0.1)
     assert windows.a_minute(there[:0], TIMES, seen, 10).max() == 0
+
+
+def test_captions_say_that_long_takes_are_drawn_otherwise():
+    figures = (WORKFLOW / "lib" / "courtside" / "figures" / "take").glob("*.py")
+    names = {path.stem for path in figures if "windows.length_s" in path.read_text()}
+    assert names >= {"kinematics", "footwork", "rally", "visibility"}
+    for name in names:
+        caption = (WORKFLOW / "report" / f"draw_{name}.rst").read_text()
+        assert "of a take of more than two minutes" in " ".join(caption.lower().split()), name

@@ -122,6 +122,7 @@ def test_a_take_of_minutes_is_drawn_by_windows_and_by_the_time_in_each_square(ta
     plan, _, speed, angle = drawing.subfigs[0].axes
     seconds = plan.collections[-1].get_array()
     assert float(np.ma.masked_invalid(seconds).sum()) == pytest.approx(len(long) / 30, rel=0.01)
+    assert speed.get_ylabel() == "ground speed (m/s):\nmedian and 5 to 95 %"
     assert angle.get_xlabel() == "time (s): median and 5 to 95 % of each 5 s"
     first = long[long.time_s < 5]
     line = speed.lines[0].get_xydata()[0]

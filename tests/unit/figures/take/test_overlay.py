@@ -10,7 +10,7 @@ from courtside.figures.take import overlay
 from courtside.records.cameras.footage import Footage
 from courtside.records.devices.clocks import Clock
 from fixtures.cameras import scene
-from fixtures.people import walker
+from fixtures.people import takes_made, walker
 
 CAMERAS = scene.ring(3)
 IMAGE = np.zeros((1080, 1920, 3), np.uint8)
@@ -61,6 +61,37 @@ def test_each_frame_has_its_own_camera():
     still, moved = (rows[rows.time_s == time_s].distance_px.dropna() for time_s in times_s)
     assert still.max() < 1e-6
     assert moved.between(13.9, 17).all()  # 14 px in the middle of the picture
+
+
+def test_a_picture_between_two_frames_is_compared_with_the_skeleton_of_its_own_time():
+    record, footage = inputs(offset_px=(0.0, 0.0))
+    late_s = 0.4 * (record.time_s[1] - record.time_s[0])
+    view, xyz = footage[1].tracklets, record.xyz[0]
+    later = xyz[:-1] + 0.4 * np.diff(xyz, axis=0)
+    xy = view.xy.copy()
+    for frame, body in enumerate(later):
+        xy[0, frame] = scene.opencv_projection(CAMERAS[1], body)
+    seen = replace(view, time_s=view.time_s + late_s, xy=xy)
+    footage[1] = replace(footage[1], tracklets=seen)
+    rows = overlay.table(record, footage, [8], walker.SKELETON)
+    assert rows[rows.camera == "c1"].distance_px.max() < 1e-6
+
+
+def test_a_camera_that_does_not_film_has_neither_a_picture_nor_joints():
+    record, footage = inputs()
+    footage[1] = takes_made.stopped(footage[1], 8)
+    rows = overlay.table(record, footage, [6, 12], walker.SKELETON)
+    off = rows[(rows.camera == "c1") & (rows.time_s == record.time_s[12])]
+    columns = [name for name in off if name.endswith("_px")]
+    assert off[columns].isna().all(axis=None)
+    assert rows.drop(off.index)[columns].notna().all(axis=None)
+    none, *_ = picture_crops.at_frame(footage[1], record, 12, walker.SKELETON, hidden=True)
+    images = [[IMAGE] * 3, [IMAGE, none, IMAGE]]
+    drawing = overlay.draw(record, footage, [6, 12], images, walker.SKELETON)
+    said = [[text.get_text() for text in axis.texts] for axis in drawing.axes]
+    assert said == [[], [], [], [], ["does not film then"], []]
+    assert not drawing.axes[4].images
+    assert len(joints_of(drawing.axes[4], picture_crops.MARKED)) == 0
 
 
 def test_frames_are_evenly_spread_without_the_ends():

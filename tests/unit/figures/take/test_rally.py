@@ -80,6 +80,29 @@ def test_a_take_of_minutes_has_strokes_a_minute_and_its_liveliest_part(made):
     assert strip.get_title(loc="left") == f"p1: {len(at_s)} strokes"
 
 
+@pytest.mark.parametrize(
+    ("unseen_s", "hatched", "rates"), [((50, 53), [50], [24]), ((0, 150), range(0, 150, 5), [])]
+)
+def test_windows_in_which_the_player_is_hardly_seen_are_hatched(made, unseen_s, hatched, rates):
+    points, strokes, events = made
+    bare = points.frames(np.arange(30 * 150) % len(points.time_s))
+    time_s = np.arange(30 * 150) / 30
+    unseen = (time_s >= unseen_s[0]) & (time_s < unseen_s[1])
+    xyz = np.where(unseen[:, None, None], np.nan, bare.xyz)
+    at_s = np.array([53.5, 54.0, 54.6, 100.5, 101.0])
+    hits = strokes.iloc[np.zeros(len(at_s), int)].assign(time_s=at_s, overhead=True)
+    drawing = rally.draw(
+        hits.reset_index(drop=True), events[:0], replace(bare, xyz=xyz, time_s=time_s)
+    )
+    drawing.draw_without_rendering()
+    strip = drawing.axes[0]
+    found = [(at.get_x(), at.get_x() + at.get_width()) for at in strip.patches if at.get_hatch()]
+    assert found == [(at, at + 5) for at in hatched]
+    bars = [bar for bar in strip.patches if not bar.get_hatch() and bar.get_height() > 1]
+    assert [bar.get_height() for bar in bars] == pytest.approx(rates)
+    assert "hatched" in strip.get_xlabel()
+
+
 @pytest.mark.parametrize(("at_s", "start_s"), [([], 0), ([1.0], 0), ([80, 149], 79), ([149], 120)])
 def test_the_liveliest_part_lies_within_the_take(at_s, start_s):
     assert rally.liveliest(np.array(at_s, float), np.arange(151.0)) == start_s

@@ -63,6 +63,19 @@ def test_the_mean_and_its_band_are_drawn_where_all_strokes_are_known():
     assert x.min() == pytest.approx(phases.STEP_S) and x.max() == pytest.approx(2 * phases.STEP_S)
 
 
+def test_the_band_holds_nine_of_ten_further_strokes():
+    rng = np.random.default_rng(0)
+    for n_strokes in (3, 10):
+        lines = rng.normal(10, 1, (n_strokes, 4000))
+        (band,) = phases.draw(_strokes(lines)).axes[2].collections
+        x, y = band.get_paths()[0].vertices.T
+        at = np.rint(x / phases.STEP_S).astype(int)
+        ends = pd.Series(y).groupby(at)
+        further = rng.normal(10, 1, 4000)
+        held = (further > ends.min()) & (further < ends.max())
+        assert held.mean() == pytest.approx(0.9, abs=0.015)
+
+
 def test_strokes_never_known_together_have_no_mean():
     rows = _strokes([[1.0, np.nan], [np.nan, 3.0]])
     drawing = phases.draw(rows)

@@ -7,7 +7,7 @@ import numpy as np
 
 from courtside.figures.take import visibility
 from fixtures.cameras import scene
-from fixtures.people import walker
+from fixtures.people import takes_made, walker
 
 
 def scores(record, cameras=3):
@@ -24,6 +24,16 @@ def test_the_table_holds_the_records_scores_and_views():
     assert np.isnan(at.score_c1)
     assert at.score_c0 == 0.75
     np.testing.assert_array_equal(rows.n_views, record.n_views.ravel())
+
+
+def test_a_camera_has_scores_only_while_it_films():
+    record, (_, late, _) = takes_made.take()  # `late` has another clock
+    found = visibility.scores(takes_made.stopped(late, 8), record.time_s)
+    assert (found[:, :8] == 0.75).all()
+    assert np.isnan(found[:, 9:]).all()  # the frame between is one interval away
+    rows = visibility.table(record, {"c1": found})
+    (line,) = visibility.draw(rows, walker.SKELETON).axes[0].lines
+    assert np.isfinite(line.get_ydata()).sum() in (8, 9)
 
 
 def test_a_long_take_needs_memory_for_its_rows_alone():

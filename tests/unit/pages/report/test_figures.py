@@ -79,6 +79,17 @@ def test_whole_numbers_of_a_table_keep_all_their_digits(tmp_path):
     assert found == ["12345", "01", "123456", "02"]
 
 
+def test_names_of_a_table_stay_as_they_are(tmp_path):
+    names = ["2026_03_14", "1e3", "12_1", "007", "infinity"]
+    rows = "".join(f"{name},{name},2.50000,x_{name}\n" for name in names)
+    (tmp_path / "t.csv").write_text(f"session,calibration,error_cm,group\n{rows}1,1,1e3,1_2\n")
+    entry = {"file": tmp_path / "t.csv", "title": "t", "words": "", "link": "t.csv"}
+    found = re.findall(r"<td[^>]*>(.*?)</td>", report_figures.table(entry))
+    assert found[0:20:4] == found[1:20:4] == names
+    assert found[2:20:4] == ["2.5"] * 5
+    assert found[20:] == ["1", "1", "1000", "1_2"]
+
+
 def test_text_of_a_table_stays_as_it_is(tmp_path):
     (tmp_path / "t.csv").write_text('a,b\n"x, y",\n1.50,NA\n')
     entry = {"file": tmp_path / "t.csv", "title": "t", "words": "", "link": "t.csv"}

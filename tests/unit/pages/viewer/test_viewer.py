@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from courtside.calibration.court import court as court_files
-from courtside.figures.style import style
+from courtside.figures.style import source_styles, style
 from courtside.pages import page
 from courtside.pages.viewer import layers as viewer_layers
 from courtside.pages.viewer import viewer
@@ -135,7 +135,14 @@ def test_a_take_too_large_is_thinned_and_says_so(monkeypatch):
 
 def test_colours_are_those_of_the_figures():
     assert (viewer.LEFT, viewer.RIGHT, viewer.MIDDLE) == (style.LEFT, style.RIGHT, style.MIDDLE)
-    assert set(viewer.LAYER_COLOURS) <= set(style.CYCLE)
+    assert set(viewer.LAYER_COLOURS) <= {*style.CYCLE, source_styles.OTHER}
+
+
+def test_seven_layers_have_seven_colours():
+    names = ["corrected", "filtered", "raw", "mocopi", "mocopi-corrected", "d415-depth", "d415-rgb"]
+    held = Stores(viewer.build("t", [layer(name) for name in names])).held
+    colours = held["data-scene"]["colours"]["layers"]
+    assert len({colours[at % len(colours)] for at in range(len(names))}) == len(names)
 
 
 def test_the_page_is_written_whole(tmp_path):

@@ -94,6 +94,18 @@ def test_frames_are_found_by_the_reference_clock(tmp_path):
         assert one.reference_s(7) == pytest.approx(record.time_s[7])
 
 
+def test_a_camera_that_does_not_film_has_no_frame(tmp_path):
+    record, files = written(tmp_path)
+    first, last = record.time_s[[0, -1]]
+    for one in footage.read(*files):
+        assert one.frame_at(first - 0.015) == 0
+        assert one.frame_at(last + 0.015) == 11
+        assert one.frame_at(first - 0.025) is None
+        assert one.frame_at(last + 0.025) is None
+        times_s = np.array([first - 1, first, last, last + 1])
+        np.testing.assert_array_equal(one.frames_at(times_s), [-1, 0, 11, -1])
+
+
 def test_reprojections_lie_where_opencv_projects(tmp_path):
     record, files = written(tmp_path)
     one = footage.read(*files)[1]

@@ -21,6 +21,15 @@ def ellipsoid(share: float) -> float:
     return 2 * scipy.special.gammaincinv(3 / 2, share)
 
 
+def one_more(n: int, share: float) -> float:
+    """Return how many sample standard deviations about the mean of `n` values hold one more.
+
+    With probability `share`, 0..1, if all are normal: mean and deviation are estimated from the
+    same values, two or more.
+    """
+    return float(scipy.special.stdtrit(n - 1, 0.5 + share / 2) * math.sqrt(1 + 1 / n))
+
+
 def decimals(error: float) -> int:
     """Return after how many decimals a number ends that has such an error: with two digits of it.
 

@@ -42,9 +42,8 @@ def table(points: Keypoints3D, footage: list[Footage], frame: int, stick: Stick)
     moved = round_trip.distance_after([one.camera for one in footage], xyz)
     parts = []
     for one in footage:
-        at = one.frame_at(time_s)
-        detected = stick.of(one.view.xy[:, at]).reshape(-1, 2)
-        back = stick.of(one.reprojected(points, at)).reshape(-1, 2)
+        both = picture_crops.joints_at(one, points, frame)
+        detected, back = (stick.of(xy).reshape(-1, 2) for xy in both)
         columns = {
             "time_s": time_s,
             "camera": one.camera.name,
@@ -116,12 +115,13 @@ def _draw_pictures(
 ) -> None:
     axes = part.subplots(1, len(images), squeeze=False)[0]
     for axis, (name, image) in zip(axes, images.items(), strict=True):
-        height, width = image.shape[:2]
+        height, width = image.shape[:2] if image.size else (1, WIDE)
         picture_crops.show(axis, image, picture_crops.Box(width / 2, height / 2, width, height))
         box = boxes[name]
         corner = box.x - box.width / 2, box.y - box.height / 2
         look = {"fill": False, "edgecolor": picture_crops.DETECTED, "linewidth": 1.0}
-        axis.add_patch(Rectangle(corner, box.width, box.height, **look))
+        if image.size:
+            axis.add_patch(Rectangle(corner, box.width, box.height, **look))
         axis.set_xlabel(name, labelpad=1)
 
 

@@ -101,7 +101,8 @@ def draw(
 def _common_box(pictures: list[dict], name: str, aspect: float) -> picture_crops.Box:
     """Return the part of a camera's pictures that shows the persons at all instants."""
     detected = [by_camera[name][1] for by_camera in pictures]
-    return picture_crops.box(detected, pictures[0][name][0].shape[1::-1], aspect)
+    image = max((by_camera[name][0] for by_camera in pictures), key=np.size)
+    return picture_crops.box(detected, image.shape[1::-1], aspect)
 
 
 def _draw_space(

@@ -24,6 +24,7 @@ WIDEST_MM = 62  # of a panel
 ASPECT = 0.75  # width over height of a panel
 LINE = 1.4  # points, in the widest panel
 LISTED = 3  # joints named below a panel
+FEW = 0.5  # of the most frames with both: a joint with fewer is shown with their number
 PIXELS = ("detected_x_px", "detected_y_px", "reprojected_x_px", "reprojected_y_px")
 
 
@@ -74,8 +75,7 @@ def table(
     at = [list(points.joints).index(joint) for joint in joints]
     parts = []
     for camera, one in enumerate(footage):
-        own = one.frame_at(points.time_s[frame])
-        reprojected, raw = one.reprojected(points, own), one.view.xy[:, own]
+        raw, reprojected = picture_crops.joints_at(one, points, frame)
         seen = picture_crops.as_fused(points, frame, one.camera.name, raw, mirror)
         for person, name in enumerate(points.person_id):
             both = known[person, :, :, camera].sum(axis=0)
@@ -125,7 +125,8 @@ def draw(
         picture_crops.show(axis, images[name], picture_crops.box(both, size, ASPECT))
         picture_crops.compare(axis, *both, stick.bones, line)
         axis.set_title(name)
-        _mark(axis, rows[(rows.camera == name) & rows.disagrees], 7 * line)
+        if images[name].size:
+            _mark(axis, rows[(rows.camera == name) & rows.disagrees], 7 * line)
     upper.legend(*_legend(limit_torso, line), loc="outside lower center", ncols=3)
     upper.suptitle(f"frame at {rows.time_s.iloc[0]:.2f} s", fontsize=8)
     _draw_shares(lower, rows)
@@ -162,13 +163,17 @@ def _draw_shares(part: FigureBase, rows: pd.DataFrame) -> None:
     rows = rows.assign(where=rows.camera + (", " + rows.person if several else ""))
     shares = rows.pivot(index="where", columns="joint", values="take_disagree_percent")
     shares = shares.loc[list(dict.fromkeys(rows["where"])), joints]
+    known = rows.pivot(index="where", columns="joint", values="take_frames")
+    known = known.loc[shares.index, joints].to_numpy()
     axis.imshow(shares, aspect="auto", cmap="Reds", vmin=0, vmax=100)
     for (y, x), value in np.ndenumerate(shares.to_numpy()):
         colour = "white" if value > 60 else "black"
-        text = "–" if np.isnan(value) else f"{value:.0f}"
+        few = f" ({known[y, x]})" if known[y, x] < FEW * known.max() else ""
+        text = "–" if np.isnan(value) else f"{value:.0f}{few}"
         axis.text(x, y, text, ha="center", va="center", fontsize=7, color=colour)
     axis.set_xticks(range(len(joints)), [name.replace("_", "\n") for name in joints], fontsize=7)
     axis.set_yticks(range(len(shares)), shares.index, fontsize=7)
     axis.tick_params(length=0)
     axis.spines[:].set_visible(False)
-    axis.set_title("The whole take: in how many percent of the frames the two are so far apart")
+    words = "The whole take: of the frames with both, in how many percent they are so far apart"
+    axis.set_title(words)

@@ -33,6 +33,7 @@ WAYS = {  # fusion: words, colour, mark, filled
 SPREAD = 0.72  # of the distance between rows that the marks of one row share
 BAND = "#f0f0f0"
 MM_PER_ROW = 5.8
+LEGEND_MM = 3.5  # a line
 POINT_COLUMNS = {"point": "joint", "position_median_mm": "median_mm", "position_p95_mm": "p95_mm"}
 NUMBERS = ["n", "missing_percent", "median_mm", "p95_mm"]
 
@@ -67,7 +68,7 @@ def draw(rows: pd.DataFrame, cameras: dict[str, Sequence[str]]) -> Figure:
     blocks = list(rows.groupby(BLOCK, sort=False))
     ways = [way for way in WAYS if (rows["fusion"] == way).any()]
     height_mm = 6 + MM_PER_ROW * len(ROWS)
-    drawing = style.figure(22 + (height_mm + 14) * len(blocks))
+    drawing = style.figure(14 + LEGEND_MM * len(ways) + (height_mm + 14) * len(blocks))
     parts = np.atleast_1d(drawing.subfigures(len(blocks), 1))
     shown = rows[rows["fusion"].isin(ways) & rows["stage"].isin([*PANELS, "kinematics"])]
     limits = 0.7 * shown["median_mm"].min(), 1.2 * shown["p95_mm"].max()
@@ -158,5 +159,5 @@ def _explain(drawing: Figure, ways: list[str], cameras: dict[str, Sequence[str]]
         marks.append(bars.mark(colour, marker=marker, filled=filled, label=label))
     title = "mark: median; line: to the 95 % quantile; "
     title += "shaded: stable with two cameras, says the paper"
-    look = {"ncols": 2, "fontsize": 7, "title": title, "title_fontsize": 7}
+    look = {"fontsize": 7, "title": title, "title_fontsize": 7}
     drawing.legend(handles=marks, loc="outside lower center", **look)

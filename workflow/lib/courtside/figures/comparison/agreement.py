@@ -62,14 +62,19 @@ def _differences(axis: Axes, part: pd.DataFrame, row: pd.Series) -> None:
     part = part.dropna(subset=["first", "second"])
     detectable = row["detectable"]
     axis.axhspan(-detectable, detectable, color=BAND, linewidth=0, zorder=0)
-    for at, (_, own) in enumerate(part.groupby("subject", sort=True)):
+    # Those with enough repeats to count have more of them than all others.
+    counted = part["subject"].value_counts().index[: int(row["n_subjects"])]
+    for at, (subject, own) in enumerate(part.groupby("subject", sort=True)):
         mean, difference = (own["first"] + own["second"]) / 2, own["second"] - own["first"]
-        axis.plot(mean, difference, MARKERS[at % len(MARKERS)], color="#444444", markersize=2.8)
+        look = {"color": "#444444", "markersize": 2.8}
+        look["markerfacecolor"] = "#444444" if subject in counted else "white"
+        axis.plot(mean, difference, MARKERS[at % len(MARKERS)], **look)
     colour = COLOURS[row["verdict"]]
     axis.axhline(row["bias"], color="black", linewidth=0.8)
     for name in ("lower", "upper"):
         axis.axhline(row[name], color=colour, linestyle="--", linewidth=1.0)
-    reach = 1.35 * max(detectable, -row["lower"], row["upper"])
+    furthest = (part["second"] - part["first"]).abs().max()
+    reach = max(1.35 * max(detectable, -row["lower"], row["upper"]), 1.05 * furthest)
     axis.set_ylim(-reach, reach)
     axis.set_title(f"{_words(row['measure'])} ({row['unit'] or '1'})", fontsize=7)
     axis.tick_params(labelsize=7)
@@ -98,6 +103,7 @@ def _all_limits(axis: Axes, known: pd.DataFrame) -> None:
     ends = known[["lower", "upper"]].div(known["detectable"], axis=0).abs().to_numpy()
     reach = min(max(2.0, 1.15 * ends.max(initial=1.0)), FURTHEST)
     axis.set_xlim(-reach, reach)
+    _mark_beyond(axis, known, reach)
     labels = known["measure"].str.replace("_", " ") + np.where(
         known["definitions_differ"] != "", " *", ""
     )
@@ -105,3 +111,12 @@ def _all_limits(axis: Axes, known: pd.DataFrame) -> None:
     axis.set_ylim(len(known) - 0.4, -0.6)
     axis.set_xlabel("difference, in smallest detectable changes of the network in use")
     axis.figure.legend(loc="outside lower center", ncols=3)
+
+
+def _mark_beyond(axis: Axes, known: pd.DataFrame, reach: float) -> None:
+    """Mark limits beyond the ends of the axis with arrows."""
+    for end, side, marker in (("lower", -1, "<"), ("upper", 1, ">")):
+        at = np.flatnonzero(side * known[end] / known["detectable"] > reach)
+        colours = [COLOURS[verdict] for verdict in known["verdict"].iloc[at]]
+        look: dict = {"marker": marker, "c": colours, "s": 14, "clip_on": False}
+        axis.scatter(np.full(len(at), side * reach), at, **look)

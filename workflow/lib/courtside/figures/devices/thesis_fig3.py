@@ -122,8 +122,8 @@ def _panel(
     for _, path in own.groupby("side"):
         axis.plot(path["x"], path["z"], color=look.colour, linewidth=0.9, zorder=4)
         axis.plot(path["x"], path["z"], ".", color=look.colour, markersize=3, zorder=4)
-        known = path[np.isfinite(path["x"])]
-        for end, mark in ((known.head(1), "s"), (known.tail(1), "o")):
+        # Nothing where the wrist is not known at that time: the path then ends without a mark.
+        for end, mark in ((path.head(1), "s"), (path.tail(1), "o")):
             axis.plot(end["x"], end["z"], mark, color=look.colour, mfc="white", ms=6, zorder=5)
     axis.set_aspect("equal")
 

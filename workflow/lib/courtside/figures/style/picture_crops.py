@@ -18,6 +18,7 @@ from courtside.video import reader
 
 MARGIN = 1.2  # of the person's extent, around it
 LARGEST_PX = 800  # longest side of what is kept of a picture
+NOT_FILMED = "does not film then"
 LEAST_PX = 60  # the smallest box: for a person with only one or two known joints
 DETECTED, REPROJECTED, MARKED = (
     tuple(value / 255 for value in bgr[::-1])
@@ -66,15 +67,29 @@ def at_frame(
 ) -> tuple[NDArray, NDArray, NDArray]:
     """Return a camera's picture at a frame of a take, as `read`, and the joints in it.
 
-    The joints (P, J, 2) px are those detected, and those of `points` reprojected.
+    The joints are those of `joints_at`. A picture without pixels where the camera does not film.
     """
-    at = one.frame_at(points.time_s[frame])
-    both = one.view.xy[:, at], one.reprojected(points, at)
+    at, both = one.frame_at(points.time_s[frame]), joints_at(one, points, frame)
+    if at is None:
+        return np.zeros((0, 0, 3), np.uint8), *both
     if one.video is None:
         raise ValueError(f"expected a video of camera {one.camera.name}, found none")
     others = privacy.around(one.tracklets.time_s, one.tracklets.xy, at)
     image = read(one.video, one.view.time_s[at], both, skeleton, others=others, hidden=hidden)
     return image, *both
+
+
+def joints_at(one: Footage, points: Keypoints3D, frame: int) -> tuple[NDArray, NDArray]:
+    """Return the joints in a camera's picture nearest to a frame of `points`, (P, J, 2) px.
+
+    Those detected, and those of `points` reprojected, both of the time of the picture. All are NaN
+    where the camera does not film.
+    """
+    at = one.frame_at(points.time_s[frame])
+    if at is None:
+        nowhere = np.full((*points.xyz[:, frame].shape[:2], 2), np.nan)
+        return nowhere, nowhere
+    return one.view.xy[:, at], one.reprojected(points, at)
 
 
 def as_fused(
@@ -107,7 +122,10 @@ def box(xy: ArrayLike, size: tuple[int, int], aspect: float = 1.0) -> Box:
 
 
 def show(axis: Axes, image: NDArray, part: Box) -> None:
-    """Show a part of a picture (BGR) in the picture's own coordinates, empty beyond its edges."""
+    """Show a part of a picture (BGR) in the picture's own coordinates, empty beyond its edges.
+
+    Of a picture without pixels, it says that the camera does not film.
+    """
     left, top = part.x - part.width / 2, part.y - part.height / 2
     x0, y0 = max(0, int(left)), max(0, int(top))
     x1, y1 = (max(0, int(np.ceil(end)) + 1) for end in (left + part.width, top + part.height))
@@ -120,6 +138,9 @@ def show(axis: Axes, image: NDArray, part: Box) -> None:
                 np.ascontiguousarray(cut), None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA
             )
         axis.imshow(cut, extent=extent, interpolation="bicubic")
+    elif not image.size:
+        look = {"ha": "center", "va": "center", "fontsize": 7, "transform": axis.transAxes}
+        axis.text(0.5, 0.5, NOT_FILMED, **look)
     axis.set(xlim=(left, left + part.width), ylim=(top + part.height, top))
     axis.set(xticks=[], yticks=[], aspect="equal", facecolor="#eeeeee")
     axis.spines[:].set_visible(False)

@@ -130,7 +130,8 @@ def _draw_speeds(axis: Axes, own: pd.DataFrame, window_s: int) -> None:
     for name, colour in SPEEDS.items():
         look: dict = {"colour": colour, "label": NAMES[name], "window_s": window_s}
         _band(axis, own, name, ("ground_speed_m_s", "ground_speed_sd_m_s"), **look)
-    axis.set(ylabel="ground speed (m/s)")
+    each = ":\nmedian and 5 to 95 %" if window_s else ""
+    axis.set(ylabel=f"ground speed (m/s){each}")
     axis.set_ylim(bottom=0)
     axis.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2, borderaxespad=0)
     axis.tick_params(labelbottom=False)

@@ -9,7 +9,6 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from courtside.figures.style import picture_crops, style
-from courtside.geometry import camera as camera_models
 from courtside.records.cameras.footage import Footage
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints3D
@@ -29,12 +28,13 @@ def seen(
 ) -> tuple[NDArray, NDArray]:
     """Return the joints that a camera detected nearest to a frame, and reprojected, (P, J, 2) px.
 
-    The frame is of `points`; the 3D joints are those of its time, and the sides of the detected
-    ones are as the fusion took them.
+    The frame is of `points`; the 3D joints are those of the picture's time, and the sides of the
+    detected ones are as the fusion took them. All are NaN where the camera does not film.
     """
-    at, name = one.frame_at(points.time_s[frame]), one.camera.name
-    detected = picture_crops.as_fused(points, frame, name, one.view.xy[:, at], skeleton.mirror())
-    return detected, camera_models.project(one.standing(at), points.xyz[:, frame])
+    detected, reprojected = picture_crops.joints_at(one, points, frame)
+    mirror = skeleton.mirror()
+    detected = picture_crops.as_fused(points, frame, one.camera.name, detected, mirror)
+    return detected, reprojected
 
 
 def table(

@@ -13,6 +13,7 @@ from courtside.strokes import signals
 
 HEAD_MM, ROW_MM, STRIP_MM = 22, 45, 25
 LIVELIEST_S = 30.0  # of a take of minutes, which are drawn
+HATCHED = "hatched: seen for less than half"
 A_ROW = 4  # entries of the legend
 KINDS = {True: ("overhead stroke", style.RIGHT), False: ("low stroke", style.LEFT)}
 STEPS = {"split_step": ("split step", "v", 5), "step": ("step", "|", 4), "lunge": ("lunge", "D", 3)}
@@ -59,7 +60,7 @@ def _draw_long(
         _draw_strip(axis, own, points.time_s, seen, window_s)
         axis.axvspan(*part, color="0.8", linewidth=0, zorder=0)
         axis.set_title(f"{person}: {_counted(own)}", loc="left")
-    strips[-1].set_xlabel(f"time (s): each {window_s} s; grey: drawn below")
+    strips[-1].set_xlabel(f"time (s): each {window_s} s; grey: drawn below; {HATCHED}")
     rows = below.subplots(n_people, 1, sharex=True, squeeze=False)[:, 0]
     frames = slice(*np.searchsorted(points.time_s, part).tolist())
     strokes, events = strokes[strokes.time_s.between(*part)], events[events.stop_s.between(*part)]
@@ -82,14 +83,20 @@ def _within(time_s: NDArray) -> tuple[float, float]:
 def _draw_strip(
     axis: Axes, own: pd.DataFrame, time_s: NDArray, seen: NDArray, window_s: int
 ) -> None:
-    """Draw the strokes a minute of each window, low ones below overhead ones."""
+    """Draw the strokes a minute of each window, low ones below overhead ones.
+
+    A window in which the person is seen for less than half of it has no rate, and is hatched.
+    """
     bottom: pd.Series | float = 0.0
     for overhead in (False, True):
         at_s = own.time_s[own.overhead.astype(bool) == overhead].to_numpy()
-        rate = windows.a_minute(at_s, time_s, seen, window_s).fillna(0)
+        rate = windows.a_minute(at_s, time_s, seen, window_s)
         look: dict = {"color": KINDS[overhead][1], "alpha": 0.7}
         axis.bar(rate.index, rate, 0.9 * window_s, bottom, **look)
         bottom = bottom + rate
+    for middle_s in rate.index[rate.isna()]:
+        ends_s = middle_s - window_s / 2, middle_s + window_s / 2
+        axis.axvspan(*ends_s, facecolor="none", edgecolor="0.6", hatch="////", linewidth=0)
     axis.set(ylabel="strokes\na minute", xlim=(time_s[0], time_s[-1]))
 
 

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from courtside.figures.style import bars, style
 from courtside.records.keypoints.keypoints import Keypoints3D
-from courtside.statistics.normal_errors import WITHIN_90
+from courtside.statistics import normal_errors
 from courtside.strokes import signals
 
 BEFORE_S, AFTER_S, STEP_S = 0.8, 0.6, 0.02
@@ -45,7 +45,7 @@ def table(strokes: pd.DataFrame, points: Keypoints3D) -> pd.DataFrame:
 
 
 def draw(rows: pd.DataFrame) -> Figure:
-    """Draw overhead and low strokes side by side: each, their mean and a band of 90 %.
+    """Draw overhead and low strokes side by side: each, their mean and a band for one more.
 
     Without any stroke one sentence says so in place of panels.
     """
@@ -89,6 +89,6 @@ def _draw_lines(
     if middle.notna().any():
         axis.plot(wide.index, middle, **look, linewidth=1.6, label=f"{person}: mean of all")
     if n_strokes >= FEWEST:
-        reach = WITHIN_90 * wide.std(axis=1, skipna=False)
+        reach = normal_errors.one_more(n_strokes, 0.9) * wide.std(axis=1, skipna=False)
         low, high = middle - reach, middle + reach
         axis.fill_between(wide.index, low, high, color=look["color"], alpha=0.15, lw=0)

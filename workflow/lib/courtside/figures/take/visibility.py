@@ -8,10 +8,20 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from courtside.figures.style import style, windows
+from courtside.records.cameras.footage import Footage
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.keypoints.skeleton import Skeleton
 
 A_ROW = 6  # cameras in the legend
+
+
+def scores(one: Footage, time_s: NDArray) -> NDArray:
+    """Return a camera's scores (P, T, J) in the frames nearest to times (T,) of a take.
+
+    NaN where the camera does not film.
+    """
+    at = one.frames_at(time_s)
+    return np.where((at >= 0)[:, None], one.view.score[:, at], np.nan)
 
 
 def table(points: Keypoints3D, scores: Mapping[str, NDArray]) -> pd.DataFrame:

@@ -4,12 +4,14 @@
 
 const NEAR_M = 0.05;
 const MARGIN = 0.82; // of the canvas that a fitted scene takes up
+const LOWEST = -0.2; // elevation of an eye that is turned by hand, radians: just below the floor
 
 class Eye {
   constructor() {
     this.target = [0, 0, 1];
     this.azimuth = -1.0; // from where it looks, radians, 0 = from +x
     this.elevation = 0.35;
+    this.lowest = LOWEST;
     this.distance = 8;
     this.focal = 1.3; // of the canvas's shorter side
     this.size = [1, 1];
@@ -17,7 +19,7 @@ class Eye {
   }
 
   update() {
-    this.elevation = Math.max(-0.2, Math.min(Math.PI / 2 - 1e-3, this.elevation));
+    this.elevation = Math.max(this.lowest, Math.min(Math.PI / 2 - 1e-3, this.elevation));
     this.distance = Math.max(0.3, Math.min(200, this.distance));
     const [ca, sa] = [Math.cos(this.azimuth), Math.sin(this.azimuth)];
     const [ce, se] = [Math.cos(this.elevation), Math.sin(this.elevation)];
@@ -88,6 +90,7 @@ class Eye {
   /** Move back until points, metres, just fill the canvas, seen from the same side. */
   fit(points) {
     this.focal = 1.3;
+    this.lowest = LOWEST;
     const low = [0, 1, 2].map((axis) => Math.min(...points.map((point) => point[axis])));
     const high = [0, 1, 2].map((axis) => Math.max(...points.map((point) => point[axis])));
     this.target = low.map((value, axis) => (value + high[axis]) / 2);
@@ -110,6 +113,7 @@ class Eye {
     this.distance = Math.max(1, reach);
     const [x, y, z] = camera.forward;
     this.elevation = Math.asin(-z);
+    this.lowest = Math.min(LOWEST, this.elevation); // a low camera looks up
     this.azimuth = Math.atan2(-y, -x);
     this.target = camera.centre.map((value, axis) => value + this.distance * camera.forward[axis]);
     this.focal = camera.focal;

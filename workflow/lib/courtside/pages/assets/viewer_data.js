@@ -3,6 +3,8 @@
 /* Unpacks what pages/viewer/packing.py and pages/viewer/layers.py pack. */
 
 const LEAST = 1e-5, MOST = 10, LEVELS = 254, ANGLES = 255, STEP_M = 0.001, PX = 0.01;
+const SAME_S = 1e-4; // apart, at most, of times that are one: they are rounded
+const LONGEST_STEP_S = 0.045; // or 1.5 usual steps: without a gap, as in video/glance.py
 
 /** Base64 of a zlib stream -> Int16Array of rows of `length` numbers, given by their changes. */
 async function integers(text, length) {
@@ -53,17 +55,29 @@ class Layer {
     return layer;
   }
 
-  /** Index of the frame nearest to a time; -1 where none is near enough to stand for it. */
-  frameAt(time_s) {
+  /** Indices of the frames before and after a time; of the first or last two beyond the ends. */
+  around(time_s) {
     const times = this.time_s;
     let low = 0, high = times.length - 1;
     while (high - low > 1) {
       const half = (low + high) >> 1;
       if (times[half] <= time_s) low = half; else high = half;
     }
+    return [low, high];
+  }
+
+  /** Mean time between two frames, s. */
+  get step_s() {
+    const times = this.time_s;
+    return times.length > 1 ? (times[times.length - 1] - times[0]) / (times.length - 1) : 0.1;
+  }
+
+  /** Index of the frame nearest to a time; -1 where none is near enough to stand for it. */
+  frameAt(time_s) {
+    const times = this.time_s;
+    const [low, high] = this.around(time_s);
     const at = time_s - times[low] <= times[high] - time_s ? low : high;
-    const step = times.length > 1 ? (times[times.length - 1] - times[0]) / (times.length - 1) : 0.1;
-    return Math.abs(times[at] - time_s) <= Math.max(step, 0.02) ? at : -1;
+    return Math.abs(times[at] - time_s) <= Math.max(this.step_s, 0.02) ? at : -1;
   }
 
   /** Time of the first frame that shows a joint; of the first frame if none does. */
@@ -83,6 +97,18 @@ class Layer {
     if (frame < 0 || !this.known[this.at(person, joint, frame)]) return null;
     const row = (person * this.joints.length + joint) * 3;
     return [0, 1, 2].map((axis) => this.middle[axis] + STEP_M * this.xyz[(row + axis) * this.length + frame]);
+  }
+
+  /** Metres at a time, between the frames around it; null where one is missing or there is a gap. */
+  positionAt(person, joint, time_s) {
+    const [low, high] = this.around(time_s);
+    const span = this.time_s[high] - this.time_s[low];
+    const share = span > 0 ? (time_s - this.time_s[low]) / span : 0;
+    const nearest = share > 0.5 ? high : low;
+    if (Math.abs(time_s - this.time_s[nearest]) <= SAME_S) return this.position(person, joint, nearest);
+    if (share < 0 || share > 1 || span > Math.max(1.5 * this.step_s, LONGEST_STEP_S)) return null;
+    const [before, after] = [this.position(person, joint, low), this.position(person, joint, high)];
+    return before && after ? before.map((value, axis) => value + share * (after[axis] - value)) : null;
   }
 
   level(key, depth, person, joint, frame) {
@@ -128,7 +154,7 @@ class Layer {
     const p = other.persons.indexOf(this.persons[person]);
     const j = other.joints.indexOf(this.joints[joint]);
     if (!here || p < 0 || j < 0) return NaN;
-    const there = other.position(p, j, other.frameAt(this.time_s[frame]));
+    const there = other.positionAt(p, j, this.time_s[frame]);
     return there ? 1000 * Math.hypot(here[0] - there[0], here[1] - there[1], here[2] - there[2]) : NaN;
   }
 }

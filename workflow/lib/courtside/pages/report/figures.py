@@ -10,8 +10,12 @@ from markupsafe import Markup
 
 from courtside.pages import page, pictures
 from courtside.pages.report import captions
+from courtside.records import tables
 from courtside.study.errors import InputError
 
+NUMBER = re.compile(r"-?\d+(\.\d*)?(e[+-]?\d+)?")
+# Columns of names that a user gives, as 2026_03, 1e3 or 007: no numbers.
+NAMES = (*tables.LABELS, "calibration", "model", "preset", "layout")
 TITLES = {
     "overlay": "What the network saw, and the reconstruction",
     "skeletons": "Skeletons and cameras",
@@ -121,16 +125,19 @@ def table(entry: dict) -> Markup:
     found = pd.read_csv(entry["file"], dtype=str, keep_default_na=False)
     found = found.loc[:, (found != "").any()]
     head = [name.replace("_", " ") for name in found]
-    cells = [[_cell(value) for value in row] for row in found.to_numpy()]
+    named = [name in NAMES for name in found]
+    cells = [
+        [(value, False) if name else _cell(value) for value, name in zip(row, named, strict=True)]
+        for row in found.to_numpy()
+    ]
     return page.render("report_table.html", entry=entry, head=head, rows=cells)
 
 
 def _cell(value: str) -> tuple[str, bool]:
     """Return a value, fractions with four digits or to whole numbers, and whether it is one."""
-    try:
-        number = float(value)
-    except ValueError:
+    if not NUMBER.fullmatch(value):
         return value, False
+    number = float(value)
     if value.isdigit():  # a name such as 01 keeps its zero
         return value, True
     whole = number.is_integer() or FOUR_DIGITS <= abs(number) < math.inf

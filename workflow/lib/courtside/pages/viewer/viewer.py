@@ -28,7 +28,8 @@ from courtside.pages.viewer.layers import Layer
 # ASSUME: of all layers; opens at once and fits into e-mail. The rest of the page is about 60 kB.
 LARGEST_BYTES = 7_500_000
 LEFT, RIGHT, MIDDLE = "#0072B2", "#D55E00", "#666666"  # as in the figures
-LAYER_COLOURS = ["#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0072B2", "#D55E00"]
+# Seen on light and dark ground; a take with a suit and a depth camera has seven layers.
+LAYER_COLOURS = ["#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0072B2", "#D55E00", "#888888"]
 # ASSUME: length of a camera's pyramid, as a share of its distance and with limits; looks right.
 FRUSTUM_SHARE, FRUSTUM_M = 0.06, (0.3, 1.2)
 PERCENTILES = (0.5, 99.5)  # of the joints' positions, shown at first: without gross outliers

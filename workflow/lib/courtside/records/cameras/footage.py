@@ -38,9 +38,20 @@ class Footage:
         """Its keypoints by person; by tracklet where nobody is associated."""
         return self.people.assigned(self.tracklets) if self.people else self.tracklets
 
-    def frame_at(self, time_s: float) -> int:
-        """Return the index of the frame nearest to a time of the reference clock."""
-        return int(np.abs(self.view.time_s - self.clock.from_reference(time_s)).argmin())
+    def frames_at(self, time_s: NDArray) -> NDArray:
+        """Return the frames (T,) nearest to times (T,) of the reference clock.
+
+        -1 where the camera does not film: no frame lies within a frame interval of the time.
+        """
+        known, own_s = self.view.time_s, self.clock.from_reference(time_s)
+        at = interpolation.nearest(known, own_s, "left")
+        near = np.abs(known[at] - own_s) <= interpolation.frame_step_s(known)
+        return np.where(near, at, -1)
+
+    def frame_at(self, time_s: float) -> int | None:
+        """Return the frame nearest to a time; None where the camera does not film (`frames_at`)."""
+        at = int(self.frames_at(np.array([time_s]))[0])
+        return at if at >= 0 else None
 
     def reference_s(self, frame: int) -> float:
         """Return the time of a frame on the reference clock."""
