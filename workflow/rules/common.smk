@@ -160,7 +160,7 @@ def step(name):
 
 def whole(path):
     """Return a recording as an input; of a folder, only its files have useful dates (`inside`)."""
-    return ancient(path) if Path(path).is_dir() else path
+    return ancient(path) if path and Path(path).is_dir() else path
 
 
 def models_of(imported):
