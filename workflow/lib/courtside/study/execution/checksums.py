@@ -36,26 +36,29 @@ class Checksums:
     """The checksums of a study's inputs, kept in one JSON file between runs.
 
     A file that cannot be read as such is taken for an empty one. A folder is looked at once: many
-    results rest on the same recordings.
+    results rest on the same recordings. `until` has the date, ns, of the newest file that was made
+    directly from an input: Snakemake does not see another input that is no newer than this.
     """
 
     def __init__(self, path: StrPath) -> None:
         self.path = Path(path)
-        self.known = self._read()
+        self.known, self.until = self._read()
         self.folders: dict[Path, str] = {}
         self.changed = False
 
-    def _read(self) -> dict[str, list]:
+    def _read(self) -> tuple[dict[str, list], dict[str, int]]:
         try:
             content = files.read_json(self.path)
             if content["format"] != FORMAT:
-                return {}
-            return {
+                return {}, {}
+            known = {
                 name: [int(size), int(stamp_ns), str(value)]
                 for name, (size, stamp_ns, value) in content["files"].items()
             }
+            until = content.get("until", {})
+            return known, {name: int(stamp_ns) for name, stamp_ns in until.items()}
         except DAMAGED:
-            return {}
+            return {}, {}
 
     def of(self, path: StrPath) -> str | None:
         """Return the SHA-256 of a file or folder; None if there is none."""
@@ -78,10 +81,24 @@ class Checksums:
             self.changed = True
         return value
 
+    def use(self, path: StrPath, made_ns: int) -> None:
+        """Keep the date of a file that was made from another one, if that is as it is known.
+
+        Of one that was copied or exchanged since, only `of` reads the content again.
+        """
+        name = str(Path(path))
+        if name not in self.known or made_ns <= self.until.get(name, 0) or not Path(path).is_file():
+            return
+        state = Path(path).stat()
+        if self.known[name][:2] == [state.st_size, state.st_mtime_ns]:
+            self.until[name] = made_ns
+            self.changed = True
+
     def write(self) -> None:
         """Write what is known of files that still exist."""
         if not self.changed:
             return
         there = {name: kept for name, kept in sorted(self.known.items()) if Path(name).exists()}
-        files.write_json(self.path, {"format": FORMAT, "files": there})
+        until = {name: self.until[name] for name in there if name in self.until}
+        files.write_json(self.path, {"format": FORMAT, "files": there, "until": until})
         self.changed = False

@@ -49,35 +49,41 @@ def _dated(folder: str) -> Iterator[tuple[float, str]]:
 
 
 def check_exchanged(kept: StrPath, apart: Iterable[StrPath]) -> None:
-    """Check that no file was exchanged for another one of an older date since the last run.
+    """Check that no file was exchanged for one that is older than the results since the last run.
 
     Such a file looks unchanged to Snakemake, which compares dates: results of the other one would
     stay. `kept` is the file of `Checksums` that runs write: of all files that results were made
     from. Of these, files and folders `apart` are not looked at. An `InputError` has one line for
     each folder.
     """
-    known = checksums.Checksums(kept).known
+    kept_of_runs = checksums.Checksums(kept)
+    known, until = kept_of_runs.known, kept_of_runs.until
     apart = {Path(path) for path in apart}
     exchanged: dict[Path, list[Path]] = {}
     for path in map(Path, sorted(known)):
-        if apart.isdisjoint([path, *path.parents]) and _is_exchanged(path, *known[str(path)]):
+        size, stamp_ns, sha256 = known[str(path)]
+        state = size, stamp_ns, max(stamp_ns, until.get(str(path), 0))
+        if apart.isdisjoint([path, *path.parents]) and _is_exchanged(path, state, sha256):
             exchanged.setdefault(path.parent, []).append(path)
     lines = [
-        f"{folder}: expected files as in the last run, or newer ones, found others of an older "
-        f"date ({few([path.name for path in found], N_NAMED)}): the results of the last run would "
-        f"stay; give them today's date: {_touching(folder, found)}"
+        f"{folder}: expected files as in the last run, or newer than the results, found others of "
+        f"an older date ({few([path.name for path in found], N_NAMED)}): the results of the last "
+        f"run would stay; give them today's date: {_touching(folder, found)}"
         for folder, found in exchanged.items()
     ]
     if lines:
         raise InputError(*lines)
 
 
-def _is_exchanged(path: Path, size: int, stamp_ns: int, sha256: str) -> bool:
-    """Say whether a file differs from the one of a run, but is not newer."""
+def _is_exchanged(path: Path, state: tuple[int, int, int], sha256: str) -> bool:
+    """Say whether a file differs from the one of a run, but is not newer than its results.
+
+    `state` is its size, its date, ns, and that of the newest file made from it.
+    """
     if not path.is_file():
         return False
-    now = path.stat()
-    if now.st_mtime_ns > stamp_ns or (now.st_size, now.st_mtime_ns) == (size, stamp_ns):
+    (size, stamp_ns, until_ns), now = state, path.stat()
+    if now.st_mtime_ns > until_ns or (now.st_size, now.st_mtime_ns) == (size, stamp_ns):
         return False
     return now.st_size != size or files.sha256(path) != sha256
 

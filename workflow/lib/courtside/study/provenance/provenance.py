@@ -62,6 +62,8 @@ def record(
             written.append(name)
     _prune(folder, root)
     files.write_json(folder / "provenance.json", _of_run(run, known))
+    for name, made_ns in _last_made(jobs).items():
+        known.use(name, made_ns)
     known.write()
     return written
 
@@ -97,12 +99,27 @@ def _is_due(name: str, job: Job, record_of_it: Path) -> bool:
         return False
     if job["made"] or not record_of_it.exists():
         return True
-    # Of a folder, Snakemake's time stamp in it says when it was made.
-    stamp = path / ".snakemake_timestamp" if path.is_dir() else path
-    stamp = stamp if stamp.exists() else path
-    if stamp.stat().st_mtime_ns <= record_of_it.stat().st_mtime_ns:
+    if _made_ns(path) <= record_of_it.stat().st_mtime_ns:
         return False
     return job.get("known", True) or not _is_of(record_of_it, path)
+
+
+def _made_ns(path: Path) -> int:
+    """Return the date of a file; of a folder, that of Snakemake's time stamp in it."""
+    stamp = path / ".snakemake_timestamp" if path.is_dir() else path
+    return (stamp if stamp.exists() else path).stat().st_mtime_ns
+
+
+def _last_made(jobs: Sequence[Job]) -> dict[str, int]:
+    """Return {input: date of the newest file, ns, that a job has made from it}."""
+    made = {name for job in jobs for name in job["outputs"]}
+    found: dict[str, int] = {}
+    for job in (job for job in jobs if job["done"]):
+        names = [name for name in job["inputs"] if name not in made]
+        outputs = [path for path in map(Path, job["outputs"]) if path.exists()] if names else []
+        last_ns = max(map(_made_ns, outputs), default=0)
+        found |= {name: max(last_ns, found.get(name, 0)) for name in names}
+    return found
 
 
 def _is_of(record_of_it: Path, path: Path) -> bool:
