@@ -99,6 +99,23 @@ def test_only_files_of_persons_who_refuse_are_found(study, tmp_path, monkeypatch
     assert found == sorted(path for path in of_session if f".{person}." in path)
 
 
+def test_exports_of_devices_that_a_take_no_longer_has_are_found(study, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    session = study.sessions["walk-4cams-tiny"]
+    assert not session.takes["balancing"].devices
+    kept = "results/walk-4cams-tiny/takes/balancing/devices/mocopi.trc"
+    Path(kept).parent.mkdir(parents=True)
+    Path(kept).touch()
+
+    def listed(*consent):
+        subjects = {name: replace(p, consent=consent) for name, p in session.subjects.items()}
+        only = {session.name: replace(session, subjects=subjects)}
+        return remains.without_consent(replace(study, sessions=only)).get(session.name, [])
+
+    assert listed("analysis", "export") == []
+    assert listed("analysis", "pictures") == [kept]
+
+
 def test_files_asked_for_by_name_and_of_earlier_studies_are_found(study, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     session = study.sessions["single-view-tiny"]

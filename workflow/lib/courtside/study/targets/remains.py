@@ -202,7 +202,10 @@ def _exported(take: Take, path: Path) -> Iterable[str | None]:
     if folder == "devices":
         # A correction is a step of the study, whatever its format.
         is_own = kind.endswith("-corrected") or path.name.endswith(".frames.csv")
-        return [take.person_of_devices] if path.suffix in EXPORTED and not is_own else []
+        if path.suffix not in EXPORTED or is_own:
+            return []
+        # The devices of earlier files may be no more.
+        return [take.person_of_devices] if take.devices else take.subjects
     if path.suffix == ".csv" and folder.startswith("pose3d"):
         return [path.name.split(".")[-2]]
     return [_person(path)]
