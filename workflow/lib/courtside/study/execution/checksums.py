@@ -2,7 +2,7 @@
 
 import hashlib
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from courtside.study.errors import DAMAGED, StrPath
@@ -37,13 +37,15 @@ class Checksums:
 
     A file that cannot be read as such is taken for an empty one. A folder is looked at once: many
     results rest on the same recordings. `until` has the date, ns, of the newest file that was made
-    directly from an input: Snakemake does not see another input that is no newer than this.
+    directly from an input: Snakemake does not see another input that is no newer than this. Of
+    files in `doubtful` nothing is known.
     """
 
     def __init__(self, path: StrPath) -> None:
         self.path = Path(path)
         self.known, self.until = self._read()
         self.folders: dict[Path, str] = {}
+        self.doubtful: set[str] = set()
         self.changed = False
 
     def _read(self) -> tuple[dict[str, list], dict[str, int]]:
@@ -61,8 +63,10 @@ class Checksums:
             return {}, {}
 
     def of(self, path: StrPath) -> str | None:
-        """Return the SHA-256 of a file or folder; None if there is none."""
+        """Return the SHA-256 of a file or folder; None if there is none, or it is in doubt."""
         path = Path(path)
+        if str(path) in self.doubtful:
+            return None
         if path.is_dir():
             if path not in self.folders:
                 self.folders[path] = _of_folder(path, self.of)
@@ -80,6 +84,13 @@ class Checksums:
             self.known[str(path)] = [*stamp, value]
             self.changed = True
         return value
+
+    def doubt(self, paths: Iterable[StrPath]) -> None:
+        """Forget files: results were made from other ones, or may have been."""
+        self.doubtful.update(str(Path(path)) for path in paths)
+        for name in self.doubtful & self.known.keys():
+            del self.known[name]
+            self.changed = True
 
     def use(self, path: StrPath, made_ns: int) -> None:
         """Keep the date of a file that was made from another one, if that is as it is known.

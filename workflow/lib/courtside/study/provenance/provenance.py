@@ -32,6 +32,7 @@ def record(
     root: StrPath,
     pinned: Sequence[str] = (),
     targets: Collection[str] = (),
+    changed: Iterable[str] = (),
 ) -> list[str]:
     """Write the sidecars of all final files that are newer than theirs, and the record of the run.
 
@@ -43,10 +44,12 @@ def record(
     below which sidecars are named. `run` is what is the same for all files: `command` (list of
     words, without the file), `surroundings`, `config`, `config_files` (paths). `pinned` are starts
     of paths of artefacts and networks, which are given with checksum though a job made them.
-    `targets` were asked for by name: they are final whatever their kind.
+    `targets` were asked for by name: they are final whatever their kind. `changed` are inputs that
+    changed while jobs ran: sidecars have no checksum of them.
     """
     folder = Path(folder)
     known = checksums.Checksums(folder / Path(paths.CHECKSUMS).name)
+    known.doubt(changed)
     due = []
     for job in jobs:
         names = [name for name in job["outputs"] if _is_final(name, targets, folder, root)]
@@ -170,8 +173,8 @@ def origin(
     """Return what a job's files rest on.
 
     `reached` are the job and all that it rests on, of `upstream`; `sha256_of` gives the checksum of
-    a path, None for one that is gone; `pinned` is as of `record`. The result has inputs and
-    artefacts {path: sha256}, settings {rule: [params of its jobs, each once]}, seeds {name:
+    a path, None for one that is gone or in doubt; `pinned` is as of `record`. The result has inputs
+    and artefacts {path: sha256}, settings {rule: [params of its jobs, each once]}, seeds {name:
     [values]}, code {script: digest}.
     """
     upstream_jobs = [jobs[at] for at in sorted(reached)]
