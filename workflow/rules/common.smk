@@ -69,8 +69,9 @@ try:
 
         providers.check(STUDY)
         # Settings are parameters of jobs, which Snakemake compares whatever the dates of their files.
-        settings = [*CONFIG.glob("*.yaml"), *map(files.seen_from, workflow.configfiles)]
-        apart = [paths.RESULTS, CONFIG / "sessions", CONFIG / "plans", *settings]
+        settings = {*CONFIG.glob("*.yaml"), *map(files.seen_from, workflow.configfiles)}
+        settings -= {CONFIG / paths.DERIVED_JOINTS_YAML}  # an input, as plans are
+        apart = [paths.RESULTS, CONFIG / "sessions", *settings]
         file_dates.check_exchanged(paths.CHECKSUMS, apart)
         looks = Remembered(Path(".snakemake") / "courtside" / "recordings.json")
         REMARKS = [f"Remark: {remark}" for remark in validation.check(STUDY, looks)]
