@@ -251,7 +251,7 @@ def warnings(study: Study) -> list[str]:
 
 def left_out(study: Study) -> list[str]:
     """Return a line for each thing that is not made for want of consent, and on what remains."""
-    found = []
+    found = _of_no_session(study)
     for session in study.sessions.values():
         found += [f"{session.name}: {line}" for line in consent.left_out(session)]
         found += [f"{session.name}: {line}" for line in _of_no_take(session)]
@@ -294,7 +294,8 @@ def _announced(study: Study) -> list[str]:
 
 def remaining(study: Study) -> list[str]:
     """Return a line for each thing that is left of what the session files no longer ask for."""
-    found = [
+    found = _of_no_session(study)
+    found += [
         f"{session.name}: {line}"
         for session in study.sessions.values()
         for line in _of_no_take(session)
@@ -303,6 +304,15 @@ def remaining(study: Study) -> list[str]:
         f"{name}: {len(kept)} files that persons have not agreed to are here, such as "
         f"{few(kept, N_NAMED)}: delete them; the end of a run lists all"
         for name, kept in remains.without_consent(study).items()
+    ]
+
+
+def _of_no_session(study: Study) -> list[str]:
+    """Return a line for each folder of results of a session that was renamed or removed."""
+    return [
+        f"{folder} belongs to no session of {study.folder / 'sessions'}: delete it, and "
+        f"{paths.REPORT}, which may show it, or name the session again"
+        for folder in remains.of_no_session(study)
     ]
 
 
