@@ -149,6 +149,22 @@ def test_a_copy_without_dates_is_neither_told_nor_read(made, monkeypatch):
     assert file_dates.check_exchanged(kept, []) is None
 
 
+def test_a_file_that_was_only_dated_anew_is_read_once(made, monkeypatch):
+    film, kept, made_s = made
+    os.utime(film, (900, 900))  # as of a disk that shifts dates by an hour
+    assert file_dates.check_exchanged(kept, []) is None
+    with monkeypatch.context() as patch:
+        patch.setattr(file_dates.files, "sha256", lambda path: pytest.fail(f"read {path}"))
+        assert file_dates.check_exchanged(kept, []) is None
+    replaced(film, "y", 950)
+    with pytest.raises(InputError):
+        file_dates.check_exchanged(kept, [])
+    with pytest.raises(InputError):  # it is told until it is mended
+        file_dates.check_exchanged(kept, [])
+    replaced(film, "y", made_s + 1)
+    assert file_dates.check_exchanged(kept, []) is None
+
+
 def test_two_files_that_change_names_are_both_told(tmp_path):
     walk, jump = (dated(tmp_path / "data" / name, at) for name, at in (("w", 1000), ("j", 995)))
     replaced(jump, "y", 995)

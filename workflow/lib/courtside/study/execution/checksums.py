@@ -85,6 +85,17 @@ class Checksums:
             self.changed = True
         return value
 
+    def confirm(self, path: StrPath) -> bool:
+        """Return whether a file has the content that is known; if so, its date is known, too."""
+        name, state = str(Path(path)), Path(path).stat()
+        size, stamp_ns, sha256 = self.known[name]
+        if state.st_size != size or files.sha256(path) != sha256:
+            return False
+        self.known[name] = [size, state.st_mtime_ns, sha256]
+        self.until[name] = max(stamp_ns, self.until.get(name, 0))
+        self.changed = True
+        return True
+
     def doubt(self, paths: Iterable[StrPath]) -> None:
         """Forget files: results were made from other ones, or may have been."""
         self.doubtful.update(str(Path(path)) for path in paths)
