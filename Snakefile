@@ -48,6 +48,7 @@ onstart:
     # all ready jobs each second for every job that it has started (minutes in the default study).
     if workflow.local_exec:
         workflow.scheduler.job_rate_limiter = None
+    BEFORE.update(run.states(workflow))
 
 
 onsuccess:
@@ -56,6 +57,7 @@ onsuccess:
     verdicts, n_failed = run.verdicts(workflow)
     print(
         end_of_run(n_failed),
+        *run.unsure(workflow, REPOSITORY, BEFORE),
         *run.waiting_for_clicks(STUDY),
         *run.left_out(STUDY),
         *asked(run.lost_pictures, STUDY),
@@ -71,7 +73,9 @@ onsuccess:
 
 onerror:
     files.delete_unfinished("results")
-    print(end_of_run(), *REMARKS, *asked(run.warnings, STUDY), sep="\n", file=sys.stderr)
+    unsure = run.unsure(workflow, REPOSITORY, BEFORE)
+    told = [end_of_run(), *unsure, *REMARKS, *asked(run.warnings, STUDY)]
+    print(*told, sep="\n", file=sys.stderr)
     record_provenance(tried)
 
 

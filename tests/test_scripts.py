@@ -96,6 +96,14 @@ def test_pages_are_built_again_when_their_templates_change():
     assert all("assets" in one for rules in given.values() for one in rules), given
 
 
+def test_what_reads_a_calibration_file_depends_on_all_files_of_it():
+    of_session = {"import_cameras", "check_cameras", "check_court", "refine_cameras"}
+    given = {name: [one["input"] for one in rules_by_script()[name]] for name in of_session}
+    reading = [path.stem for path in SCRIPTS if "file_formats.read" in path.read_text()]
+    assert set(reading) == of_session
+    assert all("files" in one for rules in given.values() for one in rules), given
+
+
 def test_a_rule_gives_its_script_what_main_takes():
     found = {path.stem: disagreements(path) for path in SCRIPTS}
     assert {name: lines for name, lines in found.items() if lines} == {}

@@ -211,7 +211,11 @@ def read_sidecars(path):
 
 def sums(folder):
     """Write the checksums that are kept between runs."""
-    content = {"format": 1, "files": {"data/a.mp4": [12, 34, "0" * 64]}}
+    content = {
+        "format": 1,
+        "files": {"data/a.mp4": [12, 34, "0" * 64]},
+        "until": {"data/a.mp4": 56},
+    }
     (folder / "checksums.json").write_text(json.dumps(content), encoding="utf-8")
 
 

@@ -1,6 +1,12 @@
 """What reruns after a change, what a kill leaves behind, and what a bad configuration says."""
 
-from smoke.snakemake_runs import edited, planned, run
+import json
+import os
+import time
+from pathlib import Path
+
+from courtside.study import paths
+from smoke.snakemake_runs import ROOT, TINY, edited, planned, run, snakemake
 
 # The real take: all cameras, and two without filter. Two virtual takes: five ways to fuse, and one
 # of them with two cameras for table 1.
@@ -124,3 +130,22 @@ def test_a_missing_video_is_named_before_any_job(kept):
     assert done.returncode != 0
     assert "cameras.cam03.static: expected a file" in output
     assert "data/gym/cam03.mp4" in output
+
+
+def test_inputs_in_the_folder_of_settings_are_told_if_they_were_exchanged(tmp_path):
+    plan = next((ROOT / "config" / "plans").glob("*.yaml")).relative_to(ROOT).as_posix()
+    inputs = ["config/derived_joints.yaml", plan]
+    settings = ["config/config.yaml", "config/models.yaml", "config/sessions/plain-tiny.yaml"]
+    later_ns = time.time_ns() + 10**12
+    other = {
+        Path(os.path.relpath(ROOT / name, tmp_path)).as_posix(): [1, later_ns, "of another file"]
+        for name in inputs + settings
+    }
+    kept = tmp_path / paths.CHECKSUMS
+    kept.parent.mkdir(parents=True)
+    kept.write_text(json.dumps({"format": 1, "files": other}))
+    done = snakemake("-n", "--directory", tmp_path, "--configfile", TINY, root=ROOT)
+    said = [line for line in done.stderr.splitlines() if line.startswith("Error: ")]
+    assert len(said) == len(inputs), done.stderr
+    assert all(any(Path(name).name in line for line in said) for name in inputs)
+    assert not any(Path(name).name in done.stderr for name in settings)

@@ -17,7 +17,8 @@ build_clicking_page; export_cameras (for EasyMocap and COLMAP, by request).
 
 rule import_cameras:
     input:
-        calibration_path=lambda w: session_of(w).calibration_file,
+        calibration_path=lambda w: whole(session_of(w).calibration_file),
+        files=of_job(calibration.file_parts),
         covariance_npz=of_job(calibration.file_covariance),
         court_yaml=of_job(calibration.court_of_file),
     output:
@@ -38,7 +39,8 @@ rule import_cameras:
 
 rule check_cameras:
     input:
-        calibration_path=lambda w: session_of(w).calibration_file,
+        calibration_path=lambda w: whole(session_of(w).calibration_file),
+        files=of_job(calibration.file_parts),
         cameras_toml=paths.part(paths.CAMERAS, calibration="file"),
         static_csv=lambda w: session_of(w).static_points or [],
         seen=files_of(calibration.checked, "pose2d", "sync", "people"),
@@ -77,7 +79,8 @@ rule check_videos:
 
 rule check_court:
     input:
-        calibration_path=lambda w: session_of(w).calibration_file,
+        calibration_path=lambda w: whole(session_of(w).calibration_file),
+        files=of_job(calibration.file_parts),
         cameras_toml=paths.part(paths.CAMERAS, calibration="file"),
         court_yaml=of_job(Job.court_file),
         proposals_csv=paths.part(paths.FOUND_COURT, part="proposals.csv"),
@@ -284,7 +287,8 @@ rule refine_cameras:
     input:
         cameras=of_job(calibration.of_base, paths.CAMERAS),
         covariance=of_job(calibration.base_covariance),
-        calibration=of_job(calibration.base_file),
+        calibration=lambda w: whole(of_job(calibration.base_file)(w)),
+        files=of_job(calibration.base_parts),
         clicks=of_job(calibration.unused_clicks),
         court=of_job(Job.court_file),
         static=lambda w: session_of(w).static_points or [],

@@ -69,8 +69,9 @@ try:
 
         providers.check(STUDY)
         # Settings are parameters of jobs, which Snakemake compares whatever the dates of their files.
-        settings = [*CONFIG.glob("*.yaml"), *map(files.seen_from, workflow.configfiles)]
-        apart = [paths.RESULTS, CONFIG / "sessions", CONFIG / "plans", *settings]
+        settings = {*CONFIG.glob("*.yaml"), *map(files.seen_from, workflow.configfiles)}
+        settings -= {CONFIG / paths.DERIVED_JOINTS_YAML}  # an input, as plans are
+        apart = [paths.RESULTS, CONFIG / "sessions", *settings]
         file_dates.check_exchanged(paths.CHECKSUMS, apart)
         looks = Remembered(Path(".snakemake") / "courtside" / "recordings.json")
         REMARKS = [f"Remark: {remark}" for remark in validation.check(STUDY, looks)]
@@ -160,7 +161,7 @@ def step(name):
 
 def whole(path):
     """Return a recording as an input; of a folder, only its files have useful dates (`inside`)."""
-    return ancient(path) if Path(path).is_dir() else path
+    return ancient(path) if path and Path(path).is_dir() else path
 
 
 def models_of(imported):

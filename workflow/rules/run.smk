@@ -17,6 +17,7 @@ from courtside.study.provenance import planned, run
 
 STARTED_S = time.monotonic()
 STUDIED_IN = Path.cwd()
+BEFORE = {}  # states of the files that the jobs of a run start from, before it
 HAS_RUN = []  # not empty once jobs have run: hooks of the Snakefile then tell how they ended
 LOOK_AT = [paths.REPORT, paths.PLAYERS_TABLE, paths.CALIBRATION_TABLE]
 
@@ -27,7 +28,7 @@ def record_provenance(call=asked):
     read = [CONFIG / paths.SESSION_YAML.format(session=name) for name in config["sessions"]]
     registers = ("external.yaml", "models.yaml", "detectors.yaml")
     read = [*(CONFIG / name for name in registers), *read]
-    call(run.record, workflow, REPOSITORY, config, map(str, read))
+    call(run.record, workflow, REPOSITORY, config, map(str, read), run.changed_since(BEFORE))
 
 
 def end_of_run(n_failed=0):

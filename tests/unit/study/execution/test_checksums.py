@@ -113,3 +113,16 @@ def test_a_folder_is_read_once_whatever_rests_on_it(tmp_path, reads):
     del reads[:]
     assert checksums.Checksums(known.path).of(folder) == first
     assert reads == []
+
+
+def test_a_file_in_doubt_is_forgotten(tmp_path, video):
+    known = checksums.Checksums(tmp_path / "checksums.json")
+    assert known.of(video)
+    known.use(video, OLD_NS + 1)
+    known.write()
+    known = checksums.Checksums(known.path)
+    known.doubt([video])
+    assert known.of(video) is None
+    known.write()
+    again = checksums.Checksums(known.path)
+    assert (again.known, again.until) == ({}, {})

@@ -83,6 +83,16 @@ def used(tmp_path):
     return film, kept_of(tmp_path, film)
 
 
+@pytest.fixture
+def made(used):
+    """Return the recording, what runs have kept, and when the results were made from it."""
+    film, kept = used
+    known = checksums.Checksums(kept)
+    known.use(film, 2000 * 10**9)
+    known.write()
+    return film, kept, 2000
+
+
 def replaced(path, content, when_s):
     path.write_text(content)
     os.utime(path, (when_s, when_s))
@@ -113,6 +123,61 @@ def test_another_file_that_is_no_newer_is_told_until_it_is_dated_today(used, con
         pytest.skip("the advice is for PowerShell, which is not the shell here")
     subprocess.run(str(e.value).rpartition(": ")[2], shell=True, check=True)
     assert file_dates.check_exchanged(kept, []) is None
+
+
+@pytest.mark.parametrize("content", ["y", "of another size"])
+@pytest.mark.parametrize("before_s", [0, 900])
+def test_another_file_that_is_no_newer_than_the_results_is_told(made, content, before_s):
+    film, kept, made_s = made
+    replaced(film, content, made_s - before_s)
+    with pytest.raises(InputError, match=r"my data: expected .*found others .*\(a\.mp4\)"):
+        file_dates.check_exchanged(kept, [])
+    replaced(film, content, made_s + 1)  # Snakemake sees this one
+    assert file_dates.check_exchanged(kept, []) is None
+
+
+def test_a_copy_without_dates_is_neither_told_nor_read(made, monkeypatch):
+    film, kept, made_s = made
+    os.utime(film, (made_s - 1, made_s - 1))
+    assert file_dates.check_exchanged(kept, []) is None
+    os.utime(film, (made_s + DAY_S, made_s + DAY_S))
+    monkeypatch.setattr(file_dates.files, "sha256", lambda path: pytest.fail(f"read {path}"))
+    assert file_dates.check_exchanged(kept, []) is None
+    known = checksums.Checksums(kept)
+    known.use(film, 10**18)  # a run in the copy that made something else of it
+    known.write()
+    assert file_dates.check_exchanged(kept, []) is None
+
+
+def test_a_file_that_was_only_dated_anew_is_read_once(made, monkeypatch):
+    film, kept, made_s = made
+    os.utime(film, (900, 900))  # as of a disk that shifts dates by an hour
+    assert file_dates.check_exchanged(kept, []) is None
+    with monkeypatch.context() as patch:
+        patch.setattr(file_dates.files, "sha256", lambda path: pytest.fail(f"read {path}"))
+        assert file_dates.check_exchanged(kept, []) is None
+    replaced(film, "y", 950)
+    with pytest.raises(InputError):
+        file_dates.check_exchanged(kept, [])
+    with pytest.raises(InputError):  # it is told until it is mended
+        file_dates.check_exchanged(kept, [])
+    replaced(film, "y", made_s + 1)
+    assert file_dates.check_exchanged(kept, []) is None
+
+
+def test_two_files_that_change_names_are_both_told(tmp_path):
+    walk, jump = (dated(tmp_path / "data" / name, at) for name, at in (("w", 1000), ("j", 995)))
+    replaced(jump, "y", 995)
+    kept = kept_of(tmp_path, walk, jump)
+    known = checksums.Checksums(kept)
+    for one in (walk, jump):
+        known.use(one, 2000 * 10**9)
+    known.write()
+    walk.rename(tmp_path / "data" / "other")
+    jump.rename(walk)
+    (tmp_path / "data" / "other").rename(jump)
+    with pytest.raises(InputError, match=r"\(j, w\)"):
+        file_dates.check_exchanged(kept, [])
 
 
 def test_a_file_put_back_before_any_run_passes(used):

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from courtside.calibration.foreign import colmap, easymocap, opencap
 from courtside.study import paths
 from courtside.study.errors import InputError
 from courtside.study.jobs import calibration
@@ -269,3 +270,33 @@ def test_takes_that_refine_cameras_must_be_filmed(job, study):
     said = r"expected filmed takes of session players-tiny, \['shot', .* found \['nothing'\]"
     with pytest.raises(InputError, match=rf"^config/tiny.yaml: refine_cameras.takes: {said}"):
         calibration.refining(one)
+
+
+@pytest.mark.parametrize(
+    ("given", "beside"),
+    [
+        (".", [*easymocap.FILES, "left.XML", f"Cam0/{opencap.IN_SESSION}", *colmap.NAMES]),
+        *[(one, set(easymocap.FILES) - {one}) for one in easymocap.FILES],
+        *[(one, colmap.NAMES - {one}) for one in colmap.NAMES],
+        ("left.XML", []),
+    ],
+)
+def test_a_calibration_in_several_files_rests_on_each(job, study, tmp_path, given, beside):
+    every = {*easymocap.FILES, *colmap.NAMES, "left.XML", f"Cam0/{opencap.IN_SESSION}"}
+    for name in (*every, "points3D.bin", "videos/left.mp4", "left.jpg"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).touch()
+    session = study.sessions["walk-4cams-tiny"]
+    session = replace(session, calibration_file=(tmp_path / given).as_posix())
+    other = replace(study, sessions={session.name: session})
+    known = {"session": session.name}
+    expected = sorted((tmp_path / name).as_posix() for name in beside)
+    assert calibration.file_parts(job(other, **known, calibration="file")) == expected
+    assert calibration.base_parts(job(other, **known, calibration="file-people")) == expected
+    assert calibration.base_parts(job(other, **known, calibration="known-people")) == []
+
+
+def test_a_calibration_in_one_file_has_no_further_parts(job, study):
+    assert calibration.file_parts(job(session="walk-4cams-tiny")) == []
+    assert study.sessions["plain-tiny"].calibration_file is None
+    assert calibration.file_parts(job(**PLAIN)) == []

@@ -116,6 +116,20 @@ def test_cameras_a_little_apart_are_within_tolerance(trees):
 
 
 @pytest.mark.parametrize(
+    ("key", "value", "gap"),
+    [("translation", 10.0, 0.0105), ("rotation", 1.2, 0.002), ("matrix", 1500.0, 1.5)],
+)
+def test_cameras_may_be_as_far_apart_as_the_tolerance_says(trees, key, value, gap):
+    name = "gym/calibration/file/cameras.toml"
+    for by, outcome in ((gap, comparison.CLOSE), (2 * gap, comparison.DIFFERENT)):
+        for tree, number in zip(trees, (value, value + by), strict=True):
+            (tree / name).parent.mkdir(parents=True, exist_ok=True)
+            (tree / name).write_text(f"[left]\n{key} = [{number}, 0.0]\n")
+        assert outcomes(trees) == {name: outcome}
+    assert "about 1 cm and 2 mrad of a camera 10 m away, 0.1 % of px" in comparison.stated(name)
+
+
+@pytest.mark.parametrize(
     ("number", "drawing"),
     [
         ("1.0000", comparison.DIFFERENT),

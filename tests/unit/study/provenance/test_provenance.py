@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from courtside.study.execution import checksums
 from courtside.study.provenance import provenance
 
 RUN = {
@@ -247,3 +248,19 @@ def test_seeds_are_found_at_any_depth():
     jobs = [job("a", [], ["x"], list=[{"walk_seed": 1}, {"walk_seed": 2}], seedling=5)]
     found = provenance.origin(jobs, {0}, lambda path: None)
     assert found["seeds"] == {"a.list.walk_seed": [1, 2]}
+
+
+def test_inputs_keep_the_date_of_what_was_last_made_directly_from_them(folder):
+    for at, name in enumerate(["data/a.mp4", "data/b.mp4", "results/gym/b.npz"]):
+        os.utime(name, ns=(10**9 * (at + 1), 10**9 * (at + 1)))
+    dates = {"results/gym/a.npz": 5, "results/gym/figures/alone.pdf": 6}
+    for name, at in dates.items():
+        os.utime(name, ns=(10**9 * at, 10**9 * at))
+    record(folder, study())
+    kept = folder / "checksums.json"
+    expected = {"data/a.mp4": 6 * 10**9, "data/b.mp4": 3 * 10**9}
+    assert checksums.Checksums(kept).until == expected
+    os.utime("results/gym/figures/alone.pdf", ns=(10**10, 10**10))
+    undone = [{**one, "done": one["rule"] != "draw_alone"} for one in study()]
+    record(folder, undone)
+    assert checksums.Checksums(kept).until == expected

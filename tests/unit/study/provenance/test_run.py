@@ -1,6 +1,7 @@
 """What a run was, told by made-up jobs with the attributes of Snakemake's."""
 
 import json
+import os
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -33,7 +34,7 @@ class Dag:
         self.jobs, self.done = jobs, finished
         self.derived_targetfiles = [path for job in jobs for path in job.output]
 
-    def needrun_jobs(self, exclude_finished):
+    def needrun_jobs(self, exclude_finished=True):
         return self.jobs
 
     def noneedrun_finished(self, job):
@@ -112,6 +113,43 @@ def test_sidecars_that_cannot_be_written_are_told_in_one_line(tmp_path, monkeypa
     job = made_up("draw", "results/a.csv")
     with pytest.raises(InputError, match=r"results/run: provenance not written: .* mend this"):
         run.record(workflow([job], [job]), tmp_path, {}, [])
+
+
+def changed_during_a_run(tmp_path, monkeypatch, finished):
+    """Return the workflow, and the states before it, of a run during which its input changed."""
+    monkeypatch.chdir(tmp_path)
+    for name in ("in.csv", "results/a.csv", "draw.log"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("x")
+    os.utime("in.csv", (1000, 1000))
+    job, other = made_up("draw", "results/a.csv"), made_up("next", "results/b.csv")
+    other.input = ["results/a.csv"]
+    flow = workflow([job, other], [job] if finished else [])
+    before = run.states(flow)
+    assert before == {"in.csv": (1, 1000 * 10**9)}
+    assert run.unsure(flow, tmp_path, before) == run.changed_since(before) == []
+    Path("results/a.csv").write_text("made")
+    Path("in.csv").write_text("of another size, with an older date")
+    os.utime("in.csv", (900, 900))
+    return flow, before
+
+
+def test_an_input_that_changed_during_a_run_has_no_checksum_and_is_told(tmp_path, monkeypatch):
+    flow, before = changed_during_a_run(tmp_path, monkeypatch, finished=True)
+    (line,) = run.unsure(flow, tmp_path, before)
+    assert line.startswith("Warning: in.csv changed during this run")
+    assert line.endswith(": snakemake --forcerun results/a.csv")
+    run.record(flow, tmp_path, {}, [], run.changed_since(before))
+    sidecar = json.loads(Path("results/run/provenance/a.csv.json").read_text())
+    assert sidecar["inputs"] == {"in.csv": None}
+    kept = Path(paths.CHECKSUMS)
+    assert not kept.exists() or "in.csv" not in json.loads(kept.read_text())["files"]
+
+
+def test_an_input_of_jobs_that_were_not_run_may_change(tmp_path, monkeypatch):
+    flow, before = changed_during_a_run(tmp_path, monkeypatch, finished=False)
+    assert run.changed_since(before) == ["in.csv"]
+    assert run.unsure(flow, tmp_path, before) == []
 
 
 def test_the_end_says_what_was_made(tmp_path):

@@ -3,7 +3,9 @@
 from dataclasses import replace
 from pathlib import Path
 
-from courtside.study.targets import remains, takes
+from courtside.study import paths
+from courtside.study.provenance import run
+from courtside.study.targets import devices, remains, takes, together
 
 
 def test_folders_of_takes_that_are_not_measured_are_found(study, tmp_path, monkeypatch):
@@ -45,6 +47,59 @@ def test_files_of_cameras_that_a_take_no_longer_has_are_found(study, tmp_path, m
     (keypoints / "right.npz").touch()
     (keypoints / ".snakemake_timestamp").touch()
     assert remains.of_no_camera(session) == {take.as_posix(): ["left", "right"]}
+
+
+def test_files_of_devices_that_a_take_no_longer_has_are_found(study, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    session = study.sessions["single-view-tiny"]
+    take = Path("results/single-view-tiny/takes/claps")
+    own = [p for p in devices.every_device_export(study) if p.startswith(f"{take.as_posix()}/")]
+    own += [path for path in devices.every_source_angle(study) if path.startswith(f"{take}/")]
+    own += [f"{take}/devices/{name}" for name in ("d415.frames.csv", "cameras.blazepose-full.npz")]
+    own += [f"{take}/devices/mocopi-corrected.blazepose-full.bvh", f"{take}/devices/.snakemake_x.y"]
+    left = [
+        f"{take}/devices/suit.trc",
+        f"{take}/devices/suit-corrected.blazepose-full.bvh",
+        f"{take}/motion/devices/old-depth/blazepose-full.angles.csv",
+        f"{take}/pose3d_ik/devices/old-depth/blazepose-full.p1.mot",
+    ]
+    assert len(own) > 10
+    for path in map(Path, own + left):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
+    gone = ["old-depth", "suit", "suit-corrected"]
+    assert remains.of_no_camera(session) == {take.as_posix(): gone}
+    assert remains.of_records(study, own + left) == left
+
+
+def test_folders_of_sessions_without_a_file_are_found(study, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name in ("players-tiny", "of-another-study", "renamed"):
+        (tmp_path / "results" / name / "takes").mkdir(parents=True)
+    (tmp_path / "results" / "virtual" / "players-tiny").mkdir(parents=True)
+    study = replace(study, folder=Path("config"))
+    file = tmp_path / "config" / paths.SESSION_YAML.format(session="of-another-study")
+    file.parent.mkdir(parents=True)
+    file.touch()
+    assert remains.of_no_session(study) == ["results/renamed"]
+    (line,) = run.remaining(study)
+    assert line.startswith("results/renamed belongs to no session of config/sessions: delete it")
+    assert run.left_out(study)[0] == line
+
+
+def test_tables_of_compared_networks_that_nobody_agrees_to_are_found(study, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    session = study.sessions["walk-4cams-tiny"]
+    networks = {"sessions": [session.name], "networks": session.parameters["models"][:1]}
+    parameters = {**study.parameters, "compare_networks": networks}
+    only = {session.name: replace(session, takes={}, withheld=session.takes)}
+    study = replace(study, parameters=parameters, sessions=only)
+    assert not together.compared_takes(study)
+    tables = [paths.NETWORK_PAIRS, paths.NETWORK_AGREEMENT]
+    for path in map(Path, tables):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
+    assert remains.without_consent(study) == {session.name: sorted(tables)}
 
 
 def test_records_of_what_nobody_asks_for_are_found_whether_here_or_deleted(study, monkeypatch):
@@ -97,6 +152,23 @@ def test_only_files_of_persons_who_refuse_are_found(study, tmp_path, monkeypatch
     of_session = [path for path in made if path.startswith("results/walk-4cams-tiny/")]
     found = remains.without_consent(study)["walk-4cams-tiny"]
     assert found == sorted(path for path in of_session if f".{person}." in path)
+
+
+def test_exports_of_devices_that_a_take_no_longer_has_are_found(study, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    session = study.sessions["walk-4cams-tiny"]
+    assert not session.takes["balancing"].devices
+    kept = "results/walk-4cams-tiny/takes/balancing/devices/mocopi.trc"
+    Path(kept).parent.mkdir(parents=True)
+    Path(kept).touch()
+
+    def listed(*consent):
+        subjects = {name: replace(p, consent=consent) for name, p in session.subjects.items()}
+        only = {session.name: replace(session, subjects=subjects)}
+        return remains.without_consent(replace(study, sessions=only)).get(session.name, [])
+
+    assert listed("analysis", "export") == []
+    assert listed("analysis", "pictures") == [kept]
 
 
 def test_files_asked_for_by_name_and_of_earlier_studies_are_found(study, tmp_path, monkeypatch):

@@ -1,5 +1,6 @@
 """Dates of files from which Snakemake concludes wrongly: in the future, or of an exchanged file."""
 
+import contextlib
 import itertools
 import os
 import shlex
@@ -49,37 +50,40 @@ def _dated(folder: str) -> Iterator[tuple[float, str]]:
 
 
 def check_exchanged(kept: StrPath, apart: Iterable[StrPath]) -> None:
-    """Check that no file was exchanged for another one of an older date since the last run.
+    """Check that no file was exchanged for one that is older than the results since the last run.
 
     Such a file looks unchanged to Snakemake, which compares dates: results of the other one would
     stay. `kept` is the file of `Checksums` that runs write: of all files that results were made
     from. Of these, files and folders `apart` are not looked at. An `InputError` has one line for
-    each folder.
+    each folder. New dates of files that are the same are kept, so that they are read once.
     """
-    known = checksums.Checksums(kept).known
+    of_runs = checksums.Checksums(kept)
     apart = {Path(path) for path in apart}
     exchanged: dict[Path, list[Path]] = {}
-    for path in map(Path, sorted(known)):
-        if apart.isdisjoint([path, *path.parents]) and _is_exchanged(path, *known[str(path)]):
+    for path in map(Path, sorted(of_runs.known)):
+        if apart.isdisjoint([path, *path.parents]) and _is_exchanged(path, of_runs):
             exchanged.setdefault(path.parent, []).append(path)
+    with contextlib.suppress(OSError):
+        of_runs.write()
     lines = [
-        f"{folder}: expected files as in the last run, or newer ones, found others of an older "
-        f"date ({few([path.name for path in found], N_NAMED)}): the results of the last run would "
-        f"stay; give them today's date: {_touching(folder, found)}"
+        f"{folder}: expected files as in the last run, or newer than the results, found others of "
+        f"an older date ({few([path.name for path in found], N_NAMED)}): the results of the last "
+        f"run would stay; give them today's date: {_touching(folder, found)}"
         for folder, found in exchanged.items()
     ]
     if lines:
         raise InputError(*lines)
 
 
-def _is_exchanged(path: Path, size: int, stamp_ns: int, sha256: str) -> bool:
-    """Say whether a file differs from the one of a run, but is not newer."""
+def _is_exchanged(path: Path, of_runs: checksums.Checksums) -> bool:
+    """Say whether a file differs from the one of a run, but is not newer than its results."""
     if not path.is_file():
         return False
-    now = path.stat()
-    if now.st_mtime_ns > stamp_ns or (now.st_size, now.st_mtime_ns) == (size, stamp_ns):
+    size, stamp_ns, _ = of_runs.known[str(path)]
+    now, until_ns = path.stat(), max(stamp_ns, of_runs.until.get(str(path), 0))
+    if now.st_mtime_ns > until_ns or (now.st_size, now.st_mtime_ns) == (size, stamp_ns):
         return False
-    return now.st_size != size or files.sha256(path) != sha256
+    return not of_runs.confirm(path)
 
 
 def _touching(folder: Path, found: list[Path]) -> str:

@@ -10,6 +10,12 @@ from courtside.study.jobs.job import Job
 from courtside.study.methods import IMPORTED, Calibration
 
 CLICK_KEYS = ("click_sigma_px", "click_bias_px", "click_loss")
+# Files of one calibration: whichever of them is given, its reader takes the others beside it.
+TOGETHER = (
+    {"intri.yml", "extri.yml"},
+    {"cameras.bin", "images.bin", "cameras.txt", "images.txt"},
+)
+OF_FOLDER = {".yml", ".yaml", ".xml", ".pickle", ".pkl"}  # kinds of files that a folder may hold
 
 
 def each_fixed(job: Job, pattern: str) -> list[str]:
@@ -197,6 +203,24 @@ def covariance(job: Job) -> str | list:
     if job["calibration"] == IMPORTED or not job.session.has_covariance(_way(job)):
         return []
     return file_covariance(job) if _way(job).kind == "file" else job.fill(paths.CAMERA_COVARIANCE)
+
+
+def file_parts(job: Job) -> list[str]:
+    """Return the files that a calibration in several is read from, without the one given."""
+    given = Path(job.session.calibration_file or "")
+    if given.is_dir() and job.session.calibration_file:
+        known = set().union(*TOGETHER)
+        found = [*given.glob("*"), *given.glob("*/*.pickle")]
+        found = [one for one in found if one.suffix.lower() in OF_FOLDER or one.name in known]
+    else:
+        names = [name for group in TOGETHER if given.name in group for name in group]
+        found = [given.with_name(name) for name in names if name != given.name]
+    return sorted(one.as_posix() for one in found if one.is_file())
+
+
+def base_parts(job: Job) -> list[str]:
+    """Return the same of the file that the calibration which people refine was read from."""
+    return file_parts(job) if base_file(job) else []
 
 
 def file_covariance(job: Job) -> str | list:

@@ -32,6 +32,7 @@ def record(
     root: StrPath,
     pinned: Sequence[str] = (),
     targets: Collection[str] = (),
+    changed: Iterable[str] = (),
 ) -> list[str]:
     """Write the sidecars of all final files that are newer than theirs, and the record of the run.
 
@@ -43,10 +44,12 @@ def record(
     below which sidecars are named. `run` is what is the same for all files: `command` (list of
     words, without the file), `surroundings`, `config`, `config_files` (paths). `pinned` are starts
     of paths of artefacts and networks, which are given with checksum though a job made them.
-    `targets` were asked for by name: they are final whatever their kind.
+    `targets` were asked for by name: they are final whatever their kind. `changed` are inputs that
+    changed while jobs ran: sidecars have no checksum of them.
     """
     folder = Path(folder)
     known = checksums.Checksums(folder / Path(paths.CHECKSUMS).name)
+    known.doubt(changed)
     due = []
     for job in jobs:
         names = [name for name in job["outputs"] if _is_final(name, targets, folder, root)]
@@ -62,6 +65,8 @@ def record(
             written.append(name)
     _prune(folder, root)
     files.write_json(folder / "provenance.json", _of_run(run, known))
+    for name, made_ns in _last_made(jobs).items():
+        known.use(name, made_ns)
     known.write()
     return written
 
@@ -97,12 +102,27 @@ def _is_due(name: str, job: Job, record_of_it: Path) -> bool:
         return False
     if job["made"] or not record_of_it.exists():
         return True
-    # Of a folder, Snakemake's time stamp in it says when it was made.
-    stamp = path / ".snakemake_timestamp" if path.is_dir() else path
-    stamp = stamp if stamp.exists() else path
-    if stamp.stat().st_mtime_ns <= record_of_it.stat().st_mtime_ns:
+    if _made_ns(path) <= record_of_it.stat().st_mtime_ns:
         return False
     return job.get("known", True) or not _is_of(record_of_it, path)
+
+
+def _made_ns(path: Path) -> int:
+    """Return the date of a file; of a folder, that of Snakemake's time stamp in it."""
+    stamp = path / ".snakemake_timestamp" if path.is_dir() else path
+    return (stamp if stamp.exists() else path).stat().st_mtime_ns
+
+
+def _last_made(jobs: Sequence[Job]) -> dict[str, int]:
+    """Return {input: date of the newest file, ns, that a job has made from it}."""
+    made = {name for job in jobs for name in job["outputs"]}
+    found: dict[str, int] = {}
+    for job in (job for job in jobs if job["done"]):
+        names = [name for name in job["inputs"] if name not in made]
+        outputs = [path for path in map(Path, job["outputs"]) if path.exists()] if names else []
+        last_ns = max(map(_made_ns, outputs), default=0)
+        found |= {name: max(last_ns, found.get(name, 0)) for name in names}
+    return found
 
 
 def _is_of(record_of_it: Path, path: Path) -> bool:
@@ -153,8 +173,8 @@ def origin(
     """Return what a job's files rest on.
 
     `reached` are the job and all that it rests on, of `upstream`; `sha256_of` gives the checksum of
-    a path, None for one that is gone; `pinned` is as of `record`. The result has inputs and
-    artefacts {path: sha256}, settings {rule: [params of its jobs, each once]}, seeds {name:
+    a path, None for one that is gone or in doubt; `pinned` is as of `record`. The result has inputs
+    and artefacts {path: sha256}, settings {rule: [params of its jobs, each once]}, seeds {name:
     [values]}, code {script: digest}.
     """
     upstream_jobs = [jobs[at] for at in sorted(reached)]

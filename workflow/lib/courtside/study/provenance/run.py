@@ -20,14 +20,66 @@ N_WARNINGS = 3  # of one calibration, on the terminal
 N_NAMED = 3  # photos, models or files in a line
 
 
+States = Mapping[str, tuple[int, int] | None]  # size and date, ns, by path; None without a file
+
+
+def states(workflow: Any) -> States:
+    """Return the present states of the files that jobs which are about to run start from."""
+    dag = workflow.dag
+    made = {name for job in dag.jobs for name in job.products()}
+    used = {name for job in dag.needrun_jobs() for name in job.input if name not in made}
+    return {name: _state(name) for name in sorted(Path(name).as_posix() for name in used)}
+
+
+def _state(name: str) -> tuple[int, int] | None:
+    """Return size and date, ns, of a file; of a folder, its files are inputs of their own."""
+    if not Path(name).is_file():
+        return None
+    found = Path(name).stat()
+    return found.st_size, found.st_mtime_ns
+
+
+def changed_since(before: States) -> list[str]:
+    """Return the files whose states have changed."""
+    return [name for name, state in before.items() if state != _state(name)]
+
+
+def unsure(workflow: Any, repository: Path, before: States) -> list[str]:
+    """Return a line on files that changed while a run made results from them.
+
+    The jobs have to be forced: Snakemake notes the content of an input at the end of a job.
+    """
+    changed, dag = set(changed_since(before)), workflow.dag
+    jobs = [
+        (job, found)
+        for job in dag.needrun_jobs(exclude_finished=False)
+        if dag.finished(job)
+        and job.output
+        and (found := {Path(name).as_posix() for name in job.input} & changed)
+    ]
+    if not jobs:
+        return []
+    names = sorted(set().union(*(found for _, found in jobs)))
+    words = repeating_command(workflow.config_settings, repository)
+    forced = shlex.join([*words, "--forcerun", *(str(job.output[0]) for job, _ in jobs)])
+    return [
+        f"Warning: {few(names, N_NAMED)} changed during this run, so results may be of what was "
+        f"there before; they are made anew by: {forced}"
+    ]
+
+
 def record(
-    workflow: Any, repository: Path, config: Mapping[str, Any], shared: Iterable[str]
+    workflow: Any,
+    repository: Path,
+    config: Mapping[str, Any],
+    shared: Iterable[str],
+    changed: Iterable[str] = (),
 ) -> None:
     """Write the sidecars of all files that are newer than theirs.
 
     `workflow` is Snakemake's, `config` the merged configuration, `shared` the YAML files that the
-    study was read from beside Snakemake's configuration files. An `InputError` if sidecars cannot
-    be written.
+    study was read from beside Snakemake's configuration files, `changed` the inputs that changed
+    while the run went on. An `InputError` if sidecars cannot be written.
     """
     dag = workflow.dag
     jobs = [
@@ -45,7 +97,13 @@ def record(
     pinned = (paths.EXTERNAL, paths.NETWORKS)
     try:
         provenance.record(
-            jobs, paths.RUN, run=run, root=paths.RESULTS, pinned=pinned, targets=targets
+            jobs,
+            paths.RUN,
+            run=run,
+            root=paths.RESULTS,
+            pinned=pinned,
+            targets=targets,
+            changed=changed,
         )
     except OSError as error:
         raise InputError(
@@ -193,7 +251,7 @@ def warnings(study: Study) -> list[str]:
 
 def left_out(study: Study) -> list[str]:
     """Return a line for each thing that is not made for want of consent, and on what remains."""
-    found = []
+    found = _of_no_session(study)
     for session in study.sessions.values():
         found += [f"{session.name}: {line}" for line in consent.left_out(session)]
         found += [f"{session.name}: {line}" for line in _of_no_take(session)]
@@ -236,7 +294,8 @@ def _announced(study: Study) -> list[str]:
 
 def remaining(study: Study) -> list[str]:
     """Return a line for each thing that is left of what the session files no longer ask for."""
-    found = [
+    found = _of_no_session(study)
+    found += [
         f"{session.name}: {line}"
         for session in study.sessions.values()
         for line in _of_no_take(session)
@@ -245,6 +304,15 @@ def remaining(study: Study) -> list[str]:
         f"{name}: {len(kept)} files that persons have not agreed to are here, such as "
         f"{few(kept, N_NAMED)}: delete them; the end of a run lists all"
         for name, kept in remains.without_consent(study).items()
+    ]
+
+
+def _of_no_session(study: Study) -> list[str]:
+    """Return a line for each folder of results of a session that was renamed or removed."""
+    return [
+        f"{folder} belongs to no session of {study.folder / 'sessions'}: delete it, and "
+        f"{paths.REPORT}, which may show it, or name the session again"
+        for folder in remains.of_no_session(study)
     ]
 
 

@@ -14,6 +14,19 @@ PEOPLE_PAGE = paths.PEOPLE_PAGE.removeprefix(f"{paths.TAKE}/")
 OF_A_PERSON = (".trc", ".c3d", ".bvh", ".glb", ".mot", ".osim")  # after the model and the person
 EXPORTED = {f".{suffix}" for suffix in devices.EXPORTED}  # of a device
 OF_A_CAMERA = ("background", "movement", "pose2d", "pose2d_steadied", "shake", "videos")  # folders
+SOURCES = ("", "-rgb", "-depth", "-corrected")  # after the name of a device
+
+
+def of_no_session(study: Study) -> list[str]:
+    """Return the folders of results with takes of sessions that have no file."""
+    pattern = paths.TAKE.format(session="*", take="").rstrip("/")
+    names = [folder.parent.name for folder in sorted(Path().glob(pattern)) if folder.is_dir()]
+    return [
+        paths.SESSION.format(session=name)
+        for name in names
+        if name not in study.sessions
+        and not (study.folder / paths.SESSION_YAML.format(session=name)).is_file()
+    ]
 
 
 def of_takes(session: Session) -> dict[str, bool]:
@@ -46,8 +59,14 @@ def of_nobody(session: Session) -> dict[str, list[str]]:
 
 
 def of_no_camera(session: Session) -> dict[str, list[str]]:
-    """Return, by folder of a take, the cameras of files there that the take does not have."""
-    return _of_others(session, _camera, lambda take: (*take.cameras, *take.devices))
+    """Return, by folder of a take, the cameras and sources of files that the take does not have."""
+    return _of_others(session, _camera, _cameras)
+
+
+def _cameras(take: Take) -> set[str]:
+    """Return the cameras of a take, and the skeletons that its devices may give."""
+    sources = (name + ending for name in take.devices for ending in SOURCES)
+    return {*take.cameras, "cameras", *sources}  # of all cameras together, among those of devices
 
 
 def _of_others(
@@ -71,9 +90,15 @@ def _person(path: Path) -> str | None:
 
 
 def _camera(path: Path) -> str | None:
-    """Return of which camera a file is, seen from the folder of a take."""
-    is_of_one = path.parts[0] in OF_A_CAMERA and not path.name.startswith(".")
-    return path.name.split(".")[-2] if is_of_one else None
+    """Return of which camera, or source of a device, a file is, seen from the folder of a take."""
+    folders = path.parts[:-1]
+    if path.name.startswith("."):
+        return None
+    if len(folders) > 2 and folders[0] in ("pose3d_ik", "motion") and folders[1] == "devices":
+        return folders[2]
+    if folders == ("devices",):
+        return path.name.split(".")[0]
+    return path.name.split(".")[-2] if folders[:1] and folders[0] in OF_A_CAMERA else None
 
 
 def of_records(study: Study, names: Iterable[str]) -> list[str]:
@@ -104,7 +129,7 @@ def _is_left(session: Session, path: Path) -> bool:
         return True
     person, camera = _person(inner), _camera(inner)
     is_of_another = person is not None and person not in take.subjects
-    return is_of_another or camera not in (None, *take.cameras, *take.devices)
+    return is_of_another or not (camera is None or camera in _cameras(take))
 
 
 def without_consent(study: Study) -> dict[str, list[str]]:
@@ -152,6 +177,7 @@ def _made(study: Study) -> Iterator[str]:
     yield from pages.every_people_page(study)
     yield from pages.every_quality_page(study)
     yield from together.every_players_figure(study)
+    yield from together.every_network_table(study)
     yield from together.every_study_table(study)
 
 
@@ -202,7 +228,10 @@ def _exported(take: Take, path: Path) -> Iterable[str | None]:
     if folder == "devices":
         # A correction is a step of the study, whatever its format.
         is_own = kind.endswith("-corrected") or path.name.endswith(".frames.csv")
-        return [take.person_of_devices] if path.suffix in EXPORTED and not is_own else []
+        if path.suffix not in EXPORTED or is_own:
+            return []
+        # The devices of earlier files may be no more.
+        return [take.person_of_devices] if take.devices else take.subjects
     if path.suffix == ".csv" and folder.startswith("pose3d"):
         return [path.name.split(".")[-2]]
     return [_person(path)]

@@ -64,6 +64,12 @@ def every_players_figure(study: Study) -> list[str]:
     return paths.formats(stems) + tables * bool(takes.evaluations(study, "errors"))
 
 
+def every_network_table(study: Study) -> list[str]:
+    """Return the tables that the figures of compared networks are drawn from."""
+    tables = [paths.NETWORK_PAIRS, paths.NETWORK_AGREEMENT] * bool(compared_takes(study))
+    return tables + [paths.NETWORK_ERRORS] * bool(evaluated_takes(study))
+
+
 def fig05_layouts(study: Study) -> dict[str, list]:
     """Return session, take and cameras of each layout of fig 5 that the study has and may show."""
     wanted = study.parameters["draw_badminton_fig05"]["layouts"]
