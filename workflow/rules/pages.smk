@@ -16,7 +16,7 @@ rule build_people_page:
         court=of_job(Job.court_file),
         videos=lambda w: list(take_of(w).videos.values()),
         people_csv=of_job(takes.people_csv),
-        assets=sorted(ASSETS.glob("p*")),
+        assets=sorted(ASSETS.glob("[cp]*")),
     output:
         page_html=paths.PEOPLE_PAGE,
     log:
