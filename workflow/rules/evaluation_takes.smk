@@ -271,6 +271,7 @@ rule evaluate_round_trip:
     input:
         pose3d_npz=of_job(evaluation.round_trip_skeletons),
         cameras_toml=paths.CAMERAS,
+        people_npz=paths.PEOPLE,
         pose2d_npz=of_job(takes.keypoints_2d),
         sync_json=paths.CAMERA_CLOCKS,
         skeleton_yaml=of_job(Job.skeleton_file),

@@ -8,7 +8,7 @@ from courtside.geometry import camera as cameras
 from courtside.records import tables
 from courtside.records.devices import clocks as sync
 from courtside.records.keypoints import derived_joints as derived
-from courtside.records.keypoints import keypoints, skeleton
+from courtside.records.keypoints import keypoints, people, skeleton
 from courtside.records.truth import take_truth
 from courtside.study.execution.script import run
 
@@ -16,6 +16,7 @@ from courtside.study.execution.script import run
 def main(
     pose3d_npz,
     cameras_toml,
+    people_npz,
     skeleton_yaml,
     derived_yaml,
     rows_csv,
@@ -30,7 +31,8 @@ def main(
     known = cameras.read_toml(cameras_toml)
     names = skeleton.read(skeleton_yaml).name
     table = derived.read(derived_yaml)
-    views = {view.camera: view for view in map(keypoints.read_2d, pose2d_npz)}
+    who = people.read(people_npz)
+    views = {view.camera: who.assigned(view) for view in map(keypoints.read_2d, pose2d_npz)}
     clocks = sync.read(sync_json)[1] if sync_json else {}
     truth = None
     if truth_npz:

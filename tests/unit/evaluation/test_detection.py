@@ -169,6 +169,17 @@ def test_strokes_are_between_their_events():
     assert set(rows[rows.in_stroke].frame_idx) == {2, 3, 4, 5, 6}
 
 
+def test_who_stands_in_a_t_pose_or_splits_is_not_in_a_stroke():
+    real = truth()
+    real.events = {
+        "p1": {"tpose_1_start": 0.0, "tpose_1_stop": 0.1, "clap_1": 0.2}
+        | {"split_1_start": 0.0, "split_1_stop": 0.15}
+        | {"hit_2": 0.27, "hit_2_start": 0.23, "hit_2_stop": 0.3}
+    }
+    rows = evaluate(seen(real), real)
+    assert set(rows[rows.in_stroke].frame_idx) == {7, 8, 9}
+
+
 def test_a_network_without_the_joints_is_refused():
     real = truth()
     view = seen(real)

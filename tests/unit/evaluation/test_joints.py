@@ -192,19 +192,21 @@ def test_truth_is_derived_only_for_joints_with_the_same_definition():
     assert pose_errors.derive_truth(real, DERIVED, "cpm14", ["neck", "head_centre"]) is real
 
 
-def test_a_view_that_was_left_out_is_compared_with_its_own_tracklets():
-    """The second tracklet is the first person, 3 px off; the first is the second, 40 px off."""
+def test_a_view_that_was_left_out_is_compared_person_by_person():
+    """The second person is detected where the first one is: that is her error, not the first's."""
     points, cameras = walker.points(n_persons=2, n_frames=40), scene.ring(4)
-    points.xyz[1] += [0.8, 0.0, 0.0]
     xy = np.stack(
         [
             scene.opencv_projection(cameras[3], xyz.reshape(-1, 3)).reshape(40, -1, 2)
             for xyz in points.xyz
         ]
     )
-    xy = np.stack([xy[1] + [40.0, 0.0], xy[0] + [0.0, 3.0]])
-    view = keypoints_made.view(cameras[3], points.joints, points.time_s + 0.25, xy)
+    seen = np.stack([xy[0] + [0.0, 3.0], xy[0]])
+    seen[0, :10] = np.nan
+    view = keypoints_made.view(cameras[3], points.joints, points.time_s + 0.25, seen)
     error = pose_errors.distance_to_unused_view(points, cameras[3], view, Clock(offset_s=0.25))
+    assert np.isnan(error[0, :10]).all()
     known = np.isfinite(points.xyz[..., 0])
-    np.testing.assert_allclose(error[0][known[0]], 3.0, atol=1e-6)
-    np.testing.assert_allclose(error[1][known[1]], 40.0, atol=1e-6)
+    np.testing.assert_allclose(error[0, 10:][known[0, 10:]], 3.0, atol=1e-6)
+    between = np.linalg.norm(xy[1] - xy[0], axis=-1)
+    np.testing.assert_allclose(error[1][known[1]], between[known[1]], atol=1e-6)

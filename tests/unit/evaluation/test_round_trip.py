@@ -1,5 +1,6 @@
 """Table 1: the identity, rounding against its variance, known errors."""
 
+import runpy
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -8,12 +9,15 @@ import pandas as pd
 import pytest
 
 from courtside.evaluation import round_trip
+from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
+from courtside.records.keypoints import keypoints, people
 from courtside.study.errors import InputError
 from fixtures.cameras import scene
-from fixtures.people import walker
+from fixtures.people import found, keypoints_made, walker
 
-PUBLISHED = Path(__file__).parents[3] / "config" / "published" / "badminton_tab01.csv"
+ROOT = Path(__file__).parents[3]
+PUBLISHED = ROOT / "config" / "published" / "badminton_tab01.csv"
 DIST = (-0.12, 0.05, 0.001, -0.0005, 0.0)
 
 
@@ -153,3 +157,40 @@ def test_a_truth_of_other_persons_and_a_camera_without_calibration_are_refused()
         )
     with pytest.raises(InputError, match="camera c2: expected one of"):
         round_trip.table(points, cameras[:2], points.joints[:2], chosen, published_width=3840)
+
+
+def test_a_bystander_is_not_taken_for_the_person_whom_a_left_out_view_misses(tmp_path):
+    """The person is seen 3 px off in three frames of four; another one stands 3 m aside."""
+    points, cameras = walker.points(n_frames=40), scene.ring(4)
+    places = points.xyz[0], points.xyz[0] + [0.0, 3.0, 0.0]
+    xy = np.stack([camera_models.project(cameras[3], place) for place in places])
+    xy[0] += [0.0, 3.0]
+    xy[0, ::4] = np.nan
+    rows = np.where(np.arange(40) % 4, 0, -1)[None]
+    view = keypoints_made.view(cameras[3], points.joints, points.time_s, xy)
+    paths = {name: tmp_path / name for name in ("p3.npz", "p2.npz", "who.npz", "c.toml", "o.csv")}
+    keypoints.write_3d(paths["p3.npz"], points)
+    keypoints.write_2d(paths["p2.npz"], view)
+    people.write(paths["who.npz"], found.people({"c3": rows}, ["p1"]))
+    camera_models.write_toml(paths["c.toml"], cameras, source="test")
+    script = runpy.run_path(str(ROOT / "workflow" / "scripts" / "evaluate_round_trip.py"))
+    script["main"](
+        pose3d_npz=[paths["p3.npz"]],
+        cameras_toml=paths["c.toml"],
+        people_npz=paths["who.npz"],
+        skeleton_yaml=ROOT / "config" / "skeletons" / "blazepose33.yaml",
+        derived_yaml=ROOT / "config" / "derived_joints.yaml",
+        rows_csv=paths["o.csv"],
+        pose2d_npz=[paths["p2.npz"]],
+        session="hall",
+        take="shot",
+        joints=["left_wrist"],
+        derived_joints=[],
+        n_frames=None,
+        start_s=None,
+        published_width=3840,
+    )
+    rows = pd.read_csv(paths["o.csv"])
+    (wrist,) = rows[(rows["row"] == "left_out") & (rows["joint"] == "left_wrist")].itertuples()
+    assert wrist.n == 30
+    assert wrist.mean == pytest.approx(3.0, abs=1e-6)

@@ -116,6 +116,10 @@ def test_kinematics_stand_with_their_stage_and_clocks_with_the_raw_one_by_their_
     unknown = [*measured, kinematics("f4", np.nan, 0.06)]
     last = table(parts, unknown).set_index("stage").loc["corrected"]
     assert np.isnan(last["neck_distance_error_percent"])
+    assert last["neck_speed_rmse_m_s"] == 0.07
+    unknown = [*measured, kinematics("f4", np.nan, np.nan)]
+    last = table(parts, unknown).set_index("stage").loc["corrected"]
+    assert np.isnan(last["neck_speed_rmse_m_s"])
 
 
 def test_clocks_that_were_not_found_are_counted():

@@ -272,3 +272,10 @@ def test_repeated_takes_of_several_players_do_not_share_random_numbers():
     takes = yaml_files.read(CONFIG / "sessions" / "repeats.yaml")["takes"].values()
     seeds = [take["virtual"]["seed"] for take in takes]
     assert len(seeds) == len(set(seeds)) == 15
+
+
+@pytest.mark.parametrize("path", sorted((CONFIG / "sessions").glob("*.yaml")), ids=lambda p: p.stem)
+def test_no_take_has_bystanders_and_devices_which_share_random_numbers(path):
+    takes = yaml_files.read(path).get("takes") or {}
+    virtual = [take.get("virtual") or {} for take in takes.values()]
+    assert not [one for one in virtual if one.get("bystanders") and one.get("devices")]

@@ -5,7 +5,8 @@ joints: `errors`, `table`, `distance_to_truth`, `limb_distances`, `distance_to_u
 reliability: `counts`, `pooled`: how often ellipsoids hold, and how well outliers are
     flagged; not how well measures repeat
 error_fit: `joints_of`: what the model of joint errors is fitted on
-detection: `evaluate`, `against`, `torso_px`: errors of a network's 2D joints in the pictures
+detection: `evaluate`, `against`, `torso_px`, `is_hit`: errors of a network's 2D joints in the
+    pictures
 kinematics: `table`, `angles`: errors of paths and speeds, of joint angles
 movement: contacts of feet, strokes
 sources: `errors`, `table`, `split`: errors of devices and cameras, and their parts

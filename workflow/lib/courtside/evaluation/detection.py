@@ -31,7 +31,7 @@ COLUMNS = [
 class FilmedTruth(pose_errors.Truth, Protocol):
     """A truth with the poses of cameras that shook, by frame, and the events of persons.
 
-    Events `*_start` and `*_stop` bound a stroke.
+    Events `*_start` and `*_stop` of a hit bound a stroke.
     """
 
     shaken: dict[str, NDArray]
@@ -176,11 +176,16 @@ def _table(view, joints, known, detected, true, torso):
     return pd.DataFrame(flat).assign(camera=view.camera)[COLUMNS]
 
 
+def is_hit(name: str) -> bool:
+    """Return whether an event of a virtual person is a hit: `hit`, or `hit_` and a number."""
+    return name == "hit" or (name.startswith("hit_") and name.removeprefix("hit_").isdigit())
+
+
 def _strokes(events: dict[str, float], time_s: NDArray) -> NDArray:
     """Return which times lie in a stroke of a person with these events, (F,) bool."""
     inside = np.zeros(len(time_s), dtype=bool)
-    for name, start_s in events.items():
-        stop_s = events.get(f"{name.removesuffix('_start')}_stop")
-        if name.endswith("_start") and stop_s is not None:
+    for hit in filter(is_hit, events):
+        start_s, stop_s = events.get(f"{hit}_start"), events.get(f"{hit}_stop")
+        if start_s is not None and stop_s is not None:
             inside |= (time_s >= start_s) & (time_s <= stop_s)
     return inside

@@ -224,20 +224,12 @@ def distance_to_unused_view(
 ) -> NDArray:
     """Return the distances (P, T, J) px between a view's detections and projected points.
 
-    The points must not rest on this view. A tracklet belongs to the person whose projection is
-    closest in the median over the whole take. Where several tracklets belong to one person, the one
-    closest in the median comes first: frames do not choose a tracklet of their own.
+    The points must not rest on this view. It holds the persons of the points, in their order
+    (`People.assigned`), not tracklets: somebody who walks by is not compared with a person who is
+    not detected at that moment.
     """
     xy, _ = resampling.resample(view, points.time_s, clock or Clock())
     names = list(map(str, view.joints))
     at = [names.index(joint) if joint in names else -1 for joint in map(str, points.joints)]
     xy = np.where((np.array(at) >= 0)[:, None], xy[:, :, at], np.nan)
-    projected = camera_models.project(camera, points.xyz)
-    apart = np.linalg.norm(xy[None] - projected[:, None], axis=-1)
-    middle = np.array([[pd.Series(one.ravel()).median() for one in person] for person in apart])
-    error = np.full(points.xyz.shape[:-1], np.nan)
-    closest = np.nan_to_num(middle, nan=np.inf).min(axis=0)
-    for tracklet in np.argsort(closest)[: np.isfinite(closest).sum()]:
-        person = int(np.nanargmin(middle[:, tracklet]))
-        error[person] = np.where(np.isnan(error[person]), apart[person, tracklet], error[person])
-    return error
+    return np.linalg.norm(xy - camera_models.project(camera, points.xyz), axis=-1)

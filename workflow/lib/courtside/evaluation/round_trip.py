@@ -103,9 +103,9 @@ def table(
     `left_out` of the other views; `truth` is the distance to the true joint of the same name.
 
     `cameras` are at least the views that `points` rests on, `others` views that it does not rest
-    on; without a clock, they are on that of `points`. Rows are for those `joints` that `points`
-    has. `published_width` is the longer side, px, of the picture whose pixel grid the row
-    `rounded_published` uses.
+    on, with the persons of `points`; without a clock, they are on that of `points`. Rows are for
+    those `joints` that `points` has. `published_width` is the longer side, px, of the picture whose
+    pixel grid the row `rounded_published` uses.
 
     `InputError` if a view has no camera, or no person is in the truth; `ValueError` if the exact
     round trip moves a point: projection and triangulation are then inconsistent.

@@ -18,10 +18,12 @@ from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
 
 # Of the network's errors on the bodies of `players-dev`, each left out of the fit of its errors
-# (docs/measured/movement.md). Share of the stated variance that counts in a measure: the stated one
-# is wide for the sake of a few large errors, and a tenth of it is what 90 % intervals of speeds and
-# angles need. Correlation of neighbouring joints of an arm or a leg: 0.2 to 0.6. Time in which an
-# error falls to 1/e of itself: 0.15 to 0.25 s, by lags up to 0.3 s.
+# (docs/measured/movement.md). These bodies share seeds: the one left out performs the movement of
+# those fitted on, so that errors in other movements may be larger. Share of the stated variance
+# that counts in a measure: the stated one is wide for the sake of a few large errors, and a tenth
+# of it is what 90 % intervals of speeds and angles need. Correlation of neighbouring joints of an
+# arm or a leg: 0.2 to 0.6. Time in which an error falls to 1/e of itself: 0.15 to 0.25 s, by lags
+# up to 0.3 s.
 NETWORK_SHARE = 0.1
 NEIGHBOURS = 0.4
 NETWORK = Noise(0.2, scale=NETWORK_SHARE)

@@ -20,7 +20,7 @@ PLACE_M = 0.12  # scatter of the corners: two standard deviations
 PREPARED_S = 0.2  # before the arrival the arm is raised for an overhead stroke
 SWING_S = (0.13, 0.15)  # from the cocked arm to the hit
 FOLLOW_SWINGS = 1.75  # from the hit to the end of the follow-through, in swing durations
-HALF_WINDOW_S = 8 / 30  # half of a hit's 17 frames at 30 fps
+HALF_WINDOW_S = 8 / 30  # half of a hit's 16 or 17 frames at 30 fps
 CADENCE_HZ = 3.8
 
 

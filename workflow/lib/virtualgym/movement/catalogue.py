@@ -42,7 +42,7 @@ def exchange_of_shots(
 def shot(player: Player, *, corner: str = "rear_right") -> Motion:
     """Run to one of `badminton.CORNERS`, play its stroke (default: an overhead clear), and return.
 
-    Events: hit, hit_start, hit_stop (17 frames at 30 fps from start to stop).
+    Events: hit, hit_start, hit_stop (16 or 17 frames at 30 fps from start to stop).
     """
     if corner not in badminton.CORNERS:
         raise ValueError(f"expected a corner of {list(badminton.CORNERS)}, found {corner!r}")

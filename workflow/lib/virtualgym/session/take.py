@@ -31,7 +31,7 @@ CLOCK = {"offset_s", "drift_ppm"}
 LATE_S = 60.0  # greatest offset between two clocks, as the schema of sessions has it
 SHAKE = {part.name for part in fields(camera_shake.Shake)}
 FITTING = "virtual settings of a take that fit", "correct them"  # else an error says so
-# Independent streams of random numbers, of the take's seed.
+# Independent streams of random numbers, of the take's seed; BYSTANDERS is that of devices, too.
 MOTION, GRAIN, SHAKING, CLICKS, BYSTANDERS, SCRIPT = range(6)
 FIELD, FRAMES = range(2)  # of GRAIN and a camera
 

@@ -27,7 +27,9 @@ KINDS: dict[str, type[Device]] = {
     "rgbd": depth_camera.DepthCamera,
     "inertial": inertial_suit.InertialSuit,
 }
-DEVICES = 4  # a take's stream of random numbers, after those in `take`
+# A take's stream of random numbers. ASSUME: no take has bystanders, whose stream in `take` is the
+# same one; another number here or there makes all recordings of one of them anew.
+DEVICES = 4
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,6 +2,7 @@
 
 import pandas as pd
 
+from courtside.evaluation import detection
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.truth.take_truth import TakeTruth
 from courtside.statistics.normal_errors import WITHIN_90
@@ -42,8 +43,7 @@ def table(strokes: pd.DataFrame, points: Keypoints3D, truth: TakeTruth) -> pd.Da
 def hits(truth: TakeTruth, person: str) -> list[float]:
     """Return the true times of a person's hits, s, in order."""
     events = truth.events.get(person, {})
-    names = [name for name in events if name == "hit" or name.removeprefix("hit_").isdigit()]
-    return sorted(events[name] for name in names)
+    return sorted(time_s for name, time_s in events.items() if detection.is_hit(name))
 
 
 def _words(stroke: pd.Series) -> dict[str, object]:

@@ -94,7 +94,7 @@ def table(takes: Sequence[ComparedTake], networks: Sequence[str]) -> pd.DataFram
         groups.setdefault((take.session, take.against), []).append(take)
     for (session, against), group in groups.items():
         for row in _measured(group, networks):
-            rows.append({"session": session, "against": against, "n_takes": len(group), **row})
+            rows.append({"session": session, "against": against, **row})
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
@@ -113,7 +113,8 @@ def _measured(group: Sequence[ComparedTake], networks: Sequence[str]) -> Iterato
             value, drawn = _statistic(values, percentile), _drawn(counts, values, frame, percentile)
             first = np.append(drawn, value) if first is None else first
             row = {"network": network, "measure": name, "unit": unit, "value": value}
-            row |= {"n": len(values), "n_blocks": n_blocks, **_ends("value", drawn)}
+            row |= {"n": len(values), "n_takes": len(series), "n_blocks": n_blocks}
+            row |= _ends("value", drawn)
             if network != networks[0] == names[0]:
                 row |= {"difference": value - first[-1], **_ends("difference", drawn - first[:-1])}
             yield row

@@ -119,7 +119,10 @@ def _gains(rows: pd.DataFrame, gains: pd.DataFrame) -> pd.DataFrame:
 
 
 def _kinematics(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return the worst of each number over the persons of a take, points side by side."""
+    """Return the worst of each number over the persons of a take, points side by side.
+
+    NaN where it is unknown of one of them, who may be the worst.
+    """
     if rows.empty:
         return rows
     key = [*KEY, "stage"]
@@ -127,7 +130,7 @@ def _kinematics(rows: pd.DataFrame) -> pd.DataFrame:
     for point in POINTS:
         groups = rows[rows["point"] == point].groupby(key)
         found[f"{point}_distance_error_percent"] = groups["distance_error_percent"].agg(furthest)
-        found[f"{point}_speed_rmse_m_s"] = groups["speed_rmse_m_s"].max()
+        found[f"{point}_speed_rmse_m_s"] = groups["speed_rmse_m_s"].agg(furthest)
     return pd.DataFrame(found).reset_index()
 
 

@@ -43,7 +43,10 @@ def against_truth(cameras: Sequence[Camera], truth: Sequence[Camera], court: Cou
 
 
 def accepted(takes: Sequence[Keypoints3D]) -> dict:
-    """Return the share (%) of views of limb joints that triangulation used, and their number."""
+    """Return the share (%) of views of limb joints that triangulation used, and their number.
+
+    Of joints that were placed: how many views a rejected joint has is not known.
+    """
     used = [_views(found) for found in takes]
     every = np.concatenate(used) if used else np.zeros(0)
     share = 100 * float(every.mean()) if len(every) else None
