@@ -2,7 +2,7 @@
 
 cameras: `of_take`, `synchronise`: all fixed cameras against the first; `place`: coarse offsets
 devices: `synchronise`: all sources against the first; `pair`: claps of two devices
-clock_doubts: `refuse_other_claps`: what speaks against a device's clock
+clock_doubts: `refuse_other_claps`, `doubts`: what speaks against a device's clock
 clock_adjustment: `adjust`, `with_prior`: offsets and drifts together, with covariance
 epipolar, speed: `Epipolar`, `Speeds`: the losses with calibrated cameras, and without
 motion_signals: `Signals`: the loss between devices; `common_axes`

@@ -1,11 +1,17 @@
 """What speaks against the clock of a device that its claps gave: the motion of the whole take."""
 
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
 import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from courtside.records.devices.clocks import Clock
+from courtside.records.devices.device_motion import DeviceMotion
+from courtside.records.devices.events import TPose
 from courtside.study.errors import InputError
-from courtside.synchronisation import smooth_tracks
+from courtside.synchronisation import motion_signals, smooth_tracks
 from courtside.synchronisation.motion_signals import Signals
 
 BETTER = 0.15  # ASSUME: correlation by which motion must prefer something else, as for two pairings
@@ -16,6 +22,14 @@ LEAST_ALIKE = 0.5
 # time in which chance does not make motions alike.
 COMMON_SHARE, COMMON_S = 0.5, 10.0
 SAME_S = 1.0  # ASSUME: offsets that differ by less are one: the motion's peak is that wide
+# ASSUME: of a drift, more prior deviations than any clock has: of the devices' 200 ppm, 800 ppm.
+# Frames that a file lost look like a drift; 100 ms of them in 90 s gave 1100 ppm.
+MOST_DRIFT = 4.0
+# ASSUME: times and offsets at which motion is compared with a found clock: a window has several
+# strokes or steps, a connection that is lost for longer is seen otherwise.
+WINDOW_S, REACH_S, LAG_STEP_S = 6.0, 1.5, 0.05
+LEAST_RUN = 2  # ASSUME: windows one after the other that must prefer the same offset
+ALIKE_S = 0.1  # ASSUME: offsets that differ by less are the same
 
 
 def refuse_other_claps(signals: Signals, offset_s: float, where: str) -> None:
@@ -66,3 +80,95 @@ def _scan(signals: Signals) -> tuple[NDArray, NDArray, NDArray, float]:
     lags = np.arange(len(alike)) - (len(first) - 1)
     least_s = COMMON_SHARE * step_s * min(each.sum() for each in shown)
     return starts_s[1] - starts_s[0] + step_s * lags, alike, common_s, float(least_s)
+
+
+def doubts(
+    motions: Sequence[DeviceMotion],
+    spells: Sequence[TPose],
+    signals: Signals,
+    time_s: NDArray,
+    clock: Clock,
+    prior_drift: float,
+) -> tuple[str, ...]:
+    """Return lines on what speaks against a found clock of the second of two devices.
+
+    `spells` are those of the same T-pose, `signals` on its axes, `time_s` (T,) uniform times of the
+    first device's clock, `prior_drift` the standard deviation of drifts.
+    """
+    reference, motion = motions
+    said = [_exchanged(motions, spells, signals, time_s, clock)]
+    if abs(clock.drift_ppm) > 1e6 * MOST_DRIFT * prior_drift:
+        said.append(
+            f"expected a drift of at most {1e6 * MOST_DRIFT * prior_drift:.0f} ppm, found "
+            f"{clock.drift_ppm:.0f} ppm: a file lacks frames, or its rate is not the true one"
+        )
+    said += _beside(signals, time_s, clock)
+    return tuple(f"{motion.source} against {reference.source}: {line}" for line in said if line)
+
+
+def _exchanged(motions, spells, signals, time_s, clock) -> str:
+    """Return a line if the motions are more alike with left and right of one exchanged."""
+    reference, motion = motions
+    mirrored = _mirrored(motion)
+    axes = motion_signals.common_axes((reference, mirrored), spells)
+    own = np.stack([time_s, clock.from_reference(time_s)])
+    found, other = (
+        float(np.median(each.correlation(own)))
+        for each in (signals, Signals(reference, mirrored, axes))
+    )
+    if other < max(LEAST_ALIKE, found + BETTER):
+        return ""
+    return (
+        f"the motions have a correlation of {found:.2f}, and of {other:.2f} with left and right of "
+        "one exchanged: look whether sensors are worn on the wrong side, or a video is mirrored"
+    )
+
+
+def _mirrored(motion: DeviceMotion) -> DeviceMotion:
+    """Return the motion of a mirror image, in which left and right are exchanged."""
+    other = {"left": "right", "right": "left"}
+    sides = [str(name).partition("_") for name in motion.joints]
+    names = ["".join((other.get(side, side), *rest)) for side, *rest in sides]
+    return replace(motion, joints=np.array(names), xyz=motion.xyz * [-1.0, 1.0, 1.0])
+
+
+def _beside(signals: Signals, time_s: NDArray, clock: Clock) -> Iterator[str]:
+    """Yield a line for each time in which the motion prefers one other offset throughout."""
+    if len(time_s) < 2:
+        return
+    window = max(1, round(WINDOW_S / (time_s[1] - time_s[0])))
+    starts = np.arange(0, len(time_s) - window + 1, window)
+    lags_s = LAG_STEP_S * np.arange(-round(REACH_S / LAG_STEP_S), round(REACH_S / LAG_STEP_S) + 1)
+    if not len(starts):
+        return
+    alike = np.array([_alike(signals, time_s, clock, lag_s, starts) for lag_s in lags_s])
+    best = alike.argmax(axis=0)
+    least = np.maximum(LEAST_ALIKE, alike[len(lags_s) // 2] + BETTER)
+    preferred_s = np.where(alike.max(axis=0) >= least, lags_s[best], np.nan)
+    for first, last in _runs(preferred_s):
+        yield (
+            f"from {time_s[starts[first]]:.0f} to {time_s[starts[last] + window - 1]:.0f} s, "
+            f"the motions agree {1e3 * np.median(preferred_s[first : last + 1]):+.0f} ms beside "
+            "the clock: a file probably lacks frames there; give the parts before and after as "
+            "takes of their own"
+        )
+
+
+def _alike(signals, time_s, clock, lag_s, starts) -> NDArray:
+    """Return the correlation (W,) of the motions, later by `lag_s`, in windows from `starts`."""
+    own = np.stack([time_s, clock.from_reference(time_s) + lag_s])
+    first, second = (one[0] for one in signals.sampled(own))
+    sums = [np.add.reduceat(part, starts) for part in (first * second, first**2, second**2)]
+    size = np.sqrt(sums[1] * sums[2])
+    return np.median(sums[0] / np.where(size > 0, size, np.inf), axis=1)
+
+
+def _runs(preferred_s: NDArray) -> Iterator[tuple[int, int]]:
+    """Yield first and last of the windows, in a row, that prefer the same offset (W,)."""
+    first = 0
+    for at in range(1, len(preferred_s) + 1):
+        ends = at == len(preferred_s) or not (abs(preferred_s[at] - preferred_s[at - 1]) <= ALIKE_S)
+        if ends:
+            if at - first >= LEAST_RUN:
+                yield first, at - 1
+            first = at

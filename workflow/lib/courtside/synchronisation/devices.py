@@ -50,6 +50,7 @@ class Found:
     # the reference has none).
     latency_s: float = 0.0
     latency_uncertainty_s: float = 0.0
+    doubts: tuple[str, ...] = ()  # lines on what speaks against the clock
 
 
 def synchronise(
@@ -93,10 +94,10 @@ def synchronise(
 
 def checks(found: Mapping[str, Found]) -> pd.DataFrame:
     """Return one row per source: its clock, and the estimates that this rests on."""
-    rows = []
+    rows, not_numbers = [], ("clock", "claps", "doubts")
     for source, one in found.items():
         clock = {key: getattr(one.clock, key) for key in ("offset_s", "drift_ppm", "uncertainty_s")}
-        rest = {key: value for key, value in vars(one).items() if key not in ("clock", "claps")}
+        rest = {key: value for key, value in vars(one).items() if key not in not_numbers}
         about = {"source": source, "status": one.clock.status, **clock}
         about["drift_uncertainty_ppm"] = one.clock.drift_uncertainty_ppm
         rows.append(about | {"n_claps": len(one.claps)} | rest)
@@ -130,7 +131,13 @@ def _against(reference, motion, happened) -> Found:
         axes = motion_signals.common_axes((reference, motion), chosen)
         signals = Signals(reference, motion, axes)
         moved = _by_motion(signals, reference, motion, offset_s(pairs))
-    return _joined(pairs, moved, reference, where)
+        one = _joined(pairs, moved, reference, where)
+        time_s = _both(reference, motion, offset_s(pairs))
+        doubts = clock_doubts.doubts(
+            (reference, motion), chosen, signals, time_s, one.clock, PRIOR_DRIFT
+        )
+    note = "; ".join((one.clock.note, *doubts))
+    return replace(one, clock=replace(one.clock, note=note), doubts=doubts)
 
 
 def _likeness(signals, reference, motion) -> Callable[[float], float]:
@@ -278,7 +285,8 @@ def pair(
         raise InputError(
             f"{where}: expected claps that pair in one way, found {len(best)} ways (offsets "
             f"{offsets} s): claps at {times[1]} s against {times[0]} s; give the device's offset_s "
-            "under clocks of the take"
+            "under clocks of the take, or, if a file lacks frames between them, its parts as takes "
+            "of their own"
         )
     return best[0][1]
 
