@@ -12,11 +12,13 @@ from courtside.exports import bvh
 from courtside.exports import device as device_export
 from courtside.exports.trees import gltf
 from courtside.inertial import correction
+from courtside.inertial import report as reports
 from courtside.records.devices import clocks as sync
 from courtside.records.devices import device_motion, events
 from courtside.records.devices.hierarchy import forward
 from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
+from courtside.study.execution import log
 from courtside.study.execution.script import run
 
 ABSENT = sync.Clock(status="unknown", note="not in the file")
@@ -44,13 +46,16 @@ def main(
     if fault := sync.fault_line(sync_json, used, "device"):
         raise InputError(fault)
     own, theirs = used[device], used[vision_device]
+    lag_s = hypot(own.uncertainty_s, theirs.uncertainty_s)
     corrected, report = correction.correct(
         replace(motion.posed, time_s=own.to_reference(motion.time_s)),
         replace(vision, time_s=theirs.to_reference(vision.time_s)),
         sigma_m=sigma_m,
-        lag_s=hypot(own.uncertainty_s, theirs.uncertainty_s),
+        lag_s=lag_s,
         performed=motion.performed,
     )
+    for doubt in reports.doubts(report, lag_s):
+        log.tell(f"{device}: {doubt}", report_json)
     time_s = own.from_reference(corrected.time_s)
     corrected = replace(corrected, time_s=time_s)
     order = [corrected.hierarchy.joints.index(joint) for joint in motion.joints]
