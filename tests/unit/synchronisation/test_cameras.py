@@ -192,6 +192,16 @@ def test_a_person_who_stands_still_tells_nothing(known):
     assert {found["c1"].status, found["c2"].status} <= {"ambiguous", "unknown"}
 
 
+def test_a_camera_started_too_late_is_told_how_far_was_searched():
+    """Its true offset is not among those tried, so others are not worth a look."""
+    clocks = [Clock(), Clock(14.0), Clock(0.5)]
+    found = camera_sync.synchronise(take(0, seconds=30.0, clocks=clocks), CAMERAS, max_offset_s=8.0)
+    assert (found["c1"].status, found["c2"].status) == ("unknown", "found")
+    line = sync.fault_line("take", found)
+    assert "those of up to 8 s" in line and "`synchronise_cameras: max_offset_s`" in line
+    assert "possible offsets" not in line
+
+
 @pytest.mark.parametrize("n_tracklets", [0, 1])
 def test_a_camera_that_sees_nobody_is_unknown_and_the_others_are_found(n_tracklets):
     views = take(6)

@@ -78,7 +78,7 @@ def synchronise(
             overlap = overlap if len(overlap) else time_s
             clock = _found(adjusted, camera, overlap, abs(rows[camera] - rows[0]))
         else:
-            clock = _not_found(placed.get(camera))
+            clock = _not_found(placed.get(camera), max_offset_s)
         found[views[camera].camera] = clock
     return found
 
@@ -196,7 +196,7 @@ def _found(adjusted, camera, overlap, rows_apart) -> Clock:
     )
 
 
-def _not_found(placed: "Placed | None") -> Clock:
+def _not_found(placed: "Placed | None", max_offset_s: float) -> Clock:
     if placed is None or not placed.candidates_s:
         return Clock(
             uncertainty_s=np.nan,
@@ -205,13 +205,19 @@ def _not_found(placed: "Placed | None") -> Clock:
             note="it sees no person together with another camera",
         )
     unknown = len(placed.candidates_s) >= MOST_CANDIDATES
+    note = "other offsets explain the motion about as well"
+    if unknown:
+        note = (
+            f"no offset stands out among those of up to {max_offset_s:g} s, which are tried; if it "
+            "was started earlier or later, raise `synchronise_cameras: max_offset_s`"
+        )
     return Clock(
         placed.offset_s,
         0.0,
         np.nan,
         1e6 * PRIOR_DRIFT,
         "unknown" if unknown else "ambiguous",
-        "no offset stands out" if unknown else "other offsets explain the motion about as well",
+        note,
         placed.candidates_s,
     )
 

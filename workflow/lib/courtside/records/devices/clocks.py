@@ -88,7 +88,9 @@ def fault_line(where: StrPath, clocks: Mapping[str, Clock], what: str = "camera"
     """
     for name, clock in clocks.items():
         if not clock.usable:
-            others = ", ".join(f"{at:.3f}" for at in clock.candidates_s)
+            # Of an unknown clock they are as good as any.
+            told = clock.candidates_s if clock.status == "ambiguous" else ()
+            others = ", ".join(f"{at:.3f}" for at in told)
             found = f"{clock.status} ({clock.note})" if clock.note else clock.status
             found += f", possible offsets {others} s" if others else ""
             return (
