@@ -33,8 +33,9 @@ def main(
     )
     clocks = {source: one.clock for source, one in found.items()}
     report(clocks)
-    for doubt in dict.fromkeys(line for one in found.values() for line in one.doubts):
-        log.tell(doubt, sync_json)
+    for source, clock in clocks.items():
+        if clock.doubt:
+            log.tell(f"{source} against {motions[0].source}: {clock.doubt}", sync_json)
     sync.write(sync_json, motions[0].source, clocks)
     tables.write(wrists_csv, detect.wrists(motions, clocks))
     own = {motion.source: own[motion.source] for motion in motions}

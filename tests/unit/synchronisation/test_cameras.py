@@ -277,6 +277,7 @@ def test_real_synchronised_cameras_have_no_offset(walk):
         assert found[camera].status == "found"
         assert abs(found[camera].offset_s) * 60 <= 0.5
         assert found[camera].uncertainty_s * 60 <= 0.5
+        assert not found[camera].doubt
 
 
 @needs_real
@@ -288,6 +289,7 @@ def test_a_real_camera_that_is_shifted_is_found_within_a_quarter_frame(walk, at)
     for camera, view in enumerate(views[1:], start=1):
         truth = 3.4 if camera == at else 0.0
         assert abs(found[view.camera].offset_s * 60 - truth) <= 0.25
+        assert not found[view.camera].doubt
 
 
 @needs_real

@@ -89,13 +89,12 @@ def doubts(
     time_s: NDArray,
     clock: Clock,
     prior_drift: float,
-) -> tuple[str, ...]:
+) -> list[str]:
     """Return lines on what speaks against a found clock of the second of two devices.
 
     `spells` are those of the same T-pose, `signals` on its axes, `time_s` (T,) uniform times of the
     first device's clock, `prior_drift` the standard deviation of drifts.
     """
-    reference, motion = motions
     said = [_exchanged(motions, spells, signals, time_s, clock)]
     if abs(clock.drift_ppm) > 1e6 * MOST_DRIFT * prior_drift:
         said.append(
@@ -103,7 +102,7 @@ def doubts(
             f"{clock.drift_ppm:.0f} ppm: a file lacks frames, or its rate is not the true one"
         )
     said += _beside(signals, time_s, clock)
-    return tuple(f"{motion.source} against {reference.source}: {line}" for line in said if line)
+    return [line for line in said if line]
 
 
 def _exchanged(motions, spells, signals, time_s, clock) -> str:

@@ -50,7 +50,6 @@ class Found:
     # the reference has none).
     latency_s: float = 0.0
     latency_uncertainty_s: float = 0.0
-    doubts: tuple[str, ...] = ()  # lines on what speaks against the clock
 
 
 def synchronise(
@@ -94,10 +93,10 @@ def synchronise(
 
 def checks(found: Mapping[str, Found]) -> pd.DataFrame:
     """Return one row per source: its clock, and the estimates that this rests on."""
-    rows, not_numbers = [], ("clock", "claps", "doubts")
+    rows = []
     for source, one in found.items():
         clock = {key: getattr(one.clock, key) for key in ("offset_s", "drift_ppm", "uncertainty_s")}
-        rest = {key: value for key, value in vars(one).items() if key not in not_numbers}
+        rest = {key: value for key, value in vars(one).items() if key not in ("clock", "claps")}
         about = {"source": source, "status": one.clock.status, **clock}
         about["drift_uncertainty_ppm"] = one.clock.drift_uncertainty_ppm
         rows.append(about | {"n_claps": len(one.claps)} | rest)
@@ -136,8 +135,7 @@ def _against(reference, motion, happened) -> Found:
         doubts = clock_doubts.doubts(
             (reference, motion), chosen, signals, time_s, one.clock, PRIOR_DRIFT
         )
-    note = "; ".join((one.clock.note, *doubts))
-    return replace(one, clock=replace(one.clock, note=note), doubts=doubts)
+    return replace(one, clock=replace(one.clock, doubt="; ".join(doubts)))
 
 
 def _likeness(signals, reference, motion) -> Callable[[float], float]:
