@@ -26,7 +26,8 @@ def main(paths, device_npz, *, device, source, baseline_m, skin_m=None, beyond_m
     )
     log.logger.info("%s", lifting.summary(motion, sigma_m))
     of_body = lifting.doubt(motion), lifting.size_doubt(motion)
-    for doubt in filter(None, (single_view.doubt(source, person), *of_body)):
+    of_person = single_view.doubt(source, person), single_view.doubt_of_one(source, view)
+    for doubt in filter(None, (*of_person, *of_body)):
         log.tell(doubt, device_npz)
     device_motion.write(device_npz, motion)
 
