@@ -41,11 +41,7 @@ def main(
 ):
     names = skeleton.read(skeleton_yaml)
     motion, vision = device_motion.read(device_npz), device_motion.read(vision_npz)
-    _, clocks = sync.read(sync_json)
-    used = {name: clocks.get(name, ABSENT) for name in (device, vision_device)}
-    if fault := sync.fault_line(sync_json, used, "device"):
-        raise InputError(fault)
-    own, theirs = used[device], used[vision_device]
+    own, theirs = usable(sync_json, device, vision_device)
     lag_s = hypot(own.uncertainty_s, theirs.uncertainty_s)
     corrected, report = correction.correct(
         replace(motion.posed, time_s=own.to_reference(motion.time_s)),
@@ -54,8 +50,6 @@ def main(
         lag_s=lag_s,
         performed=motion.performed,
     )
-    for doubt in reports.doubts(report, lag_s):
-        log.tell(f"{device}: {doubt}", report_json)
     time_s = own.from_reference(corrected.time_s)
     corrected = replace(corrected, time_s=time_s)
     order = [corrected.hierarchy.joints.index(joint) for joint in motion.joints]
@@ -67,6 +61,20 @@ def main(
     shown = device_export.named(device_export.performed(motion), names)
     gltf.write(corrected_glb, shown, motion.source)
     report.write(report_json)
+    tell(device, reports.doubts(report, lag_s), report_json)
+
+
+def usable(sync_json, *names):
+    _, clocks = sync.read(sync_json)
+    used = {name: clocks.get(name, ABSENT) for name in names}
+    if fault := sync.fault_line(sync_json, used, "device"):
+        raise InputError(fault)
+    return used.values()
+
+
+def tell(device, doubts, path):
+    for doubt in doubts:
+        log.tell(f"{device}: {doubt}", path)
 
 
 if __name__ == "__main__":
