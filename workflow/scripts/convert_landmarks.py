@@ -13,7 +13,8 @@ def main(pose2d_npz, device_npz, frames_csv=None, *, source):
     if frames_csv:
         view = frame_times.on_device_clock(view, frames_csv)
     person = single_view.main_person(view)
-    if doubt := single_view.doubt(source, person):
+    doubts = single_view.doubt(source, person), single_view.doubt_of_one(source, view)
+    for doubt in filter(None, doubts):
         log.tell(doubt, device_npz)
     device_motion.write(device_npz, single_view.landmarks(source, person))
 

@@ -12,11 +12,13 @@ from courtside.exports import bvh
 from courtside.exports import device as device_export
 from courtside.exports.trees import gltf
 from courtside.inertial import correction
+from courtside.inertial import report as reports
 from courtside.records.devices import clocks as sync
 from courtside.records.devices import device_motion, events
 from courtside.records.devices.hierarchy import forward
 from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
+from courtside.study.execution import log
 from courtside.study.execution.script import run
 
 ABSENT = sync.Clock(status="unknown", note="not in the file")
@@ -39,16 +41,13 @@ def main(
 ):
     names = skeleton.read(skeleton_yaml)
     motion, vision = device_motion.read(device_npz), device_motion.read(vision_npz)
-    _, clocks = sync.read(sync_json)
-    used = {name: clocks.get(name, ABSENT) for name in (device, vision_device)}
-    if fault := sync.fault_line(sync_json, used, "device"):
-        raise InputError(fault)
-    own, theirs = used[device], used[vision_device]
+    own, theirs = usable(sync_json, device, vision_device)
+    lag_s = hypot(own.uncertainty_s, theirs.uncertainty_s)
     corrected, report = correction.correct(
         replace(motion.posed, time_s=own.to_reference(motion.time_s)),
         replace(vision, time_s=theirs.to_reference(vision.time_s)),
         sigma_m=sigma_m,
-        lag_s=hypot(own.uncertainty_s, theirs.uncertainty_s),
+        lag_s=lag_s,
         performed=motion.performed,
     )
     time_s = own.from_reference(corrected.time_s)
@@ -62,6 +61,20 @@ def main(
     shown = device_export.named(device_export.performed(motion), names)
     gltf.write(corrected_glb, shown, motion.source)
     report.write(report_json)
+    tell(device, reports.doubts(report, lag_s), report_json)
+
+
+def usable(sync_json, *names):
+    _, clocks = sync.read(sync_json)
+    used = {name: clocks.get(name, ABSENT) for name in names}
+    if fault := sync.fault_line(sync_json, used, "device"):
+        raise InputError(fault)
+    return used.values()
+
+
+def tell(device, doubts, path):
+    for doubt in doubts:
+        log.tell(f"{device}: {doubt}", path)
 
 
 if __name__ == "__main__":

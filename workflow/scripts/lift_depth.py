@@ -25,7 +25,9 @@ def main(paths, device_npz, *, device, source, baseline_m, skin_m=None, beyond_m
         sampling=surfaces.Sampling(**sampling),
     )
     log.logger.info("%s", lifting.summary(motion, sigma_m))
-    for doubt in filter(None, (single_view.doubt(source, person), lifting.doubt(motion))):
+    of_body = lifting.doubt(motion), lifting.size_doubt(motion)
+    of_person = single_view.doubt(source, person), single_view.doubt_of_one(source, view)
+    for doubt in filter(None, (*of_person, *of_body)):
         log.tell(doubt, device_npz)
     device_motion.write(device_npz, motion)
 

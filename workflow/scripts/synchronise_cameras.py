@@ -17,6 +17,9 @@ def main(cameras_toml, pose2d_npz, sync_json, *, synchronised, stated, **options
             cameras.check_size(known[view.camera], tuple(map(int, view.size)), path)
     clocks = camera_sync.of_take(views, known, synchronised=synchronised, stated=stated, **options)
     report(clocks)
+    for camera, clock in clocks.items():
+        if clock.doubt:
+            log.tell(f"{camera}: {clock.doubt}", sync_json)
     sync.write(sync_json, views[0].camera, clocks)
 
 

@@ -33,6 +33,9 @@ def main(
     )
     clocks = {source: one.clock for source, one in found.items()}
     report(clocks)
+    for source, clock in clocks.items():
+        if clock.doubt:
+            log.tell(f"{source} against {motions[0].source}: {clock.doubt}", sync_json)
     sync.write(sync_json, motions[0].source, clocks)
     tables.write(wrists_csv, detect.wrists(motions, clocks))
     own = {motion.source: own[motion.source] for motion in motions}

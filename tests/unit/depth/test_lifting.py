@@ -191,6 +191,19 @@ def test_hardly_any_depth_is_doubted(still):
     )
 
 
+@pytest.mark.parametrize("factor", [1.0, 2.5, 4.0, 0.1])
+def test_a_body_of_another_size_is_told(still, factor):
+    """As with depth whose steps are not those that are stated."""
+    xyz, pictures = still
+    motion, _ = lift(view(xyz), pictures)
+    said = lifting.size_doubt(replace(motion, xyz=factor * motion.xyz))
+    if factor == 1:
+        assert said is None
+    else:
+        assert said.startswith("cam-depth: expected 0.3 to 0.8 m from shoulder to hip, found ")
+        assert "depth_unit_m" in said
+
+
 def test_a_slower_depth_stream_serves_every_colour_frame(still):
     """Colour at 60 frames a second, depth at 30; then one picture of depth is lost."""
     xyz, pictures = still

@@ -56,6 +56,19 @@ def test_a_thing_that_is_taken_for_a_person_is_doubted():
     assert single_view.doubt("cam-rgb", nobody) is None
 
 
+def test_a_person_who_changes_with_somebody_beside_is_told():
+    squat = [[100, 100], [100, 140]]
+    beside = [[300, 100], [300, 200]]
+    both = view([[NEAR] * 40 + [squat] * 10, [beside] * 50])
+    said = single_view.doubt_of_one("cam-rgb", both)
+    assert said.startswith("cam-rgb: expected one person nearest")
+    assert "in 10 of 50 frames, the first at 1.3 s" in said
+    assert single_view.doubt_of_one("cam-rgb", view([[NEAR] * 50, [beside] * 50])) is None
+    one_after_another = view([[NEAR] * 25 + [[NONE, NONE]] * 25, [[NONE, NONE]] * 25 + [FAR] * 25])
+    assert single_view.doubt_of_one("cam-rgb", one_after_another) is None
+    assert single_view.doubt_of_one("cam-rgb", view(np.zeros((0, 4, 2, 2)))) is None
+
+
 def test_landmarks_become_a_motion():
     in_body = np.random.default_rng(0).normal(size=(1, 2, 2, 3))
     in_body[0, 1, 1] = np.nan

@@ -172,6 +172,38 @@ def test_the_user_seen_most_often_is_taken(tmp_path, caplog):
     assert re.search(r"a\.csv: user 1 of \{1: \d+, 7: \d+\}", caplog.text)
 
 
+def renumbered(path, ids):
+    """Write frames of one person whom Nuitrack gives these numbers."""
+    made = [
+        {**frame, "timestamp": int(TIMES_US[0] + 33333 * at)}
+        for at, frame in enumerate((frames() * 10)[: len(ids)])
+    ]
+    for frame, user in zip(made, ids, strict=True):
+        frame["skeletons"] = [frame["skeletons"][0] | {"user_id": user}]
+    path.write_text(json.dumps(made))
+    return path
+
+
+def test_a_person_who_is_numbered_anew_is_told(tmp_path, capsys):
+    path = renumbered(tmp_path / "a.json", [1] * 24 + [2] * 16)
+    assert len(nuitrack.read(path, JOINTS, "n").time_s) == 24
+    told = capsys.readouterr().err
+    assert "user 1 is used, seen in 24 frames; in 16 others, from 0.8 to 1.3 s" in told
+    assert "only user 2 is" in told
+
+
+def test_users_who_are_seen_beside_the_one_are_not_told(tmp_path, capsys):
+    path = renumbered(tmp_path / "a.json", [1] * 39 + [2])
+    assert len(nuitrack.read(path, JOINTS, "n").time_s) == 39
+    made = frames()
+    for frame in made:
+        frame["skeletons"].append(frame["skeletons"][0] | {"user_id": 2})
+    made[1]["skeletons"].pop(1)
+    path.write_text(json.dumps(made))
+    check(nuitrack.read(path, JOINTS, "n"))
+    assert not capsys.readouterr().err
+
+
 def test_a_wrong_unit_is_noticed(tmp_path):
     rows = csv_rows()
     large = [[1000 * v if isinstance(v, np.floating | float) else v for v in row] for row in rows]

@@ -1,12 +1,14 @@
 """The report of a correction says what was done: against the bodies themselves."""
 
 import json
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
 from courtside.inertial import correction
+from courtside.inertial import report as reports
 from courtside.records.devices.hierarchy import forward
 from fixtures.people import moved_bodies
 
@@ -60,3 +62,26 @@ def test_a_report_is_written_as_json(tmp_path):
     read = json.loads((tmp_path / "report.json").read_text())
     assert read["bone_scale"] == report.bone_scale
     assert read["joints"] == list(report.joints)
+
+
+def test_right_corrections_are_not_doubted():
+    assert reports.doubts(case()[-1], lag_s=0.01) == []
+
+
+def test_vision_in_another_unit_is_told():
+    raw, vision, *_ = case()
+    large = replace(vision, xyz=2.5 * vision.xyz)
+    line, *_ = reports.doubts(correction.correct(raw, large, sigma_m=0.03)[1], lag_s=0.01)
+    assert line.startswith("correction by ") and "times as long" in line
+    factor = float(line.split("bones ")[1].split(" ")[0])
+    assert 2 < factor < 3
+
+
+@pytest.mark.parametrize("late_s", [0.3, 2.0])
+def test_a_wrong_clock_is_told(late_s):
+    """A shift of the clock takes up a small error, slow turns and shift a large one."""
+    raw, vision, *_ = case()
+    late = replace(raw, time_s=raw.time_s + late_s)
+    lines = reports.doubts(correction.correct(late, vision, sigma_m=0.03, lag_s=0.01)[1], 0.01)
+    wanted = "shift of the clock by" if late_s < 1 else "largest slow turns or shift"
+    assert any(wanted in line for line in lines)

@@ -192,6 +192,16 @@ def test_a_person_who_stands_still_tells_nothing(known):
     assert {found["c1"].status, found["c2"].status} <= {"ambiguous", "unknown"}
 
 
+def test_a_camera_started_too_late_is_told_how_far_was_searched():
+    """Its true offset is not among those tried, so others are not worth a look."""
+    clocks = [Clock(), Clock(14.0), Clock(0.5)]
+    found = camera_sync.synchronise(take(0, seconds=30.0, clocks=clocks), CAMERAS, max_offset_s=8.0)
+    assert (found["c1"].status, found["c2"].status) == ("unknown", "found")
+    line = sync.fault_line("take", found)
+    assert "those of up to 8 s" in line and "`synchronise_cameras: max_offset_s`" in line
+    assert "possible offsets" not in line
+
+
 @pytest.mark.parametrize("n_tracklets", [0, 1])
 def test_a_camera_that_sees_nobody_is_unknown_and_the_others_are_found(n_tracklets):
     views = take(6)
@@ -267,6 +277,7 @@ def test_real_synchronised_cameras_have_no_offset(walk):
         assert found[camera].status == "found"
         assert abs(found[camera].offset_s) * 60 <= 0.5
         assert found[camera].uncertainty_s * 60 <= 0.5
+        assert not found[camera].doubt
 
 
 @needs_real
@@ -278,6 +289,7 @@ def test_a_real_camera_that_is_shifted_is_found_within_a_quarter_frame(walk, at)
     for camera, view in enumerate(views[1:], start=1):
         truth = 3.4 if camera == at else 0.0
         assert abs(found[view.camera].offset_s * 60 - truth) <= 0.25
+        assert not found[view.camera].doubt
 
 
 @needs_real

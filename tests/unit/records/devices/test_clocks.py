@@ -58,6 +58,14 @@ def test_other_files_are_refused_in_one_line(tmp_path, text):
     assert "\n" not in str(caught.value)
 
 
+def test_a_doubt_is_kept_and_is_not_in_files_without_one(tmp_path):
+    path = tmp_path / "clocks.json"
+    doubted = clocks.Clock(status="found", doubt="frames are missing")
+    clocks.write(path, "a", {"a": clocks.Clock(status="reference"), "b": doubted})
+    assert clocks.read(path)[1]["b"] == doubted
+    assert path.read_text().count("doubt") == 1
+
+
 def test_an_impossible_status_in_a_file_is_refused(tmp_path):
     clocks.write(tmp_path / "x.json", "a", CLOCKS)
     text = (tmp_path / "x.json").read_text().replace('"found"', '"perhaps"')

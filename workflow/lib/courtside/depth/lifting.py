@@ -45,6 +45,9 @@ FEWEST = 10  # frames that a bone's median length needs
 FROM_BODY_M = {True: 0.4, False: 1.1}  # largest depth from the trunk: joints of the trunk, others
 # Share of the joints seen that have depth, without a warning; the virtual depth camera lifts 98 %.
 LEAST_LIFTED = 0.2
+# ASSUME: median distance from shoulder to hip: adults have 0.45 to 0.55 m, children 0.3 m. A
+# unit that is wrong by the factors of depth cameras (2, 2.5, 4, 8, 10) lies outside.
+TRUNK_M = (0.3, 0.8)
 COVERED_M = 0.05  # a limb covers a joint if the depths of both agree to this
 
 
@@ -274,6 +277,26 @@ def doubt(motion: DeviceMotion) -> str | None:
         f"{motion.source}: expected depth at {LEAST_LIFTED:.0%} of the joints seen or more, found "
         f"it at {lifted:.1%}: look whether colour and depth are of one recording and one clock, "
         "and the person within the camera's range"
+    )
+
+
+def size_doubt(motion: DeviceMotion) -> str | None:
+    """Return a line if the body is no person's size; None if its trunk is not seen."""
+    if not set(skeleton.TRUNK) <= set(motion.joints.tolist()):
+        return None
+    trunk_m = [
+        np.linalg.norm(motion.joint(f"{side}_shoulder") - motion.joint(f"{side}_hip"), axis=-1)
+        for side in ("left", "right")
+    ]
+    known_m = np.concatenate(trunk_m)
+    known_m = known_m[np.isfinite(known_m)]
+    least_m, most_m = TRUNK_M
+    if len(known_m) < FEWEST or least_m <= np.median(known_m) <= most_m:
+        return None
+    return (
+        f"{motion.source}: expected {least_m:g} to {most_m:g} m from shoulder to hip, found "
+        f"{np.median(known_m):.2f} m: look whether `depth_unit_m` is the step of its depth, and "
+        "the lens that of its pictures"
     )
 
 

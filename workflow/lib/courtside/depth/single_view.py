@@ -4,6 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.keypoints import missing_reason
@@ -12,6 +13,9 @@ from courtside.records.keypoints.keypoints import Keypoints2D
 # ASSUME: median score of the joints of a person who is there. Followed persons of the virtual
 # sessions have 0.85 and more, things that are taken for persons 0.5 and less.
 LEAST_SCORE = 0.5
+# ASSUME: share of the frames, that show the usual person too, in which another one is taken. With a
+# bystander 0.5 m behind a player who squats it was 0.38; where nobody else is there it is 0.
+MOST_OTHERS = 0.02
 FIELDS = ("xy", "score", "reason", "xyz_in_body", "clothing")  # of each tracklet
 
 
@@ -28,13 +32,35 @@ def main_person(view: Keypoints2D) -> Keypoints2D:
         }
         empty["reason"] = np.full_like(empty["score"], missing_reason.UNSEEN, view.reason.dtype)
         return replace(view, **empty)
+    who = _spans(view).argmax(axis=0)
+    at = np.arange(n_frames)
+    return replace(view, **{key: getattr(view, key)[who, at][np.newaxis] for key in FIELDS})
+
+
+def _spans(view: Keypoints2D) -> NDArray:
+    """Return the longer side (P, T) of what each tracklet spans in the picture; -1 if unseen."""
     known = np.isfinite(view.xy)
     low = np.where(known, view.xy, np.inf).min(axis=2)
     high = np.where(known, view.xy, -np.inf).max(axis=2)
-    span = np.where(high >= low, high - low, -1.0).max(axis=-1)
-    who = span.argmax(axis=0)
-    at = np.arange(n_frames)
-    return replace(view, **{key: getattr(view, key)[who, at][np.newaxis] for key in FIELDS})
+    return np.where(high >= low, high - low, -1.0).max(axis=-1)
+
+
+def doubt_of_one(source: str, view: Keypoints2D) -> str | None:
+    """Return a line if the main person is now one, now another of two who are both seen."""
+    spans = _spans(view)
+    if len(spans) < 2:
+        return None
+    seen = spans > 0
+    who = np.where(seen.any(axis=0), spans.argmax(axis=0), -1)
+    usual = np.bincount(who[who >= 0], minlength=1).argmax()
+    other = seen[usual] & (who != usual)
+    if other.sum() <= MOST_OTHERS * seen[usual].sum():
+        return None
+    return (
+        f"{source}: expected one person nearest to the camera throughout, found another one larger "
+        f"in {other.sum()} of {seen[usual].sum()} frames, the first at "
+        f"{view.time_s[other.argmax()]:.1f} s: keep others out of the picture, or well behind"
+    )
 
 
 def doubt(source: str, person: Keypoints2D) -> str | None:

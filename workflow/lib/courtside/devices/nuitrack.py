@@ -43,6 +43,9 @@ UNITS = {".csv": "m", ".json": "mm"}
 # ASSUME: no median neck-to-waist distance lies outside; it tells millimetres from metres.
 TRUNK_M = (0.2, 1.0)
 MIN_CONFIDENCE = 0.5  # ASSUME: Nuitrack tells nothing in between; less sure joints are missing
+# ASSUME: share of the frames with anybody that the one user has, without a warning: that user may
+# leave the picture for moments, while somebody passes.
+LEAST_SHARE = 0.9
 EXPORT = "export the skeletons from Nuitrack again"
 
 
@@ -64,7 +67,7 @@ def read(
             f"{path}: expected a recording of Nuitrack (.csv or .json), found *{kind}; {EXPORT}"
         )
     users, time_us, xyz, confidence = (_csv if kind == ".csv" else _json)(path, list(joints))
-    chosen = _user(path, users)
+    chosen = _user(path, users, time_us)
     time_us, xyz, confidence = time_us[chosen], xyz[chosen], confidence[chosen]
     newer = plausible.in_order(path, time_us * 1e-6)  # and the recorder repeats rows
     time_us, confidence = time_us[newer], confidence[newer]
@@ -89,16 +92,29 @@ def read(
     )
 
 
-def _user(path: Path, users: NDArray) -> NDArray:
-    """Return which rows are those of the user seen most often, (N,) bool."""
+def _user(path: Path, users: NDArray, time_us: NDArray) -> NDArray:
+    """Return which rows are those of the user seen most often, (N,) bool; tell of what is lost."""
     known, counts = np.unique(users, return_counts=True)
     if not len(known):
         raise InputError(f"{path}: expected a skeleton of a user, found none; {EXPORT}")
     user = known[counts.argmax()]
+    chosen = users == user
     if len(known) > 1:
         n_frames = dict(zip(known.tolist(), counts.tolist(), strict=True))
         log.logger.info("%s: user %s of %s", path, user, n_frames)
-    return users == user
+    alone = ~chosen & ~np.isin(time_us, time_us[chosen])
+    n_own, n_alone = len(np.unique(time_us[chosen])), len(np.unique(time_us[alone]))
+    if n_own < LEAST_SHARE * (n_own + n_alone):
+        late_s = (time_us[alone] - time_us.min()) * 1e-6
+        others = ", ".join(map(str, np.unique(users[alone])))
+        log.tell(
+            f"{path.name}: user {user} is used, seen in {n_own} frames; in {n_alone} others, from "
+            f"{late_s.min():.1f} to {late_s.max():.1f} s after the start, only user {others} is "
+            "seen: if this is the same person, whom Nuitrack lost and numbered anew, write one "
+            "number for both",
+            path,
+        )
+    return chosen
 
 
 def _check_size(path: Path, xyz: NDArray, joints: list[str], unit: str) -> None:

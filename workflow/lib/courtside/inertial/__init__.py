@@ -6,5 +6,5 @@ vision: `observe`, `Seen`, `Noise`, `estimate_noise`, `stated_noise`
 segments: `segments_of`, `Segments`, `Model`, `Frames`
 heading: `estimate`, `Alignment`, `turn_path`
 splines: `Basis`, `basis_over`, `precision`, `gather`, `solve`, `Solution`
-report: `CorrectionReport`, `describe`
+report: `CorrectionReport`, `describe`, `doubts`
 """

@@ -8,10 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.geometry import rotations
-from courtside.inertial.fit import Fit
+from courtside.inertial.fit import BODY, HEADING_DEG, SHIFT_M, SIZE_RANGE, TURN_DEG, Fit
 from courtside.records.devices.hierarchy import PosedHierarchy, forward
 from courtside.study.errors import StrPath
 from courtside.study.execution.files import write_json
+
+# ASSUME: more prior deviations than a right clock or body takes, and the share of the largest slow
+# turn or shift from which it is at its limit. On the suit of `players-b` right data took 0.6
+# deviations of the clock and 0.25 of the limit; a clock wrong by 0.3 s took 15, by 1 s the limit.
+MOST_DEVIATIONS, AT_LIMIT = 4.0, 0.95
+LEAST_LAG_S = 1e-3  # ASSUME: clocks that are said to be one still differ by this
 
 
 @dataclass(frozen=True)
@@ -82,6 +88,36 @@ def describe(fit: Fit, before: PosedHierarchy, after: PosedHierarchy) -> Correct
         rounds=fit.round,
         rms_change_mm=_list(1e3 * np.array(fit.rms_change_m), 3),
     )
+
+
+def doubts(report: CorrectionReport, lag_s: float) -> list[str]:
+    """Return lines on corrections so large that vision and suit do not show the same.
+
+    `lag_s` is the stated standard deviation of the offset between both clocks. Distances to vision
+    do not tell: slow turns and bones give way until the skeleton fits.
+    """
+    said = []
+    stretch = float(np.median(list(report.bone_scale.values())))
+    if abs(np.log(stretch)) > MOST_DEVIATIONS * BODY:
+        said.append(
+            f"bones {stretch:.2f} times as long: look whether its lengths are in metres, and the "
+            "suit's height is that of the wearer"
+        )
+    if abs(report.lag_s) > MOST_DEVIATIONS * max(lag_s, LEAST_LAG_S):
+        said.append(
+            f"a shift of the clock by {1e3 * report.lag_s:.0f} ms, where {1e3 * lag_s:.0f} ms are "
+            "its standard deviation: look at the wrist distance"
+        )
+    stated = TURN_DEG | {"heading": HEADING_DEG, "shift": SHIFT_M}
+    sizes = report.slow_deg | {"shift": report.shift_m}
+    most = AT_LIMIT * SIZE_RANGE[1]
+    if bent := [kind for kind, size in sizes.items() if size >= most * stated[kind]]:
+        said.append(
+            f"the largest slow turns or shift that are allowed ({', '.join(bent)}): both perhaps "
+            "show different moments or persons; look at the wrist distance"
+        )
+    start = f"correction by {report.source}: expected errors of a suit, found "
+    return [start + line for line in said]
 
 
 def _list(values: Iterable[float], digits: int) -> list[float]:

@@ -2,7 +2,7 @@
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.statistics import autocorrelation
 from courtside.study.errors import InputError
-from courtside.synchronisation import clock_adjustment, smooth_tracks
+from courtside.synchronisation import clock_adjustment, lost_frames, smooth_tracks
 from courtside.synchronisation.epipolar import Epipolar
 from courtside.synchronisation.speed import Speeds
 
@@ -78,9 +78,9 @@ def synchronise(
             overlap = overlap if len(overlap) else time_s
             clock = _found(adjusted, camera, overlap, abs(rows[camera] - rows[0]))
         else:
-            clock = _not_found(placed.get(camera))
+            clock = _not_found(placed.get(camera), max_offset_s)
         found[views[camera].camera] = clock
-    return found
+    return _doubted(found, evidence, time_s)
 
 
 def of_take(
@@ -196,7 +196,20 @@ def _found(adjusted, camera, overlap, rows_apart) -> Clock:
     )
 
 
-def _not_found(placed: "Placed | None") -> Clock:
+def _doubted(found, evidence, time_s) -> dict[str, Clock]:
+    """Return the clocks, with what speaks against one that is used: the others see it too."""
+    middle_s = float(time_s.mean())
+    own_s = np.array([clock.from_reference(middle_s) for clock in found.values()])
+    used = [at for at, clock in enumerate(found.values()) if clock.usable]
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "All-NaN|Mean of empty|Degrees of freedom")
+        said = {at: lost_frames.doubt(evidence, at, own_s, used) for at in used}
+    worst = max(used, key=lambda at: said[at][0])
+    name = list(found)[worst]
+    return found | {name: replace(found[name], doubt=said[worst][1])}
+
+
+def _not_found(placed: "Placed | None", max_offset_s: float) -> Clock:
     if placed is None or not placed.candidates_s:
         return Clock(
             uncertainty_s=np.nan,
@@ -205,13 +218,19 @@ def _not_found(placed: "Placed | None") -> Clock:
             note="it sees no person together with another camera",
         )
     unknown = len(placed.candidates_s) >= MOST_CANDIDATES
+    note = "other offsets explain the motion about as well"
+    if unknown:
+        note = (
+            f"no offset stands out among those of up to {max_offset_s:g} s, which are tried; if it "
+            "was started earlier or later, raise `synchronise_cameras: max_offset_s`"
+        )
     return Clock(
         placed.offset_s,
         0.0,
         np.nan,
         1e6 * PRIOR_DRIFT,
         "unknown" if unknown else "ambiguous",
-        "no offset stands out" if unknown else "other offsets explain the motion about as well",
+        note,
         placed.candidates_s,
     )
 

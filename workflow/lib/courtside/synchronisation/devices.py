@@ -13,7 +13,7 @@ from courtside.records.devices.clocks import Clock
 from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.devices.events import Clap, Events
 from courtside.study.errors import InputError
-from courtside.synchronisation import clock_adjustment, motion_signals
+from courtside.synchronisation import clock_adjustment, clock_doubts, motion_signals
 from courtside.synchronisation.motion_signals import Signals
 
 # ASSUME: standard deviation of devices' drifts; 200 ppm is not rare for phones and suits.
@@ -66,7 +66,8 @@ def synchronise(
     its clock. Clocks `known` against the reference are used as they are. The stated delay of a
     source (`latency`, with its standard deviation, s) is reported, not subtracted: places must be
     compared at the times of the same event. An `InputError` if the claps of a source cannot be
-    paired with those of the reference, or leave its clock uncertain.
+    paired with those of the reference, are not the same by the motion, or leave its clock
+    uncertain.
     """
     reference, *others = motions
     found = {reference.source: Found(Clock(status="reference", note="the take's clock"), [])}
@@ -122,12 +123,19 @@ def _against(reference, motion, happened) -> Found:
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "All-NaN|Mean of empty|Degrees of freedom")
         pairs = pair(*claps, _likeness(signals, reference, motion), where)
+        if len(pairs) == 1:
+            clock_doubts.refuse_other_claps(signals, offset_s(pairs), where)
         spells = happened[reference.source].tposes, happened[motion.source].tposes
         chosen = [spell[clap.tpose] for spell, clap in zip(spells, pairs[0], strict=True)]
         axes = motion_signals.common_axes((reference, motion), chosen)
         signals = Signals(reference, motion, axes)
         moved = _by_motion(signals, reference, motion, offset_s(pairs))
-    return _joined(pairs, moved, reference, where)
+        one = _joined(pairs, moved, reference, where)
+        time_s = _both(reference, motion, offset_s(pairs))
+        doubts = clock_doubts.doubts(
+            (reference, motion), chosen, signals, time_s, one.clock, PRIOR_DRIFT
+        )
+    return replace(one, clock=replace(one.clock, doubt="; ".join(doubts)))
 
 
 def _likeness(signals, reference, motion) -> Callable[[float], float]:
@@ -275,7 +283,8 @@ def pair(
         raise InputError(
             f"{where}: expected claps that pair in one way, found {len(best)} ways (offsets "
             f"{offsets} s): claps at {times[1]} s against {times[0]} s; give the device's offset_s "
-            "under clocks of the take"
+            "under clocks of the take, or, if a file lacks frames between them, its parts as takes "
+            "of their own"
         )
     return best[0][1]
 

@@ -36,7 +36,7 @@ class Epipolar:
     Tracks are straight px of `epipolar.straight_px`, one per camera, all smoothed with one kernel.
     """
 
-    scan_step_s = SCAN_STEP_S
+    scan_step_s, scan_times = SCAN_STEP_S, SCAN_TIMES
 
     def __init__(self, cameras: Sequence[Camera], tracks: Sequence[smooth_tracks.Track]) -> None:
         self.tracks = tracks

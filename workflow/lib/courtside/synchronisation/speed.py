@@ -20,7 +20,7 @@ class Speeds:
     Tracks are in px, one per camera, all smoothed with one kernel.
     """
 
-    scan_step_s = SCAN_STEP_S
+    scan_step_s, scan_times = SCAN_STEP_S, SCAN_TIMES
 
     def __init__(self, tracks: Sequence[smooth_tracks.Track]) -> None:
         self.tracks = [_features(track) for track in tracks]

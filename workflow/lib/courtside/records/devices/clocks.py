@@ -40,6 +40,7 @@ class Clock:
     note: str = ""  # one line on how it was found, or why it was not
     # Other offsets that explain the recording about as well, best first
     candidates_s: tuple[float, ...] = ()
+    doubt: str = ""  # what speaks against a clock that was found; in the file only where there is
 
     def __post_init__(self) -> None:
         if self.status not in STATUSES:
@@ -88,7 +89,9 @@ def fault_line(where: StrPath, clocks: Mapping[str, Clock], what: str = "camera"
     """
     for name, clock in clocks.items():
         if not clock.usable:
-            others = ", ".join(f"{at:.3f}" for at in clock.candidates_s)
+            # Of an unknown clock they are as good as any.
+            told = clock.candidates_s if clock.status == "ambiguous" else ()
+            others = ", ".join(f"{at:.3f}" for at in told)
             found = f"{clock.status} ({clock.note})" if clock.note else clock.status
             found += f", possible offsets {others} s" if others else ""
             return (
@@ -107,6 +110,8 @@ def write(path: StrPath, reference: str, clocks: Mapping[str, Clock]) -> None:
         table = asdict(clock)
         # JSON has no NaN.
         table |= {k: float(table[k]) if math.isfinite(table[k]) else None for k in NUMBERS}
+        if not clock.doubt:
+            del table["doubt"]
         tables[camera] = table | {"candidates_s": [float(at) for at in clock.candidates_s]}
     write_json(path, {"form": FORM, "reference": reference, "cameras": tables})
 
@@ -129,7 +134,11 @@ def _clock(table: Mapping[str, Any]) -> Clock:
     numbers = {key: math.nan if table[key] is None else _number(table[key]) for key in NUMBERS}
     candidates = tuple(_number(at) for at in require_type(table["candidates_s"], list))
     return Clock(
-        **numbers, status=table["status"], note=str(table["note"]), candidates_s=candidates
+        **numbers,
+        status=table["status"],
+        note=str(table["note"]),
+        candidates_s=candidates,
+        doubt=str(table.get("doubt", "")),
     )
 
 
