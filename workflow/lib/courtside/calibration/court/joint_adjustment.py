@@ -208,12 +208,13 @@ def condense_free(
     tie_loss: float,
     **thinning: Any,
 ) -> tuple[Ties, list[Part]]:
-    """Do as `condense` without a court, in the frame of `selection.free_frame`."""
+    """Do as `condense` without a court, in the `selection.free_frame` of the first part."""
     names, parts = tuple(fixed), []
     network = _in_free_frame(network, list(fixed.values()))
     for part in walk_parts.split(network, list(fixed.values()), images_per_part):
         tied = _ties_of(part.network, tie_sigma_px, tie_loss, thinning)
         parts.append(replace(part, network=_adjusted_freely(tied, part.fixed.tolist())))
+    parts = walk_parts.in_one_frame(parts, network)
     return _condensed(parts, names, sizes), parts
 
 
