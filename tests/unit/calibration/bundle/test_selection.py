@@ -284,6 +284,15 @@ def test_poses_tell_one_frame_from_another_also_on_one_line(on_one_line):
     np.testing.assert_allclose(moved.xyz, other.xyz, atol=1e-9)
 
 
+def test_the_pose_of_one_image_tells_its_frame_but_not_the_scale():
+    made = selection.images_only(networks_made.make(6, 20), [0])
+    other = networks_made.in_random_frame(made).cam_from_world
+    found = selection.between(made.cam_from_world, other)
+    assert found.scale == 1.0
+    moved = selection.transform(made, found)
+    np.testing.assert_allclose(moved.cam_from_world, other, atol=1e-9)
+
+
 def test_the_spread_of_residuals_is_that_of_the_noise():
     made = networks_made.make(8, 200, noise_px=0.4)
     assert selection.residual_spread(made) == pytest.approx(0.4, rel=0.05)

@@ -45,7 +45,7 @@ def between(cam_from_a: NDArray, cam_from_b: NDArray) -> Sim3:
     """Fit the similarity `b_from_a` to the poses (V, 3, 4) of the same images in both frames.
 
     Their rotations give its rotation, then their projection centres scale and translation by least
-    squares. The centres may lie on one line.
+    squares. The centres may lie on one line; of one image the scale is 1.
     """
     rotation, _ = similarity.kabsch(
         np.einsum("vji,vjk->ik", cam_from_b[:, :, :3], cam_from_a[:, :, :3])
@@ -53,7 +53,8 @@ def between(cam_from_a: NDArray, cam_from_b: NDArray) -> Sim3:
     turned, places = _centres(cam_from_a) @ rotation.T, _centres(cam_from_b)
     middle, other = turned.mean(axis=0), places.mean(axis=0)
     arms = turned - middle
-    scale = float((arms * (places - other)).sum() / (arms**2).sum())
+    extent = (arms**2).sum()
+    scale = float((arms * (places - other)).sum() / extent) if extent > 0 else 1.0
     return Sim3(scale, rotation, other - scale * middle)
 
 

@@ -234,9 +234,13 @@ def _in_free_frame(network: Network, fixed: Sequence[int]) -> Network:
 
 def free(ties: Ties) -> Solution:
     """Return the `Solution` of `condense_free`; its covariance leaves out frame and scale."""
-    network = ties.knowledge.reference
+    known = ties.knowledge
+    # The reference is the minimum of the first part, not of the mean over the parts.
+    network, _ = solver.adjust(known.reference, quadratic=known, max_iterations=SOLVE_ITERATIONS)
+    poses = network.cam_from_world, known.reference.cam_from_world
+    network = selection.transform(network, selection.between(*poses))  # nothing held the frame
+    covariance = inverses.pseudo_inverse(known.information)
     cameras = conversion.cameras_of(network, ties.cameras, ties.sizes)
-    covariance = inverses.pseudo_inverse(ties.knowledge.information)
     return Solution(cameras, network, covariance, variance_components.none(len(cameras)))
 
 
