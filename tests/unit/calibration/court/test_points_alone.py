@@ -10,6 +10,7 @@ import pytest
 from courtside.calibration.bundle.problem import IMAGE, LENS
 from courtside.calibration.court import court, points_alone, quality
 from courtside.calibration.records import covariance as camera_covariance
+from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera, in_picture
 from courtside.study.errors import InputError
 from fixtures.cameras.scene import look_at, opencv_projection
@@ -102,6 +103,19 @@ def test_a_wrong_click_is_named_and_moves_nothing():
     assert wrong.error_px == pytest.approx(np.hypot(40, 25), abs=8)
     assert apart_px(found.solution.cameras[3], made[3]).max() < 6
     assert str(wrong) in found.warnings
+
+
+def test_a_wrong_click_is_named_also_beside_a_camera_of_larger_pictures():
+    """17 sigmas in its own picture, 9 of clicks in the larger one; less across its edges."""
+    made = true_cameras()
+    made[0] = camera_models.scaled(made[0], 2)
+    clicks = clicked(made)
+    at = int(np.flatnonzero(np.isfinite(clicks["north"][:, 0]))[5])
+    clicks["north"][at] += [18, -12]
+    sizes = {camera.name: camera.size for camera in made}
+    found = points_alone.calibrate(HALL, clicks, sizes, **WEIGHTS)
+    (wrong,) = found.wrong
+    assert (wrong.camera, wrong.point) == ("north", HALL.points[at])
 
 
 def test_a_camera_whose_points_fit_badly_is_named():

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from courtside.calibration.bundle import solver
 from courtside.calibration.court import joint_adjustment, line_edges, sfm_alignment
@@ -117,22 +117,23 @@ def crossings(camera: Camera, xyz: NDArray) -> NDArray:
     return np.where(raised, RAISED**2 * np.eye(2), line_edges.crossings(camera, xyz))
 
 
-def find_wrong_clicks(table: ClickErrors, *, sigma_px: float) -> list[WrongClick]:
+def find_wrong_clicks(table: ClickErrors, *, sigma_px: ArrayLike) -> list[WrongClick]:
     """Return the clicks that contradict the others, the worst first.
 
     A wrong click pulls the prediction of the others. Among six points in a camera nearly every one
     is found, among five one in twenty, among four none; good clicks alone are not accused.
-    `sigma_px` is that of a good click across an edge; if the clicks of a camera scatter more, their
-    scatter is used.
+    `sigma_px` is that of a good click across an edge, (C,) by camera or one of all; if the clicks
+    of a camera scatter more, their scatter is used.
     """
     error, by_edge = table.error_px, table.edge_error_px
+    good_px = np.broadcast_to(np.asarray(sigma_px, dtype=float), len(table.cameras))
     wrong = []
     for row, camera in enumerate(table.cameras):
         seen = np.isfinite(by_edge[row])
         if seen.sum() < 4:
             continue
         middle, most = np.quantile(by_edge[row, seen], [0.5, 0.8]) / NORMAL_2D
-        sigma = max(sigma_px, middle, most)
+        sigma = max(good_px[row], middle, most)
         for at in np.flatnonzero(seen & (np.nan_to_num(by_edge[row]) > WRONG * sigma)):
             away = np.linalg.norm(table.projected_px[row] - table.clicked_px[row, at], axis=-1)
             near = int(np.argmin(np.where(np.isfinite(away), away, np.inf)))
@@ -184,7 +185,7 @@ def check(
     cameras: Sequence[Camera],
     clicks: ClickedPoints,
     *,
-    sigma_px: float,
+    sigma_px: ArrayLike,
     table: ClickErrors | None,
     inwards: tuple[float, float] | None = None,
     adjust: Callable[[ClickedPoints], Sequence[Camera]] | None = None,
@@ -193,7 +194,7 @@ def check(
     """Check clicked court points as far as the fixed cameras, in one frame, allow.
 
     Return warnings of one line: weak geometry, wrong clicks by camera and point, line centres.
-    `sigma_px` is that of a good click per axis; `table` is from `leave_one_out`, None where that
+    `sigma_px` is as for `find_wrong_clicks`; `table` is from `leave_one_out`, None where that
     fails. `inwards`, the shift of all clicks towards line centres and its sigma, is from
     `inward_shift`, by default from `inward_shift_of_points`; `adjust` is as for
     `sfm_alignment.refuse_exchanged_cameras`, `error_modes_m` as for `sfm_alignment.stretch`. Raises

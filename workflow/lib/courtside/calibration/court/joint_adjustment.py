@@ -249,19 +249,18 @@ def click_sigma(sigma_px_at_3840: float, size: tuple[int, int]) -> float:
     return sigma_px_at_3840 * size[0] / UHD
 
 
-def found_click_sigma(sigma_px_at_3840: float, solved: Solution) -> float:
-    """Return the sigma of clicks from the residuals, px, in the picture where it is largest.
+def click_sigmas(sigma_px_at_3840: float, cameras: Sequence[Camera]) -> NDArray:
+    """Return the sigma of a click in the pictures of each camera, (C,) px."""
+    return np.array([click_sigma(sigma_px_at_3840, camera.size) for camera in cameras])
+
+
+def found_click_sigmas(sigma_px_at_3840: float, solved: Solution) -> NDArray:
+    """Do as `click_sigmas`, as the residuals have it of the camera whose clicks scatter most.
 
     Over both axes: the root of their mean variance.
     """
     factor = np.sqrt(solved.factors.clicks.mean(axis=1))
-    stated = [click_sigma(sigma_px_at_3840, camera.size) for camera in solved.cameras]
-    return float(np.max(stated * factor))
-
-
-def largest_click_sigma(sigma_px_at_3840: float, cameras: Sequence[Camera]) -> float:
-    """Return the sigma of a click in the largest of the cameras' pictures, px."""
-    return max(click_sigma(sigma_px_at_3840, camera.size) for camera in cameras)
+    return click_sigmas(sigma_px_at_3840, solved.cameras) * factor.max()
 
 
 def solve(

@@ -77,7 +77,7 @@ def calibrate(
     unplaced = np.full_like(court.xyz, np.nan)
     seen = unplaced, projected, clicked, crossing
     table = click_checks.ClickErrors(court.points, tuple(sizes), *seen)
-    sigma_px = joint_adjustment.largest_click_sigma(click_sigma_px, solved.cameras)
+    sigma_px = joint_adjustment.click_sigmas(click_sigma_px, solved.cameras)
     wrong = click_checks.find_wrong_clicks(table, sigma_px=sigma_px)
     error_px = dict(zip(sizes, table.error_px, strict=True))
     scattered = _scattered(solved, error_px, click_sigma_px, {one.camera for one in wrong})
