@@ -37,8 +37,8 @@ class ClickErrors:
     residual_m: NDArray
     projected_px: NDArray  # (C, P, 2): where the court's point should be in the picture
     clicked_px: NDArray  # (C, P, 2): NaN where not clicked
-    # (C, P, 2, 2): covariance of a click of unit error across each of its two edges; NaN where the
-    # point is not before the camera
+    # (C, P, 2, 2): covariance of a click of unit error across each of its two edges, if it lies on
+    # lines; may be NaN where the point is not before the camera
     crossing: NDArray
 
     @property
@@ -94,6 +94,7 @@ def leave_one_out(cameras: Sequence[Camera], clicks: ClickedPoints, court: Court
     crossing = np.full((len(cameras), len(xyz), 2, 2), np.nan)
     clicked = np.stack([np.asarray(clicks[camera.name], float) for camera in cameras])
     world_from_sfm, _ = sfm_alignment.align(court, xyz)
+    on_edge = line_edges.on_lines(court)
     for at in range(len(xyz)):
         others = xyz.copy()
         others[at] = np.nan
@@ -102,19 +103,22 @@ def leave_one_out(cameras: Sequence[Camera], clicks: ClickedPoints, court: Court
         residual[at] = fitted.points(xyz[at]) - court.xyz[at]
         for row, camera in enumerate(cameras):
             projected[row, at] = project(fitted.camera(camera), court.xyz[at])
-            crossing[row, at] = crossings(fitted.camera(camera), court.xyz[[at]])[0]
+            of_point = fitted.camera(camera), court.xyz[[at]], on_edge[[at]]
+            crossing[row, at] = crossings(*of_point)[0]
     names = tuple(camera.name for camera in cameras)
     return ClickErrors(court.points, names, residual, projected, clicked, crossing)
 
 
-def crossings(camera: Camera, xyz: NDArray) -> NDArray:
-    """Return `line_edges.crossings` (P, 2, 2), with points above the floor.
+def crossings(camera: Camera, xyz: NDArray, on_edge: NDArray) -> NDArray:
+    """Return `line_edges.crossings` (P, 2, 2) of points `on_edge`, (P,) bool, with all others.
 
-    The edges of a post's tip are upright and level, and cross at a right angle; few such points
-    carry all heights.
+    Others on the floor, as points with places of their own, have no edges: 1 in all directions. The
+    edges of a post's tip are upright and level, and cross at a right angle; few such points carry
+    all heights.
     """
     raised = is_raised(xyz)[:, None, None]
-    return np.where(raised, RAISED**2 * np.eye(2), line_edges.crossings(camera, xyz))
+    other = np.where(raised, RAISED**2, 1.0) * np.eye(2)
+    return np.where(on_edge[:, None, None], line_edges.crossings(camera, xyz), other)
 
 
 def find_wrong_clicks(table: ClickErrors, *, sigma_px: ArrayLike) -> list[WrongClick]:

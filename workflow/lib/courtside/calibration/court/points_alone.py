@@ -73,7 +73,8 @@ def calibrate(
     doubts = place_checks.check_cameras(court, solved.cameras, clicks)
     projected = np.stack([project(camera, court.xyz) for camera in solved.cameras])
     clicked = np.stack([np.asarray(clicks[name], float) for name in sizes])
-    crossing = np.stack([click_checks.crossings(c, court.xyz) for c in solved.cameras])
+    on_edge = line_edges.on_lines(court)
+    crossing = np.stack([click_checks.crossings(c, court.xyz, on_edge) for c in solved.cameras])
     unplaced = np.full_like(court.xyz, np.nan)
     seen = unplaced, projected, clicked, crossing
     table = click_checks.ClickErrors(court.points, tuple(sizes), *seen)
