@@ -84,6 +84,14 @@ def test_small_motions_are_measured(shift_px, noise):
     assert 0.75 * shift_px - 0.05 < usable.motion_px(image, other) < 1.25 * shift_px + 0.05
 
 
+def test_different_views_are_no_duplicates():
+    """Their flat blocks change as much as the rich ones, which looked like noise without motion."""
+    views = [scene(seed)[20:200, 20:340].clip(0, 255).astype(np.uint8) for seed in range(8)]
+    kept, why = usable.judge(pd.DataFrame({"sharpness": [100.0] * 8}), views)
+    assert kept.all(), why
+    assert usable.motion_px(views[0], views[1]) == np.inf
+
+
 def test_people_do_not_count_as_motion():
     _, (image, other) = walk([0.0, 0.0])
     other[60:180, 40:120] = scene(7)[60:180, 40:120]

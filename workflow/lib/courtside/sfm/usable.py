@@ -23,6 +23,9 @@ MIN_SHARE = 0.6  # ASSUME: of the median sharpness in the window
 STILL_SHARE = 5e-4
 # ASSUME: squared grey levels per pixel; with less in most blocks motion cannot be measured.
 MIN_TEXTURE = 1.0
+# ASSUME: correlation of two pictures in most blocks: real pictures of one view have 0.99 and more,
+# of different views in one hall less than 0.3.
+SAME = 0.5
 
 
 def judge(table: pd.DataFrame, images: Sequence[NDArray]) -> tuple[NDArray, NDArray]:
@@ -71,12 +74,13 @@ def motion_px(image: ArrayLike, other: ArrayLike) -> float:
 
     The result is a typical displacement, in pixels of these pictures. It is up to 1.4 times too
     large in sharp ones, and too small but not small beyond a few pixels. It is infinite where they
-    show too little texture to tell.
+    show too little texture to tell, or different views.
 
     A small displacement d changes a pixel by d times the gradient there; noise adds the same
     everywhere. So in each block the mean squared difference is (squared noise) + (squared d)(mean
     squared gradient). Noise is the median over the flattest quarter of the blocks, d the median
-    over the richer half: people who walk about in less than half of those do not count.
+    over the richer half: people who walk about in less than half of those do not count. Of
+    different views flat blocks change as much as rich ones, which is no noise.
     """
     image, other = np.asarray(image, dtype=float), np.asarray(other, dtype=float)
     if image.shape != other.shape or image.ndim != 2 or np.any(np.array(image.shape) < BLOCKS):
@@ -89,13 +93,21 @@ def motion_px(image: ArrayLike, other: ArrayLike) -> float:
     changed = _block_means((other - image) ** 2)
     flat = slope <= np.percentile(slope, FLAT)
     rich = slope >= np.percentile(slope, RICH)
-    if np.median(slope[rich]) < MIN_TEXTURE:
+    if np.median(slope[rich]) < MIN_TEXTURE or _correlation(image, other, rich) < SAME:
         return np.inf
     squared = 0.0
     for _ in range(10):  # the flattest blocks have some slope too
         noise = np.median(np.maximum(changed[flat] - squared * slope[flat], 0))
         squared = np.median(np.maximum(changed[rich] - noise, 0) / slope[rich])
     return float(np.sqrt(squared))
+
+
+def _correlation(image: NDArray, other: NDArray, blocks: NDArray) -> float:
+    """Return the median correlation of two pictures within the chosen blocks, (9, 16) bool."""
+    mean, other_mean = _block_means(image), _block_means(other)
+    both = _block_means(image * other) - mean * other_mean
+    squares = (_block_means(image**2) - mean**2) * (_block_means(other**2) - other_mean**2)
+    return float(np.median((both / np.sqrt(np.maximum(squares, 1e-9)))[blocks]))
 
 
 def _block_means(values: NDArray) -> NDArray:
