@@ -16,8 +16,9 @@ def main(video_path, folder, table_csv, *, every_s=None, every_frame=None):
     with atomic_folder(folder) as beside:
         found = walk_frames.frames(video_path, every_s=every_s, every_frame=every_frame)
         shown = log.progress(found, None, f"{walk}: frames")
-        table, small = walk_frames.extract(shown, beside, walk_frames.photo_paths(video_path))
-        kept, reason = usable.judge(table, small)
+        photos = walk_frames.photo_paths(video_path)
+        table, small = walk_frames.extract(shown, beside, photos)
+        kept, reason = usable.judge(table, small, photos=bool(photos))
         if not kept.any():
             raise InputError(
                 f"{video_path}: expected frames that show the hall, found all {len(table)} "

@@ -42,7 +42,7 @@ def main(
         if way.linear and result.reason:
             log.logger.warning("%s", result.reason)
     found = known_points.cameras(results)
-    sigma_px = joint_adjustment.largest_click_sigma(click_sigma_px, found)
+    sigma_px = joint_adjustment.click_sigmas(click_sigma_px, found)
     report = {
         "calibration": calibration,
         "rms_px": {camera: round(result.rms_px, 4) for camera, result in results.items()},

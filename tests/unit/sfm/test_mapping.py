@@ -253,6 +253,31 @@ def test_models_are_made_until_two_agree(synthetic, tmp_path, monkeypatch):
     assert (summary["n_attempts"], summary["n_agreeing"]) == (3, 2) and summary["seed"] in (8, 9)
 
 
+def test_models_that_place_one_image_differently_do_not_agree(tmp_path, monkeypatch):
+    """The mean over 40 images hardly shows it, but it may be one of the fixed cameras."""
+    path = tmp_path / "matches.db"
+    names = sorted(sfm_made.centres(sfm_made.synthetic(path, n_points=60, n_images=40)))
+    monkeypatch.setattr(mapping, "SOUND_PX", np.inf)
+
+    def elsewhere(number, found):
+        """Move one image of the first model by a twentieth of the extent of all."""
+        if number == 1:
+            places = np.array(list(sfm_made.centres(found.model).values()))
+            image = found.model.find_image_with_name(names[0])
+            pose = image.cam_from_world()
+            moved = image.projection_center() + 0.05 * np.ptp(places, axis=0)
+            found.model.frames[image.frame_id].rig_from_world = pycolmap.Rigid3d(
+                pose.rotation, -pose.rotation.matrix() @ moved
+            )
+        return found
+
+    asked = spoil(monkeypatch, elsewhere)
+    options = {"mapper": "global", "seed": 7, "attempts": 4}
+    summary = mapping.map_images(path, names, tmp_path / "a", **options)
+    assert [seed for seed, _ in asked] == [7, 8, 9]
+    assert summary["n_agreeing"] == 2 and summary["seed"] in (8, 9)
+
+
 def test_of_models_that_differ_the_one_with_most_observations_is_kept(
     synthetic, tmp_path, monkeypatch
 ):

@@ -36,6 +36,22 @@ def test_blurred_frames_are_found():
     np.testing.assert_array_equal(kept, why == "")
 
 
+def test_sharp_photos_of_bare_walls_are_kept_and_blurred_ones_are_not():
+    """Contrast differs from photo to photo; blur of 2 px of the photo leaves the small picture."""
+    fine, coarse = ([scene(at, (1280, 720), sigma) for at in range(12)] for sigma in (2, 12))
+    photos = [(one + other) / 2 for one, other in zip(fine, coarse, strict=True)]
+    for at in (2, 7, 8):
+        photos[at] = 120 + 0.3 * (photos[at] - 120)  # a tenth of the sharpness
+    for at in (4, 8):
+        photos[at] = cv2.GaussianBlur(photos[at], (0, 0), 2)
+    images = [cv2.resize(photo, (320, 180), interpolation=cv2.INTER_AREA) for photo in photos]
+    table = pd.DataFrame({"sharpness": [cv2.Laplacian(p, cv2.CV_64F).var() for p in photos]})
+    _, why = usable.judge(table, images, photos=True)
+    assert {at: why[at] for at in range(12) if why[at]} == {4: "blurred", 8: "blurred"}
+    _, why = usable.judge(table, images)  # of a video, whose frames show nearly the same
+    assert {at for at in range(12) if why[at] == "blurred"} == {2, 4, 7, 8}
+
+
 def test_sharpness_is_compared_with_neighbours_not_with_the_whole_walk():
     table, images = walk(np.arange(60) * 1.0)
     falling = table.assign(sharpness=np.geomspace(1000, 20, 60))
@@ -82,6 +98,14 @@ def test_small_motions_are_measured(shift_px, noise):
     """The scene has equal slopes along both axes, as the estimate assumes."""
     _, (image, other) = walk([0.0, shift_px], noise=noise)
     assert 0.75 * shift_px - 0.05 < usable.motion_px(image, other) < 1.25 * shift_px + 0.05
+
+
+def test_different_views_are_no_duplicates():
+    """Their flat blocks change as much as the rich ones, which looked like noise without motion."""
+    views = [scene(seed)[20:200, 20:340].clip(0, 255).astype(np.uint8) for seed in range(8)]
+    kept, why = usable.judge(pd.DataFrame({"sharpness": [100.0] * 8}), views)
+    assert kept.all(), why
+    assert usable.motion_px(views[0], views[1]) == np.inf
 
 
 def test_people_do_not_count_as_motion():

@@ -269,6 +269,30 @@ def test_the_walk_gives_the_unit_where_there_are_not_two_fixed_cameras(fixed):
     assert np.linalg.norm(places[-1] - places[0]) == pytest.approx(1)
 
 
+@pytest.mark.parametrize("on_one_line", [False, True])
+def test_poses_tell_one_frame_from_another_also_on_one_line(on_one_line):
+    made = networks_made.make(6, 20)
+    if on_one_line:
+        places = np.arange(8)[:, None] * [2.0, 1.0, 0.1] + [5.0, 0, 1]
+        made.cam_from_world[:, :, 3] = -np.einsum(
+            "vij,vj->vi", made.cam_from_world[:, :, :3], places
+        )
+    other = networks_made.in_random_frame(made)
+    found = selection.between(made.cam_from_world, other.cam_from_world)
+    moved = selection.transform(made, found)
+    np.testing.assert_allclose(moved.cam_from_world, other.cam_from_world, atol=1e-9)
+    np.testing.assert_allclose(moved.xyz, other.xyz, atol=1e-9)
+
+
+def test_the_pose_of_one_image_tells_its_frame_but_not_the_scale():
+    made = selection.images_only(networks_made.make(6, 20), [0])
+    other = networks_made.in_random_frame(made).cam_from_world
+    found = selection.between(made.cam_from_world, other)
+    assert found.scale == 1.0
+    moved = selection.transform(made, found)
+    np.testing.assert_allclose(moved.cam_from_world, other, atol=1e-9)
+
+
 def test_the_spread_of_residuals_is_that_of_the_noise():
     made = networks_made.make(8, 200, noise_px=0.4)
     assert selection.residual_spread(made) == pytest.approx(0.4, rel=0.05)

@@ -1,5 +1,7 @@
 """Networks in parts: who is in which, and that nothing is lost or seen twice."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -52,6 +54,20 @@ def test_put_together_every_image_has_its_place_and_fixed_ones_that_of_the_first
     np.testing.assert_array_equal(walk_parts.centres(parts), selection.centres(whole))
     assert walk_parts.points(parts).shape == (20, 3)
     np.testing.assert_array_equal(walk_parts.points(parts)[10:], whole.xyz)
+
+
+def test_parts_are_brought_to_the_frame_of_the_first():
+    whole = networks_made.make(7, 10)
+    split = walk_parts.split(whole, [0, 1], 3)
+    parts = [
+        replace(part, network=networks_made.in_random_frame(part.network, seed))
+        for seed, part in enumerate(split, start=4)
+    ]
+    found = walk_parts.in_one_frame(parts, networks_made.in_random_frame(whole, 9))
+    assert found[0] is parts[0] and len(found) == len(parts) == 2
+    expected = networks_made.in_random_frame(whole, 4)
+    np.testing.assert_allclose(walk_parts.centres(found), selection.centres(expected), atol=1e-9)
+    np.testing.assert_allclose(found[1].network.xyz, expected.xyz, atol=1e-9)
 
 
 def test_images_are_cameras_by_name_those_of_fixed_ones_of_the_first_part():

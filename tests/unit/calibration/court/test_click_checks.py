@@ -97,6 +97,20 @@ def test_a_wrong_click_in_one_of_two_cameras_is_named():
     )
 
 
+@pytest.mark.parametrize("times_larger", [1, 3])
+def test_a_click_is_judged_by_the_sigma_of_its_own_picture(times_larger):
+    """The pictures of another camera may be three times as large, with clicks as much worse."""
+    given = clicks(4)
+    given["side"][5] += (2.4, 1.8)  # 13 sigmas; 4 of the larger pictures
+    given["back"] = times_larger * (given["back"] + 0.5) - 0.5
+    cameras = [IN_SFM[0], camera_models.scaled(IN_SFM[1], times_larger), IN_SFM[2]]
+    sigma_px = joint_adjustment.click_sigmas(3 * SIGMA_PX, cameras)
+    np.testing.assert_allclose(sigma_px, SIGMA_PX * np.array([1, times_larger, 1]))
+    table = click_checks.leave_one_out(cameras, given, COURT)
+    (wrong,) = click_checks.find_wrong_clicks(table, sigma_px=sigma_px)
+    assert (wrong.camera, wrong.point) == ("side", "p06")
+
+
 def test_exchanged_names_are_recognised():
     given = clicks(3)
     given["corner"][[3, 5]] = given["corner"][[5, 3]]

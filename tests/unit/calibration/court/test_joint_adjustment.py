@@ -9,6 +9,7 @@ import pytest
 from courtside.calibration.bundle import selection, solver, walk_parts
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court import joint_adjustment, line_edges, sfm_alignment
+from courtside.geometry import similarity
 from courtside.study.errors import InputError
 from fixtures.cameras import networks_made
 from fixtures.cameras.scene import opencv_projection
@@ -390,6 +391,41 @@ def test_the_covariance_without_a_court_is_that_of_repeated_ties():
     square = np.mean(np.square(off), axis=0)
     assert np.abs(np.sqrt(square) - 1).max() < 4 / np.sqrt(2 * n_draws)
     assert np.mean(square) == pytest.approx(1, abs=4 * np.sqrt(2 / n_draws / 5))
+
+
+def test_without_a_court_all_parts_of_a_walk_give_the_cameras():
+    """Where only the images of the first of two parts are noisy, the other halves its error."""
+    truth = made(20, 60)
+    exact = from_side(networks_made.fixed_cameras(truth))[1]
+    of_first = np.isin(truth.image_idx, walk_parts.split(truth, [0, 1], 10)[0].images[2:])
+    rng, errors = np.random.default_rng(6), []
+    for _ in range(5):
+        noise = 0.5 * rng.normal(size=truth.xy.shape) * of_first[:, None]
+        options = FREE | {"tie_sigma_px": 0.5, "images_per_part": 10}
+        drawn = replace(truth, xy=truth.xy + noise)
+        ties, parts = joint_adjustment.condense_free(drawn, FIXED, SIZES, **options)
+        assert len(parts) == 2
+        alone = networks_made.fixed_cameras(parts[0].network)
+        turns = [from_side(c)[1] @ exact.T for c in (joint_adjustment.free(ties).cameras, alone)]
+        errors.append(np.linalg.norm(np.array(turns) - np.eye(3), axis=(1, 2)))
+    both, first = np.sqrt(np.mean(np.square(errors), axis=0))
+    assert 0.3 < both / first < 0.7
+
+
+def test_without_a_court_all_parts_of_a_walk_are_in_one_frame():
+    """The images of each part are others: others are the mean of their places and their up."""
+    truth = made(80, 60, noise_px=0.3)
+    options = FREE | {"images_per_part": 40}
+    start = networks_made.in_random_frame(truth)
+    parts = joint_adjustment.condense_free(start, FIXED, SIZES, **options)[1]
+    assert len(parts) == 2
+    true = selection.centres(truth)
+    apart = np.linalg.norm(true[1] - true[0])
+    fixed = np.array([selection.centres(part.network)[part.fixed] for part in parts])
+    np.testing.assert_allclose(fixed[1], fixed[0], atol=0.002)
+    found = walk_parts.centres(parts)
+    off = np.linalg.norm(similarity.umeyama(found, true).points(found) - true, axis=1)
+    assert off.mean() < 0.001 * apart
 
 
 def test_files_under_each_others_names_are_a_fault():

@@ -10,11 +10,13 @@ import pytest
 from courtside.calibration.bundle.problem import IMAGE, LENS
 from courtside.calibration.court import court, points_alone, quality
 from courtside.calibration.records import covariance as camera_covariance
+from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera, in_picture
 from courtside.study.errors import InputError
 from fixtures.cameras.scene import look_at, opencv_projection
 
-HALL = court.read(Path(__file__).parents[4] / "config" / "courts" / "sports-hall.yaml")
+COURTS = Path(__file__).parents[4] / "config" / "courts"
+HALL = court.read(COURTS / "sports-hall.yaml")
 SIZE = (1920, 1080)
 WEIGHTS = {"click_sigma_px": 2.5, "click_bias_px": 1.25, "click_loss": 4.0}
 
@@ -102,6 +104,40 @@ def test_a_wrong_click_is_named_and_moves_nothing():
     assert wrong.error_px == pytest.approx(np.hypot(40, 25), abs=8)
     assert apart_px(found.solution.cameras[3], made[3]).max() < 6
     assert str(wrong) in found.warnings
+
+
+def test_a_wrong_click_is_named_also_beside_a_camera_of_larger_pictures():
+    """17 sigmas in its own picture, 9 of clicks in the larger one; less across its edges."""
+    made = true_cameras()
+    made[0] = camera_models.scaled(made[0], 2)
+    clicks = clicked(made)
+    at = int(np.flatnonzero(np.isfinite(clicks["north"][:, 0]))[5])
+    clicks["north"][at] += [18, -12]
+    sizes = {camera.name: camera.size for camera in made}
+    found = points_alone.calibrate(HALL, clicks, sizes, **WEIGHTS)
+    (wrong,) = found.wrong
+    assert (wrong.camera, wrong.point) == ("north", HALL.points[at])
+
+
+@pytest.mark.parametrize("with_lines", [False, True])
+def test_a_click_beside_a_point_is_wrong_unless_flat_lines_make_it_uncertain(with_lines):
+    """Seen from 1.6 m above the floor, lines cross flat; points of one's own have none."""
+    of_lines = court.read(COURTS / "badminton.yaml")
+    places = court.of_places("points", of_lines.points, of_lines.xyz)
+    where = of_lines if with_lines else places
+    matrix = np.array([[1152.0, 0, 959.5], [0, 1152, 539.5], [0, 0, 1]])
+    made = [
+        Camera(name, SIZE, matrix, (-0.05, 0.01, 0, 0, 0), look_at(at, (3, 6.7, 0.8)))
+        for name, at in {"a": (3, -6, 1.6), "b": (12, 2, 1.6), "c": (-4, 15, 1.6)}.items()
+    ]
+    rng = np.random.default_rng(0)
+    clicks = {c.name: opencv_projection(c, where.xyz) + rng.normal(0, 0.9, (18, 2)) for c in made}
+    clicks["a"][4, 0] += 10  # 11 sigmas to the right
+    found = points_alone.calibrate(
+        where, clicks, dict.fromkeys(clicks, SIZE), **WEIGHTS | {"click_sigma_px": 1.75}
+    )
+    named = [(one.camera, one.point) for one in found.wrong]
+    assert named == ([] if with_lines else [("a", where.points[4])])
 
 
 def test_a_camera_whose_points_fit_badly_is_named():

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from courtside.calibration.bundle import problem, solver
 from courtside.calibration.bundle.problem import Network
+from courtside.geometry import similarity
 from courtside.geometry.similarity import Sim3
 from courtside.statistics.normal_errors import MEDIAN_TO_SIGMA
 
@@ -38,6 +39,23 @@ def free_frame(network: Network, fixed: Sequence[int]) -> Sim3:
     x, z = x / np.linalg.norm(x), up / np.linalg.norm(up)
     rotation, scale = np.stack([x, np.cross(z, x), z]), 1 / np.linalg.norm(along)
     return Sim3(float(scale), rotation, -scale * rotation @ places.mean(axis=0))
+
+
+def between(cam_from_a: NDArray, cam_from_b: NDArray) -> Sim3:
+    """Fit the similarity `b_from_a` to the poses (V, 3, 4) of the same images in both frames.
+
+    Their rotations give its rotation, then their projection centres scale and translation by least
+    squares. The centres may lie on one line; of one image the scale is 1.
+    """
+    rotation, _ = similarity.kabsch(
+        np.einsum("vji,vjk->ik", cam_from_b[:, :, :3], cam_from_a[:, :, :3])
+    )
+    turned, places = _centres(cam_from_a) @ rotation.T, _centres(cam_from_b)
+    middle, other = turned.mean(axis=0), places.mean(axis=0)
+    arms = turned - middle
+    extent = (arms**2).sum()
+    scale = float((arms * (places - other)).sum() / extent) if extent > 0 else 1.0
+    return Sim3(scale, rotation, other - scale * middle)
 
 
 def select(network: Network, points: NDArray, seen: NDArray | None = None) -> Network:
@@ -90,7 +108,10 @@ def _widest_angle(network: Network) -> NDArray:
 
 def centres(network: Network) -> NDArray:
     """Return the projection centres of all images, (V, 3)."""
-    pose = network.cam_from_world
+    return _centres(network.cam_from_world)
+
+
+def _centres(pose: NDArray) -> NDArray:
     return -np.einsum("vji,vj->vi", pose[:, :, :3], pose[:, :, 3])
 
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from courtside.calibration.bundle import conversion, selection
 from courtside.calibration.bundle.problem import PER_IMAGE, Network
 from courtside.geometry.camera import Camera
+from courtside.geometry.similarity import Sim3
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +42,25 @@ def split(network: Network, fixed: Sequence[int], images_per_part: int) -> list[
         mine = replace(mine, image_idx=np.searchsorted(images, mine.image_idx), **per_image)
         parts.append(Part(images, np.searchsorted(images, fixed), mine))
     return parts
+
+
+def in_one_frame(parts: Sequence[Part], whole: Network) -> list[Part]:
+    """Return the parts of a network in the frame of the first, where each has one of its own.
+
+    The images of each part tell where the frame of `whole` is.
+    """
+    first, *others = parts
+    found = [first]
+    for part in others:
+        in_whole = selection.transform(part.network, _whole_from_part(part, whole))
+        in_first = selection.transform(in_whole, _whole_from_part(first, whole).inverse())
+        found.append(replace(part, network=in_first))
+    return found
+
+
+def _whole_from_part(part: Part, whole: Network) -> Sim3:
+    pose = whole.cam_from_world[part.images]
+    return selection.between(part.network.cam_from_world, pose)
 
 
 def centres(parts: Sequence[Part]) -> NDArray:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from courtside.calibration.bundle import solver
 from courtside.calibration.court import joint_adjustment, line_edges, sfm_alignment
@@ -37,8 +37,8 @@ class ClickErrors:
     residual_m: NDArray
     projected_px: NDArray  # (C, P, 2): where the court's point should be in the picture
     clicked_px: NDArray  # (C, P, 2): NaN where not clicked
-    # (C, P, 2, 2): covariance of a click of unit error across each of its two edges; NaN where the
-    # point is not before the camera
+    # (C, P, 2, 2): covariance of a click of unit error across each of its two edges, if it lies on
+    # lines; may be NaN where the point is not before the camera
     crossing: NDArray
 
     @property
@@ -94,6 +94,7 @@ def leave_one_out(cameras: Sequence[Camera], clicks: ClickedPoints, court: Court
     crossing = np.full((len(cameras), len(xyz), 2, 2), np.nan)
     clicked = np.stack([np.asarray(clicks[camera.name], float) for camera in cameras])
     world_from_sfm, _ = sfm_alignment.align(court, xyz)
+    on_edge = line_edges.on_lines(court)
     for at in range(len(xyz)):
         others = xyz.copy()
         others[at] = np.nan
@@ -102,37 +103,41 @@ def leave_one_out(cameras: Sequence[Camera], clicks: ClickedPoints, court: Court
         residual[at] = fitted.points(xyz[at]) - court.xyz[at]
         for row, camera in enumerate(cameras):
             projected[row, at] = project(fitted.camera(camera), court.xyz[at])
-            crossing[row, at] = crossings(fitted.camera(camera), court.xyz[[at]])[0]
+            of_point = fitted.camera(camera), court.xyz[[at]], on_edge[[at]]
+            crossing[row, at] = crossings(*of_point)[0]
     names = tuple(camera.name for camera in cameras)
     return ClickErrors(court.points, names, residual, projected, clicked, crossing)
 
 
-def crossings(camera: Camera, xyz: NDArray) -> NDArray:
-    """Return `line_edges.crossings` (P, 2, 2), with points above the floor.
+def crossings(camera: Camera, xyz: NDArray, on_edge: NDArray) -> NDArray:
+    """Return `line_edges.crossings` (P, 2, 2) of points `on_edge`, (P,) bool, with all others.
 
-    The edges of a post's tip are upright and level, and cross at a right angle; few such points
-    carry all heights.
+    Others on the floor, as points with places of their own, have no edges: 1 in all directions. The
+    edges of a post's tip are upright and level, and cross at a right angle; few such points carry
+    all heights.
     """
     raised = is_raised(xyz)[:, None, None]
-    return np.where(raised, RAISED**2 * np.eye(2), line_edges.crossings(camera, xyz))
+    other = np.where(raised, RAISED**2, 1.0) * np.eye(2)
+    return np.where(on_edge[:, None, None], line_edges.crossings(camera, xyz), other)
 
 
-def find_wrong_clicks(table: ClickErrors, *, sigma_px: float) -> list[WrongClick]:
+def find_wrong_clicks(table: ClickErrors, *, sigma_px: ArrayLike) -> list[WrongClick]:
     """Return the clicks that contradict the others, the worst first.
 
     A wrong click pulls the prediction of the others. Among six points in a camera nearly every one
     is found, among five one in twenty, among four none; good clicks alone are not accused.
-    `sigma_px` is that of a good click across an edge; if the clicks of a camera scatter more, their
-    scatter is used.
+    `sigma_px` is that of a good click across an edge, (C,) by camera or one of all; if the clicks
+    of a camera scatter more, their scatter is used.
     """
     error, by_edge = table.error_px, table.edge_error_px
+    good_px = np.broadcast_to(np.asarray(sigma_px, dtype=float), len(table.cameras))
     wrong = []
     for row, camera in enumerate(table.cameras):
         seen = np.isfinite(by_edge[row])
         if seen.sum() < 4:
             continue
         middle, most = np.quantile(by_edge[row, seen], [0.5, 0.8]) / NORMAL_2D
-        sigma = max(sigma_px, middle, most)
+        sigma = max(good_px[row], middle, most)
         for at in np.flatnonzero(seen & (np.nan_to_num(by_edge[row]) > WRONG * sigma)):
             away = np.linalg.norm(table.projected_px[row] - table.clicked_px[row, at], axis=-1)
             near = int(np.argmin(np.where(np.isfinite(away), away, np.inf)))
@@ -184,7 +189,7 @@ def check(
     cameras: Sequence[Camera],
     clicks: ClickedPoints,
     *,
-    sigma_px: float,
+    sigma_px: ArrayLike,
     table: ClickErrors | None,
     inwards: tuple[float, float] | None = None,
     adjust: Callable[[ClickedPoints], Sequence[Camera]] | None = None,
@@ -193,7 +198,7 @@ def check(
     """Check clicked court points as far as the fixed cameras, in one frame, allow.
 
     Return warnings of one line: weak geometry, wrong clicks by camera and point, line centres.
-    `sigma_px` is that of a good click per axis; `table` is from `leave_one_out`, None where that
+    `sigma_px` is as for `find_wrong_clicks`; `table` is from `leave_one_out`, None where that
     fails. `inwards`, the shift of all clicks towards line centres and its sigma, is from
     `inward_shift`, by default from `inward_shift_of_points`; `adjust` is as for
     `sfm_alignment.refuse_exchanged_cameras`, `error_modes_m` as for `sfm_alignment.stretch`. Raises

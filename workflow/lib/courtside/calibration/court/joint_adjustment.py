@@ -208,12 +208,13 @@ def condense_free(
     tie_loss: float,
     **thinning: Any,
 ) -> tuple[Ties, list[Part]]:
-    """Do as `condense` without a court, in the frame of `selection.free_frame`."""
+    """Do as `condense` without a court, in the `selection.free_frame` of the first part."""
     names, parts = tuple(fixed), []
     network = _in_free_frame(network, list(fixed.values()))
     for part in walk_parts.split(network, list(fixed.values()), images_per_part):
         tied = _ties_of(part.network, tie_sigma_px, tie_loss, thinning)
         parts.append(replace(part, network=_adjusted_freely(tied, part.fixed.tolist())))
+    parts = walk_parts.in_one_frame(parts, network)
     return _condensed(parts, names, sizes), parts
 
 
@@ -233,9 +234,13 @@ def _in_free_frame(network: Network, fixed: Sequence[int]) -> Network:
 
 def free(ties: Ties) -> Solution:
     """Return the `Solution` of `condense_free`; its covariance leaves out frame and scale."""
-    network = ties.knowledge.reference
+    known = ties.knowledge
+    # The reference is the minimum of the first part, not of the mean over the parts.
+    network, _ = solver.adjust(known.reference, quadratic=known, max_iterations=SOLVE_ITERATIONS)
+    poses = network.cam_from_world, known.reference.cam_from_world
+    network = selection.transform(network, selection.between(*poses))  # nothing held the frame
+    covariance = inverses.pseudo_inverse(known.information)
     cameras = conversion.cameras_of(network, ties.cameras, ties.sizes)
-    covariance = inverses.pseudo_inverse(ties.knowledge.information)
     return Solution(cameras, network, covariance, variance_components.none(len(cameras)))
 
 
@@ -244,19 +249,18 @@ def click_sigma(sigma_px_at_3840: float, size: tuple[int, int]) -> float:
     return sigma_px_at_3840 * size[0] / UHD
 
 
-def found_click_sigma(sigma_px_at_3840: float, solved: Solution) -> float:
-    """Return the sigma of clicks from the residuals, px, in the picture where it is largest.
+def click_sigmas(sigma_px_at_3840: float, cameras: Sequence[Camera]) -> NDArray:
+    """Return the sigma of a click in the pictures of each camera, (C,) px."""
+    return np.array([click_sigma(sigma_px_at_3840, camera.size) for camera in cameras])
+
+
+def found_click_sigmas(sigma_px_at_3840: float, solved: Solution) -> NDArray:
+    """Do as `click_sigmas`, as the residuals have it of the camera whose clicks scatter most.
 
     Over both axes: the root of their mean variance.
     """
     factor = np.sqrt(solved.factors.clicks.mean(axis=1))
-    stated = [click_sigma(sigma_px_at_3840, camera.size) for camera in solved.cameras]
-    return float(np.max(stated * factor))
-
-
-def largest_click_sigma(sigma_px_at_3840: float, cameras: Sequence[Camera]) -> float:
-    """Return the sigma of a click in the largest of the cameras' pictures, px."""
-    return max(click_sigma(sigma_px_at_3840, camera.size) for camera in cameras)
+    return click_sigmas(sigma_px_at_3840, solved.cameras) * factor.max()
 
 
 def solve(

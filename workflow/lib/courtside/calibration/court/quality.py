@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import conversion
@@ -31,7 +31,7 @@ def check_cameras(
     cameras: Sequence[Camera],
     clicks: ClickedPoints,
     *,
-    click_sigma_px: float,
+    click_sigma_px: ArrayLike,
     strict: bool = True,
     **known: Any,
 ) -> dict[str, Any]:
@@ -40,7 +40,8 @@ def check_cameras(
     The result, for a JSON file, holds `warnings`, and `left_out`, by point: how far it is from its
     place (cm) and from each click (px) in a similarity fitted to the other points. Raises
     `InputError`, or if not `strict` warns, if the points cannot be this court. `click_sigma_px` is
-    that of a good click in the largest picture, `**known` what else `click_checks.check` takes.
+    that of a good click, (C,) by camera or one of all, `**known` what else `click_checks.check`
+    takes.
     """
     table, each = leave_one_out_errors(court, cameras, clicks)
     try:
@@ -79,7 +80,7 @@ def adjust_and_check(
 
     if solved is None:
         solved = joint_adjustment.solve_with_factors(ties, clicks, court, **options)
-    sigma_px = joint_adjustment.found_click_sigma(weights["click_sigma_px"], solved)
+    sigma_px = joint_adjustment.found_click_sigmas(weights["click_sigma_px"], solved)
     quality = check_cameras(
         court,
         solved.cameras,
