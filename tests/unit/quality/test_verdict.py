@@ -168,6 +168,18 @@ def test_a_take_is_doubtful_where_its_calibration_doubts_itself():
     assert take.sentence.endswith(" The calibration is in doubt: floor.")
 
 
+@pytest.mark.parametrize("doubted", [{"shared": ("floor",)}, {"by_lines": {"c2": "is off"}}])
+def test_cameras_with_poor_detection_do_not_outvote_a_doubted_calibration(doubted):
+    """Whoever reads the take's cause asks whether its metres are right."""
+    poor = judged.footage(hidden={0: 0.2, 1: 0.2})
+    rows, _ = wholes(poor)
+    assert (rows[ALL, ALL].verdict, rows[ALL, ALL].cause) == (DOUBTFUL, causes.DETECTION)
+    rows, _ = wholes(poor, **doubted)
+    assert {rows[name, ALL].cause for name in ("c0", "c1")} == {causes.DETECTION}
+    assert {rows[ALL, person].verdict for person in ("p1", "p2")} == {GOOD}
+    assert (rows[ALL, ALL].verdict, rows[ALL, ALL].cause) == (DOUBTFUL, causes.CALIBRATION)
+
+
 def crowded(hidden=(), others=37):
     """Return the verdicts on a take whose camera c1 shows spectators beside the two players."""
     cameras = judged.footage(hidden=hidden)

@@ -298,5 +298,8 @@ def _take(cameras: list[dict], persons: list[dict], doubts: Doubts) -> dict:
     parts += [f"The calibration is in doubt: {'; '.join(doubts.shared)}."] * bool(doubts.shared)
     known = [row["cause"] for row in named if row["cause"] != causes.UNKNOWN]
     known += [causes.CALIBRATION] * bool(doubts.shared)
-    cause = max(known, key=known.count) if known else causes.UNKNOWN
+    # However many cameras have another fault, a doubted calibration spoils whatever is measured.
+    measured = any(row["verdict"] != FAILED for row in persons)
+    spoilt = measured and causes.CALIBRATION in known
+    cause = causes.CALIBRATION if spoilt else max(known, key=known.count, default=causes.UNKNOWN)
     return _whole(ALL, ALL, verdict, cause, " ".join(parts))
