@@ -156,7 +156,10 @@ def _uncertain(judged: dict[int, list[dict]], doubts: Doubts) -> dict[int, list[
         for at, (whole, *rows) in judged.items()
         if whole["verdict"] != GOOD
         and not doubts.of(whole["camera"])
-        and any(row["measure"] == "reprojection" and row["verdict"] != GOOD for row in rows)
+        and (
+            whole["cause"] == causes.CLOCK
+            or any(row["measure"] == "reprojection" and row["verdict"] != GOOD for row in rows)
+        )
     ]
     if len(wrong) < 2 or doubts.by_check:
         return judged
@@ -240,6 +243,8 @@ def _camera(seen: Seen, at: int, agreed: bool, doubts: Doubts) -> list[dict]:
     theirs = ("accepted", "reprojection") if agreed else ("accepted",) if seen.out else ()
     counted = [row for row in rows if row["measure"] not in theirs]
     verdict = worst([row["verdict"] for row in counted])
+    if verdict == GOOD and (late := causes.late(seen, at)):
+        return [_whole(name, ALL, DOUBTFUL, late.name, f"Camera {name}: {late.sentence}."), *rows]
     if verdict == GOOD:
         return [_whole(name, ALL, GOOD, "", f"Camera {name}: {AGREES}."), *rows]
     limit, others = OF_CAMERA["found"].doubtful, bool(doubts.by_check)
