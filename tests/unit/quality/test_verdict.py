@@ -222,6 +222,12 @@ def test_cameras_with_poor_detection_do_not_outvote_a_doubted_calibration(doubte
     assert (rows[ALL, ALL].verdict, rows[ALL, ALL].cause) == (DOUBTFUL, causes.CALIBRATION)
 
 
+def test_nor_do_they_outvote_a_clock():
+    rows, _ = wholes(judged.footage(hidden={0: 0.2, 2: 0.2}, offset_s={1: 0.1}))
+    assert [rows[name, ALL].cause for name in ("c0", "c1", "c2")].count(causes.DETECTION) == 2
+    assert (rows["c1", ALL].cause, rows[ALL, ALL].cause) == (causes.CLOCK, causes.CLOCK)
+
+
 def crowded(hidden=(), others=37):
     """Return the verdicts on a take whose camera c1 shows spectators beside the two players."""
     cameras = judged.footage(hidden=hidden)

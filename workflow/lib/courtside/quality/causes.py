@@ -15,10 +15,9 @@ from courtside.geometry import camera as camera_models
 from courtside.quality import measures
 from courtside.quality import seen as views
 from courtside.quality.seen import Seen
-from courtside.study.execution.verdicts import CALIBRATION
+from courtside.study.execution.verdicts import CALIBRATION, CLOCK, EXCHANGED
 
-DETECTION, IDENTITY, CLOCK = "detection", "identity", "clock"
-EXCHANGED, UNKNOWN = "exchanged", "unknown"
+DETECTION, IDENTITY, UNKNOWN = "detection", "identity", "unknown"
 # ASSUME: usual takes have 0.012 to 0.03 (`verdict.LIMITS`); another body is 0.3 away and more.
 FITS = 0.08
 NEARER = 0.6  # a change explains an error if at most this share of it is left,

@@ -10,7 +10,16 @@ from courtside.quality import causes, measures
 from courtside.quality.calibration_doubts import Doubts
 from courtside.quality.seen import Seen, disagreement, shown, without
 from courtside.reconstruction.association import associate
-from courtside.study.execution.verdicts import ALL, COLUMNS, DOUBTFUL, FAILED, GOOD, ORDER, WHOLE
+from courtside.study.execution.verdicts import (
+    ALL,
+    COLUMNS,
+    DOUBTFUL,
+    FAILED,
+    GOOD,
+    ORDER,
+    WHOLE,
+    WRONG_CAMERA,
+)
 
 AGREES = "it agrees with the other cameras"
 ANY = "another of the cameras that disagree may be the wrong one"
@@ -303,8 +312,8 @@ def _take(cameras: list[dict], persons: list[dict], doubts: Doubts) -> dict:
     parts += [f"The calibration is in doubt: {'; '.join(doubts.shared)}."] * bool(doubts.shared)
     known = [row["cause"] for row in named if row["cause"] != causes.UNKNOWN]
     known += [causes.CALIBRATION] * bool(doubts.shared)
-    # However many cameras have another fault, a doubted calibration spoils whatever is measured.
+    # However many cameras have another fault, a wrong one spoils whatever is measured.
     measured = any(row["verdict"] != FAILED for row in persons)
-    spoilt = measured and causes.CALIBRATION in known
-    cause = causes.CALIBRATION if spoilt else max(known, key=known.count, default=causes.UNKNOWN)
+    wrong = [cause for cause in known if measured and cause in WRONG_CAMERA] or known
+    cause = max(wrong, key=wrong.count, default=causes.UNKNOWN)
     return _whole(ALL, ALL, verdict, cause, " ".join(parts))
