@@ -22,8 +22,8 @@ DETECTION, IDENTITY, UNKNOWN = "detection", "identity", "unknown"
 FITS = 0.08
 NEARER = 0.6  # a change explains an error if at most this share of it is left,
 SAME = 0.15  # and no more heights than this: half of what another body is away
-# and, of a camera that agrees, if it explains more heights than this, 9 mm of a person: of takes as
-# they are at most 0.003 are explained, of cameras 67 to 100 ms late 0.009 and more
+# and, of a camera that agrees, if it explains more heights than this, 9 mm of a person: of cameras
+# as they are it explains at most 0.003, of cameras 67 to 100 ms late mostly 0.009 and more
 TELLING = 0.005
 LEAST = 0.3  # a test needs the person in this share of the frames looked at
 SOME = 0.02  # share of frames without anybody that is worth a word
