@@ -95,6 +95,48 @@ def test_one_wrong_camera_is_named_with_its_cause_and_the_others_are_good(fault)
     assert "Camera c1: " in rows[ALL, ALL].sentence
 
 
+@pytest.mark.parametrize("shift_s", [0.04, -0.04])
+def test_a_clock_that_is_off_by_less_than_poor_keypoints_are_is_named(shift_s):
+    """No measure of the camera is beyond its limit: only another time shows it."""
+    rows, table = wholes(judged.footage(offset_s={1: shift_s}, height_m=3.0))
+    measured = table[table["measure"] != WHOLE]
+    assert set(measured["verdict"]) == {GOOD}
+    assert (rows["c1", ALL].verdict, rows["c1", ALL].cause) == (DOUBTFUL, causes.CLOCK)
+    assert f"its clock is off: moved by {-shift_s:+.3f} s" in rows["c1", ALL].sentence
+    assert {rows[f"c{k}", ALL].verdict for k in (0, 2, 3)} == {GOOD}
+    assert (rows[ALL, ALL].verdict, rows[ALL, ALL].cause) == (DOUBTFUL, causes.CLOCK)
+
+
+@pytest.mark.parametrize("shift_s", [0.06, -0.3])
+def test_of_two_cameras_either_clock_may_be_off(shift_s):
+    rows, _ = wholes(judged.footage(n_cameras=2))
+    assert {row.verdict for row in rows.values()} == {GOOD}
+    rows, _ = wholes(judged.footage(n_cameras=2, offset_s={1: shift_s}))
+    for name, sign in (("c0", 1), ("c1", -1)):
+        assert (rows[name, ALL].verdict, rows[name, ALL].cause) == (DOUBTFUL, causes.CLOCK)
+        moved = f"moved by {sign * shift_s:+.3f} s"
+        assert moved in rows[name, ALL].sentence and verdict.ANY in rows[name, ALL].sentence
+    assert rows[ALL, ALL].verdict != GOOD and rows[ALL, ALL].cause == causes.CLOCK
+
+
+def test_of_cameras_that_face_each_other_either_clock_may_be_off():
+    rows, _ = wholes(judged.footage(offset_s={1: 0.06}))
+    late = [row for row in rows.values() if row.camera != ALL and row.verdict != GOOD]
+    assert [row.camera for row in late] == ["c1", "c3"]
+    assert all(row.cause == causes.CLOCK and verdict.ANY in row.sentence for row in late)
+
+
+def test_no_clock_is_doubted_where_people_stand_still_or_nobody_is_compared():
+    still = judged.footage()
+    for one in still:
+        one.tracklets.xy[...] = one.tracklets.xy[:, :1]
+    one = [judged.footage(n_frames=1, n_cameras=n_cameras) for n_cameras in (2, 4)]
+    lost = judged.followed(judged.footage(n_cameras=2), {"c0": (0, 1), "c1": (-1, -1)})
+    for cameras in (still, *one, lost):
+        rows, _ = wholes(cameras)
+        assert causes.CLOCK not in {row.cause for row in rows.values()}
+
+
 @pytest.mark.parametrize("people", [False, True], ids=["nobody", "people"])
 def test_a_camera_that_looks_elsewhere_is_good_only_if_it_finds_nobody(people):
     away = judged.turned(judged.footage(hidden={} if people else {1: 1.0}), 1, 60.0)
@@ -166,6 +208,24 @@ def test_a_take_is_doubtful_where_its_calibration_doubts_itself():
     take = failed[ALL, ALL]
     assert (take.verdict, take.cause) == (FAILED, causes.DETECTION)
     assert take.sentence.endswith(" The calibration is in doubt: floor.")
+
+
+@pytest.mark.parametrize("doubted", [{"shared": ("floor",)}, {"by_lines": {"c2": "is off"}}])
+def test_cameras_with_poor_detection_do_not_outvote_a_doubted_calibration(doubted):
+    """Whoever reads the take's cause asks whether its metres are right."""
+    poor = judged.footage(hidden={0: 0.2, 1: 0.2})
+    rows, _ = wholes(poor)
+    assert (rows[ALL, ALL].verdict, rows[ALL, ALL].cause) == (DOUBTFUL, causes.DETECTION)
+    rows, _ = wholes(poor, **doubted)
+    assert {rows[name, ALL].cause for name in ("c0", "c1")} == {causes.DETECTION}
+    assert {rows[ALL, person].verdict for person in ("p1", "p2")} == {GOOD}
+    assert (rows[ALL, ALL].verdict, rows[ALL, ALL].cause) == (DOUBTFUL, causes.CALIBRATION)
+
+
+def test_nor_do_they_outvote_a_clock():
+    rows, _ = wholes(judged.footage(hidden={0: 0.2, 2: 0.2}, offset_s={1: 0.1}))
+    assert [rows[name, ALL].cause for name in ("c0", "c1", "c2")].count(causes.DETECTION) == 2
+    assert (rows["c1", ALL].cause, rows[ALL, ALL].cause) == (causes.CLOCK, causes.CLOCK)
 
 
 def crowded(hidden=(), others=37):

@@ -40,16 +40,19 @@ def test_each_measure_has_way_verdict_and_origin(take):
     assert set(other["quality"]) == {"failed"}
 
 
-def test_a_doubted_calibration_makes_every_person_of_the_take_doubtful(take):
+def test_a_wrong_camera_makes_every_person_of_the_take_doubtful(take):
     quality_csv = take["quality_csv"]
     text = quality_csv.read_text().replace("p1,whole,,,,doubtful", "p1,whole,,,,good")
     way = ",".join(report_made.WAY.values())
     others = [line for line in text.splitlines() if not line.startswith(f"{way},all,all,whole")]
-    for cause, expected in (("detection", "good"), ("calibration", "doubtful")):
-        row = f"{way},all,all,whole,,,,doubtful,{cause},Look."
-        quality_csv.write_text("\n".join([*others, row]) + "\n")
-        rows = study_table.of_take(**take, labels=LABELS, provenance="run/a.json")
-        assert set(rows["quality"]) == {expected}
+    wrong = ("calibration", "clock", "exchanged")
+    expected = dict.fromkeys(wrong, "doubtful") | dict.fromkeys(("detection", "identity"), "good")
+    for cause, quality in expected.items():
+        for verdict in ("doubtful", "failed"):  # failed: for another person
+            row = f"{way},all,all,whole,,,,{verdict},{cause},Look."
+            quality_csv.write_text("\n".join([*others, row]) + "\n")
+            rows = study_table.of_take(**take, labels=LABELS, provenance="run/a.json")
+            assert set(rows["quality"]) == {quality}
 
 
 def test_what_nobody_judged_has_no_verdict_and_is_read_back_as_it_was(take, tmp_path):

@@ -64,6 +64,25 @@ def test_a_camera_that_moves_meanwhile_is_named(change, reason):
     assert "\n" not in message and "film it again" in message
 
 
+@pytest.mark.parametrize("after", [6, 10, 12])
+def test_a_knock_in_the_later_half_of_a_take_is_told(after):
+    """The median of all 25 pictures is that before the knock."""
+    take = [texture(0)] * (25 - after) + [moved(texture(0), shift_px=(5, 0))] * after
+    static_picture.check_still("left", texture(0), static_picture.temporal_median(take), **LIMITS)
+    with pytest.raises(InputError, match=r"last third of left\.mp4, found it shifted by 5\.\d px"):
+        static_picture.check_kept_still("left", "left.mp4", take, **LIMITS)
+
+
+def test_a_take_is_no_knock_where_people_stand_still_for_a_third_or_hide_the_background():
+    stands = [texture(0).copy() for _ in range(25)]
+    for picture in stands[:9]:
+        picture[100:200, 100:160] = (200, 30, 30)
+    static_picture.check_kept_still("left", "left.mp4", stands, **LIMITS)
+    hidden = [np.zeros_like(texture(0))] * 9 + [texture(0)] * 16
+    static_picture.check_kept_still("left", "left.mp4", hidden, **LIMITS)
+    static_picture.check_kept_still("left", "left.mp4", stands[:2], **LIMITS)
+
+
 def test_small_movements_pass():
     found = static_picture.check_still(
         "left", texture(0), moved(texture(0), (0.5, -0.5), 1.001), **LIMITS

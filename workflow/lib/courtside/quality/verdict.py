@@ -10,7 +10,16 @@ from courtside.quality import causes, measures
 from courtside.quality.calibration_doubts import Doubts
 from courtside.quality.seen import Seen, disagreement, shown, without
 from courtside.reconstruction.association import associate
-from courtside.study.execution.verdicts import ALL, COLUMNS, DOUBTFUL, FAILED, GOOD, ORDER, WHOLE
+from courtside.study.execution.verdicts import (
+    ALL,
+    COLUMNS,
+    DOUBTFUL,
+    FAILED,
+    GOOD,
+    ORDER,
+    WHOLE,
+    WRONG_CAMERA,
+)
 
 AGREES = "it agrees with the other cameras"
 ANY = "another of the cameras that disagree may be the wrong one"
@@ -156,7 +165,10 @@ def _uncertain(judged: dict[int, list[dict]], doubts: Doubts) -> dict[int, list[
         for at, (whole, *rows) in judged.items()
         if whole["verdict"] != GOOD
         and not doubts.of(whole["camera"])
-        and any(row["measure"] == "reprojection" and row["verdict"] != GOOD for row in rows)
+        and (
+            whole["cause"] == causes.CLOCK
+            or any(row["measure"] == "reprojection" and row["verdict"] != GOOD for row in rows)
+        )
     ]
     if len(wrong) < 2 or doubts.by_check:
         return judged
@@ -240,6 +252,8 @@ def _camera(seen: Seen, at: int, agreed: bool, doubts: Doubts) -> list[dict]:
     theirs = ("accepted", "reprojection") if agreed else ("accepted",) if seen.out else ()
     counted = [row for row in rows if row["measure"] not in theirs]
     verdict = worst([row["verdict"] for row in counted])
+    if verdict == GOOD and (late := causes.late(seen, at)):
+        return [_whole(name, ALL, DOUBTFUL, late.name, f"Camera {name}: {late.sentence}."), *rows]
     if verdict == GOOD:
         return [_whole(name, ALL, GOOD, "", f"Camera {name}: {AGREES}."), *rows]
     limit, others = OF_CAMERA["found"].doubtful, bool(doubts.by_check)
@@ -298,5 +312,8 @@ def _take(cameras: list[dict], persons: list[dict], doubts: Doubts) -> dict:
     parts += [f"The calibration is in doubt: {'; '.join(doubts.shared)}."] * bool(doubts.shared)
     known = [row["cause"] for row in named if row["cause"] != causes.UNKNOWN]
     known += [causes.CALIBRATION] * bool(doubts.shared)
-    cause = max(known, key=known.count) if known else causes.UNKNOWN
+    # However many cameras have another fault, a wrong one spoils whatever is measured.
+    measured = any(row["verdict"] != FAILED for row in persons)
+    wrong = [cause for cause in known if measured and cause in WRONG_CAMERA] or known
+    cause = max(wrong, key=wrong.count, default=causes.UNKNOWN)
     return _whole(ALL, ALL, verdict, cause, " ".join(parts))

@@ -8,7 +8,7 @@ import pandas as pd
 from courtside.records import tables
 from courtside.study.errors import StrPath
 from courtside.study.execution import files, verdicts
-from courtside.study.execution.verdicts import ALL, CALIBRATION, ORDER, WAY, WHOLE
+from courtside.study.execution.verdicts import ALL, DOUBTFUL, GOOD, ORDER, WAY, WHOLE, WRONG_CAMERA
 
 KEY = ("session", "take", *WAY)
 MEASURED = ("person", "measure", "value", "sigma", "sigma_camera", "unit", "n", "definition")
@@ -42,7 +42,7 @@ def of_take(
 
 
 def _of_persons(quality_csv: StrPath, labels: Mapping[str, str]) -> dict[str, str]:
-    """Return the verdict on each person, measured in one way: no better than its calibration's."""
+    """Return the verdict on each person, measured in one way: at best doubtful by wrong cameras."""
     whole = [
         row
         for row in verdicts.read(quality_csv)
@@ -50,9 +50,10 @@ def _of_persons(quality_csv: StrPath, labels: Mapping[str, str]) -> dict[str, st
         and row["camera"] == ALL
         and all(row[key] == labels[key] for key in WAY)
     ]
-    least = [row["verdict"] for row in whole if row["cause"] == CALIBRATION]
+    wrong = any(row["cause"] in WRONG_CAMERA for row in whole)
+    least = DOUBTFUL if wrong else GOOD
     return {
-        row["person"]: max([row["verdict"], *least], key=ORDER.index)
+        row["person"]: max(row["verdict"], least, key=ORDER.index)
         for row in whole
         if row["person"] != ALL
     }

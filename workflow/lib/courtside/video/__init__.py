@@ -6,6 +6,6 @@ glance: a quick look: size, frames, rate, the first picture made small.
 writer: write_video (H.264, the same bytes for the same pictures, even or uneven times).
 chapters: join (of a recording that its camera has cut up).
 images, walk_frames: read, name_order; frames, spread, extract, read_photo (of video or photos).
-static_picture: temporal_median, static_picture, check_still, check_light.
+static_picture: temporal_median, static_picture, check_still, check_kept_still, check_light.
 camera_movement, shake_tracking: movement (between two pictures), measure_take (in every frame).
 """

@@ -11,6 +11,7 @@ from courtside.video.camera_movement import MIN_MATCHES, Movement, movement, unk
 BAND = 65536  # values of the median at a time: those of 25 pictures fit into the cache
 TAKE = "its static picture and in its take"
 AGAIN = "film the static picture and the walk again with the camera as in the take"
+KNOCKED = "end the take before it with `trim_s`, or state `steady: true` to measure the movement"
 # ASSUME: a picture is too dark if this share of its pixels is below this level in all channels.
 BLACK_LEVEL, BLACK_SHARE = 20, 0.8
 
@@ -132,6 +133,23 @@ def static_picture(
             **limits,
         )
     return image, found
+
+
+def check_kept_still(
+    camera: str, source: StrPath, images: Sequence[NDArray], **limits: float
+) -> None:
+    """Check that a fixed camera did not move during a take, as `static_picture` does.
+
+    The median of a whole take shows nothing of a knock in its later half. If people leave too
+    little of the background in a third, nothing is checked.
+    """
+    third = len(images) // 3
+    if not third:
+        return
+    first, last = temporal_median(images[:third]), temporal_median(images[-third:])
+    if movement(first, last).known:
+        where = f"the first and the last third of {source}"
+        check_still(camera, first, last, where=where, mend=KNOCKED, **limits)
 
 
 def check_light(path: StrPath, image: NDArray) -> None:

@@ -9,7 +9,9 @@ from courtside.study.errors import InputError, StrPath, reading
 GOOD, DOUBTFUL, FAILED = ORDER = ("good", "doubtful", "failed")
 ALL = "all"  # in place of a camera or a person
 WHOLE = "whole"  # in place of a measure: the verdict on a camera, a person or the take
-CALIBRATION = "calibration"  # a cause: the cameras, and with them whatever they measure
+CALIBRATION, CLOCK, EXCHANGED = "calibration", "clock", "exchanged"
+# Causes that a camera is wrong, and with it whatever the take measures; the others cost keypoints.
+WRONG_CAMERA = (CALIBRATION, CLOCK, EXCHANGED)
 WAY = ("calibration", "fusion", "model")  # how the take was measured: the first columns
 COLUMNS = ["camera", "person", "measure", "value", "doubtful_from", "failed_from", "verdict"]
 COLUMNS += ["cause", "sentence"]
