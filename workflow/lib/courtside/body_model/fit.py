@@ -173,6 +173,15 @@ def spread(model: Model, shape: Shape, data: Data, pose: Pose) -> Spread:
     return Spread(total, total @ noise @ total)
 
 
+def from_prior(model: Model, pose: Pose, spread: Spread) -> NDArray:
+    """Return the part (T, D, D) of the coordinates' covariance that is that of their priors.
+
+    It is the variance of what no point shows; the rest is that of the points' errors and lengths.
+    """
+    own = spread.total[:, : len(model.sigma), : len(model.sigma)]
+    return own @ _prior(model, pose)[0] @ own
+
+
 def derivatives(
     model: Model, shape: Shape, pose: Pose, with_lengths: bool = False
 ) -> tuple[NDArray, NDArray]:
