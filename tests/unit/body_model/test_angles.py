@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from courtside.body_model import angles, pose, segments
+from courtside.body_model import angles, fit, pose, segments
 from fixtures.people import moving_model
 
 MODEL = segments.model()
@@ -75,3 +75,20 @@ def test_standard_deviations_are_those_of_small_errors():
     found = np.std(drawn, axis=0)
     for name, row in zip(DRAWN, found, strict=True):
         np.testing.assert_allclose(row, stated[name][1], rtol=0.3)
+
+
+def test_what_only_the_prior_determines_is_as_uncertain_as_the_prior():
+    """No point shows the forearm's rotation; the knee is known as well as its noise says."""
+    true, body = moving_model.moving(6), moving_model.body()
+    xyz = moving_model.points(true).xyz[0]
+    noise = np.broadcast_to(0.005**2 * np.eye(3), (*xyz.shape, 3))
+    data = fit.Data(xyz, np.linalg.inv(noise + 0.015**2 * np.eye(3)), noise)
+    seen = angles.of_fit(MODEL, true, fit.spread(MODEL, body, data, true))
+    none = fit.Data(xyz, 0 * data.information, noise)
+    lost = angles.of_fit(MODEL, true, fit.spread(MODEL, body, none, true))
+    for found in (seen, lost):
+        np.testing.assert_allclose(found["right_forearm_pronation"][1], 45, rtol=0.02)
+        np.testing.assert_allclose(found["right_wrist_flexion"][1], 30, rtol=0.02)
+    assert seen["right_knee_flexion"][1].max() < 5
+    assert lost["right_knee_flexion"][1] == pytest.approx(180)  # anything
+    np.testing.assert_allclose(lost["trunk_bending"][1], 12, rtol=0.02)

@@ -82,6 +82,20 @@ def test_the_weight_of_second_differences_passes_half_the_power_at_the_cut_off()
     assert np.std(passed[100:300]) / np.std(wave[100:300]) == pytest.approx(2**-0.5, abs=0.01)
 
 
+def test_who_is_away_for_most_of_a_take_is_smoothed_as_ever():
+    true, body = moving_model.moving(120), moving_model.body()
+    one = data(moving_model.points(true, noise_m=0.015), 0.015)
+    information = one.information.copy()
+    information[35:105] = 0.0  # 58 % of the frames
+    shaken = []
+    for said in (one.information, information):
+        found = fit.fit(MODEL, body, replace(one, information=said), true, HZ, *HOW)
+        error = np.c_[found.root, found.angle[:, 3:]] - np.c_[true.root, true.angle[:, 3:]]
+        shaken.append(np.std(np.diff(error[:30], 2, axis=0), axis=0))
+    knee = moving_model.column("left_tibia")
+    np.testing.assert_allclose(shaken[1][[0, 1, 2, knee]], shaken[0][[0, 1, 2, knee]], rtol=0.15)
+
+
 def test_a_knee_does_not_bend_backwards_and_a_lost_limb_is_uncertain():
     true = moving_model.moving()
     body, points = moving_model.body(), moving_model.points(true)

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy
 
 from courtside.footwork import feet, hops
 from courtside.footwork.stances import Stance
@@ -78,6 +79,54 @@ def test_a_gap_or_a_skeleton_without_heels_gives_no_hop():
     assert hops.find(replace(points, joints=joints), 0) is None
     slow = replace(points, time_s=points.time_s * 2)
     assert hops.find(slow, 0) is None
+
+
+def jumping(flight_s, rate_hz, ahead_m_s=0.0, push_m=0.15):
+    """Return filtered keypoints of a jump of both feet that leaves the floor at 2 s.
+
+    The body is pushed up over `push_m`; heels leave the floor before the toes, and land after them.
+    """
+    time_s = np.arange(4 * rate_hz) / rate_hz
+    leaves_m_s, fallen_s = scipy.constants.g * flight_s / 2, np.clip(time_s - 2.0, 0, flight_s)
+    rise = leaves_m_s * fallen_s - scipy.constants.g / 2 * fallen_s**2
+    push_s = 2 * push_m / leaves_m_s
+    ends = [2.0 - push_s - 0.5, 2.0 - push_s, 2.0, 2.0 + flight_s]
+    ends += [ends[-1] + push_s, ends[-1] + push_s + 0.5]
+    lands = leaves_m_s * np.array([0, 0, 1, -1, 0, 0])
+    low = scipy.interpolate.CubicHermiteSpline(ends, [0, -push_m, 0, 0, -push_m, 0], lands)
+    inside = (time_s >= ends[0]) & (time_s <= ends[-1]) & (rise == 0)
+    crouch = np.where(inside, low(time_s), 0.0)
+    roll = np.interp(time_s, [1.88, 2.0, 2.0 + flight_s, 2.08 + flight_s], [0, 1, 1, 0])
+    height = 1.45 + rise + crouch + 0.05 * roll
+    neck = np.column_stack([0 * rise, ahead_m_s * fallen_s, height])
+    xyz, _ = footwork.body(neck, time_s)
+    for side, x in (("left", -0.15), ("right", 0.15)):
+        for part, ahead, high, rolls in (
+            ("ankle", 0.0, 0.08, 0.07), ("heel", -0.05, 0.03, 0.08), ("foot_index", 0.15, 0.02, 0.0)
+        ):  # fmt: skip
+            place = np.column_stack([x + 0 * rise, ahead + neck[:, 1], high + rise + rolls * roll])
+            xyz[:, walker.SKELETON.index(f"{side}_{part}")] = place
+    made = footwork.record(xyz, time_s, 0.004, 0.0, np.random.default_rng(0))
+    return skeleton_filter.smooth(made, CUTOFFS, 4)
+
+
+@pytest.mark.parametrize("rate_hz", [30, 60, 120])
+@pytest.mark.parametrize(
+    ("flight_s", "ahead_m_s"), [(0.36, 0), (0.44, 0), (0.5, 0), (0.6, 0), (0.5, 2), (0.6, 2)]
+)
+def test_a_jump_lasts_as_long_as_its_flight(flight_s, ahead_m_s, rate_hz):
+    _, steps, events = feet.find(jumping(flight_s, rate_hz, ahead_m_s), CUTOFFS)
+    (row,) = events[events.foot == "both"].to_dict("records")
+    assert row["event"] == "jump"
+    assert row["stop_s"] - row["start_s"] == pytest.approx(flight_s, abs=0.036)
+    sigma_s = np.hypot(row["start_sigma_s"], row["stop_sigma_s"])
+    assert abs(row["stop_s"] - row["start_s"] - flight_s) < 1.645 * sigma_s
+    assert (steps.kind == "jump").sum() == 2
+
+
+def test_a_low_hop_is_no_jump():
+    _, _, events = feet.find(jumping(0.2, 60), CUTOFFS)
+    assert events.event.tolist() == ["split_step"]
 
 
 HOP = hops.Hop(1.0, 0.01, 1.15, 0.012)

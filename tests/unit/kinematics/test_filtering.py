@@ -23,6 +23,36 @@ def test_short_gaps_are_filled_and_marked_long_ones_left():
     np.testing.assert_array_equal(filled.xyz[0, 6:100], xyz[6:100])
 
 
+def filled_error(rate_hz, noise_m):
+    """Return the error (m) of frames in gaps of 0.2 s of a point that sways at 1.3 m/s at most."""
+    time_s = np.arange(round(20 * rate_hz)) / rate_hz
+    true = 0.4 * np.stack([np.sin(3.2 * time_s + k) for k in range(3)], axis=1)[:, None]
+    seen = true + np.random.default_rng(0).normal(0, noise_m, true.shape)
+    lost = (time_s % 0.8 >= 0.4) & (time_s % 0.8 < 0.6 - 1e-9)
+    seen[lost] = np.nan
+    filled = filtering.fill_gaps(replace(record(seen), time_s=time_s), max_gap_s=0.21).xyz[0]
+    assert np.isfinite(filled[lost]).all()
+    return np.sqrt(np.mean(np.sum((filled - true)[lost] ** 2, axis=-1)))
+
+
+def test_more_frames_do_not_make_filled_gaps_worse():
+    usual = filled_error(30, 0.01)
+    assert usual < 0.04
+    for rate_hz, share in ((50, 1.1), (60, 1.1), (120, 0.8), (240, 0.8), (1000, 0.8)):
+        assert filled_error(rate_hz, 0.01) < share * usual
+    for rate_hz in (10, 30, 240):
+        assert filled_error(rate_hz, 0.0) < 0.02
+
+
+def test_a_frame_between_two_gaps_is_enough_to_fill_both():
+    xyz = wave(0.5)
+    lost = np.r_[100:106, 107:113, 1:5]
+    holed = xyz.copy()
+    holed[lost] = np.nan
+    filled = filtering.fill_gaps(record(holed), max_gap_s=0.1).xyz[0]
+    np.testing.assert_allclose(filled[lost], xyz[lost], atol=0.02)
+
+
 def test_frames_that_are_known_far_worse_than_the_rest_are_left_out():
     points = record(np.zeros((40, 3, 3)))
     points.covariance_2d[0, :5] *= 100  # two cameras from nearly one side: ten times the deviation

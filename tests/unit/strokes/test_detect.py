@@ -98,6 +98,23 @@ def test_who_is_lost_now_and_then_in_ready_position_plays_no_stroke(rate_hz):
         assert detect.playing_hand(signals.of_person(points, 0)) is None
 
 
+@pytest.mark.parametrize("rate_hz", [30, 60, 120])
+def test_a_dip_of_speed_in_a_run_is_no_stop(rate_hz):
+    """In a run that slows a little the left arm swings; at the stop the right hand reaches."""
+    time_s = np.arange(4 * rate_hz) / rate_hz
+    places = np.repeat(ready(rate_hz, 0).xyz[0, rate_hz : rate_hz + 1], len(time_s), axis=0)
+    speed = scipy.interpolate.PchipInterpolator(
+        [0, 1.0, 1.2, 1.4, 2.0, 2.5, 3.0, 4.0], [1.7, 1.7, 1.55, 1.7, 1.7, 0.1, 1.0, 1.0]
+    )
+    for side, at_s, ahead in (("left", 1.2, 0.6), ("right", 2.5, 0.2)):
+        swing = ahead * np.exp(-(((time_s - at_s) / 0.3) ** 2))
+        wrist = strokes_made.JOINTS.index(f"{side}_wrist")
+        places[:, wrist, 0] = places[:, strokes_made.JOINTS.index("left_hip"), 0] + 0.1 + swing
+    places[..., 0] += speed.antiderivative()(time_s)[:, None]
+    found = signals.of_person(strokes_made.record(time_s, places), 0)
+    assert detect.playing_hand(found) == "right"
+
+
 def test_the_height_of_a_wrist_that_is_lost_at_the_hit_is_empty():
     points, _ = strokes_made.take(seed=1)
     time_s = np.arange(4 * len(points.time_s) - 3) / (4 * strokes_made.RATE_HZ)

@@ -14,8 +14,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.body_model import fit, segments
 from courtside.body_model import pose as poses
-from courtside.body_model import segments
 from courtside.body_model.fit import Spread
 from courtside.body_model.pose import Pose
 from courtside.body_model.segments import SIDES, Model
@@ -64,7 +64,7 @@ def measure(model: Model, pose: Pose, covariance: NDArray) -> dict[str, tuple[ND
                 column = model.first[at] + k
                 mirrored = -1 if side == "left" and model.joints[at].axes[k] != 2 else 1
                 value = sign * mirrored * pose.angle[:, column]
-                spread = np.sqrt(covariance[:, column, column])
+                spread = np.sqrt(np.minimum(covariance[:, column, column], np.pi**2))
                 found[_named(side, angle)] = np.degrees(value), np.degrees(spread)
         elif part in FREE:
             found |= dict(_of_rotation(model, at, turned, world, covariance))
@@ -72,10 +72,14 @@ def measure(model: Model, pose: Pose, covariance: NDArray) -> dict[str, tuple[ND
 
 
 def of_fit(model: Model, pose: Pose, spread: Spread) -> dict[str, tuple[NDArray, NDArray]]:
-    """Return the angles of a fit; of variance beyond the noise a share counts."""
+    """Return the angles of a fit; of the variance of the network's errors a share counts.
+
+    That of the prior counts in full: where the points do not show an angle, nothing else says it.
+    """
     own = slice(0, len(model.sigma))  # without the lengths, whose errors these contain
     total, noise = spread.total[:, own, own], spread.noise[:, own, own]
-    return measure(model, pose, noise + NETWORK_SHARE * (total - noise))
+    certain = noise + fit.from_prior(model, pose, spread)
+    return measure(model, pose, certain + NETWORK_SHARE * (total - certain))
 
 
 def names() -> tuple[str, ...]:

@@ -84,11 +84,19 @@ def stiffness(normal: NDArray, cutoff_hz: NDArray, rate_hz: float, sigma: NDArra
     A series measured with steady information I and fitted with weight w on its second differences
     passes 1 / (1 + w (2 sin(pi f / rate))^4 / I) of the frequency f: a zero-lag Butterworth filter
     of effective order 4 (Eilers 2003), whose gain is 1 / sqrt(2) at the cut-off with this w. I is
-    the median over frames (T, D, D) of the information of each degree of freedom.
+    the median over frames (T, D, D) that show the person of the information of each degree of
+    freedom.
     """
-    information = np.median(np.diagonal(normal, axis1=1, axis2=2), axis=0) + 1 / sigma**2
+    each = np.diagonal(normal[_shown(normal)], axis1=1, axis2=2)
+    information = np.median(each, axis=0) + 1 / sigma**2
     gain = (2 * np.sin(np.pi * np.minimum(cutoff_hz / rate_hz, 0.5))) ** 4
     return (np.sqrt(2) - 1) * np.maximum(information, 1e-6) / gain
+
+
+def _shown(normal: NDArray) -> NDArray:
+    """Return which frames (T,) have a point: each tells where the root is. All, if none has."""
+    shown = normal[:, 0, 0] > 0
+    return shown if shown.any() else ~shown
 
 
 def fit(
@@ -110,6 +118,7 @@ def fit(
     pose, weights = start, None
     for _ in range(steps):
         normal, right, _ = _linearised(model, shape, data, pose)
+        shown = _shown(normal)
         if weights is None:
             weights = stiffness(normal, cutoff_hz, rate_hz, model.sigma)
         below = np.zeros_like(normal[1:])
@@ -120,7 +129,7 @@ def fit(
             normal, right = normal + more, right + pull
         step = _solve(model, pose, normal, right, weights, below)
         pose = poses.moved(model, pose, np.clip(step, -LONGEST, LONGEST))
-        if np.median(np.abs(step), axis=0).max() < SETTLED:
+        if np.median(np.abs(step[shown]), axis=0).max() < SETTLED:
             break
     return pose
 
@@ -162,6 +171,15 @@ def spread(model: Model, shape: Shape, data: Data, pose: Pose) -> Spread:
     normal[:, known, known] += 1 / shape.length_sigma_m**2
     total = np.linalg.inv(normal)
     return Spread(total, total @ noise @ total)
+
+
+def from_prior(model: Model, pose: Pose, spread: Spread) -> NDArray:
+    """Return the part (T, D, D) of the coordinates' covariance that is that of their priors.
+
+    It is the variance of what no point shows; the rest is that of the points' errors and lengths.
+    """
+    own = spread.total[:, : len(model.sigma), : len(model.sigma)]
+    return own @ _prior(model, pose)[0] @ own
 
 
 def derivatives(

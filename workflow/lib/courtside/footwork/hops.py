@@ -1,9 +1,10 @@
-"""Hops of both feet at once, as of a split step: short flights that single feet hardly show.
+"""Hops and jumps of both feet at once: flights, which single feet hardly show or show too long.
 
-A low hop lasts three to six frames, and lifts the feet by a few centimetres: too short and too low
-for the speeds and heights of one foot. But the body falls freely meanwhile: the hips rise fastest
-as the feet leave the floor and fall fastest as they land, both feet are up at the same time, and
-the body goes hardly anywhere.
+A low hop, as of a split step, lasts three to six frames, and lifts the feet by a few centimetres:
+too short and too low for the speeds and heights of one foot. But the body falls freely meanwhile:
+the hips rise fastest as the feet leave the floor and fall fastest as they land, both feet are up at
+the same time, and the body goes hardly anywhere. Feet that jump leave and land at 2 m/s and more,
+where the contact of single feet, made for steps, is 0.03 to 0.05 s off at either end.
 """
 
 from collections.abc import Iterator, Sequence
@@ -24,12 +25,16 @@ LEAST_FRAMES = 9  # ASSUME: of a run of known frames in which hops are looked fo
 # Chosen on rallies of the development bodies, in which all hops and nothing else pass.
 DROP_M_S = 0.5  # from the fastest rise of the hips to their fastest fall
 LASTS_S = (0.04, 0.42)  # between these two, in filtered skeletons
+# ASSUME: a jump lasts up to this long, 1 m high; meanwhile the hips fall at this share of g or
+# more. Made jumps of 0.4 to 0.7 s have 0.83 to 1; no development take has such a fall.
+JUMP_LASTS_S, FALLS = 0.9, 0.7
 UP_M = 0.012  # both feet at once, over where they were before and after
 TOGETHER_S = 0.07  # the feet are highest within this of one another
 TRAVEL_M_S = 1.5  # of the hips, mean; steps of a run look alike otherwise
 AROUND_S = 0.1  # before and after: where the feet stand, and where their speeds are looked for
 # The means of hips' and feet's times are early (positive) by this, with these standard deviations.
 EARLY_S, SIGMA_S = {"off": -0.006, "land": 0.009}, {"off": 0.010, "land": 0.012}
+JUMP_SIGMA_S = 0.02  # ASSUME: of longer ones; made jumps of 0.4 to 0.7 s err by up to 0.03 s
 LEAST_HZ = 20.0  # ASSUME: at lower frame rates a hop has too few frames
 USUAL_HZ = 30.0  # frame rate of those rallies; errors grow with the frame interval
 NEAR_S = 0.15  # an end or onset of a stance this near to a hop is that hop's
@@ -47,7 +52,7 @@ class Hop:
 
 
 def find(points: Keypoints3D, person: int) -> list[Hop] | None:
-    """Return the hops of a person, by the person's index, from filtered skeletons.
+    """Return the hops and jumps of a person, by the person's index, from filtered skeletons.
 
     None: they cannot be seen, without heels, at a low frame rate or in fewer than `LEAST_FRAMES`.
     """
@@ -93,9 +98,11 @@ def _flights(run: _Run) -> Iterator[tuple[int, int]]:
 
 def _is_hop(run: _Run, top: int, low: int) -> bool:
     rising, inside, near = run.velocity[0, :, 2], slice(top, low + 1), round(AROUND_S * GRID_HZ)
-    if not LASTS_S[0] <= (low - top) / GRID_HZ <= LASTS_S[1]:
+    lasts_s, drop_m_s = (low - top) / GRID_HZ, rising[top] - rising[low]
+    if not LASTS_S[0] <= lasts_s <= JUMP_LASTS_S or drop_m_s < DROP_M_S:
         return False
-    if rising[top] - rising[low] < DROP_M_S:
+    is_long = _is_long(top, low)
+    if is_long and drop_m_s < FALLS * scipy.constants.g * lasts_s:
         return False
     height = run.place[1:, :, 2]
     before = height[:, max(top - near, 0) : top + 1].min(axis=1)
@@ -104,7 +111,12 @@ def _is_hop(run: _Run, top: int, low: int) -> bool:
     apart_s = abs(np.diff(up.argmax(axis=1))[0]) / GRID_HZ
     travel = np.linalg.norm(run.velocity[0, inside, :2], axis=1).mean()
     together = up.min(axis=0).max() >= UP_M and apart_s <= TOGETHER_S
-    return bool(together and travel <= TRAVEL_M_S)
+    return bool(together and (is_long or travel <= TRAVEL_M_S))
+
+
+def _is_long(top: int, low: int) -> bool:
+    """Return whether a flight is longer than a hop: its free fall shows it, wherever it goes."""
+    return (low - top) / GRID_HZ > LASTS_S[1]
 
 
 def _timed(run: _Run, top: int, low: int, slower: float) -> Hop:
@@ -119,7 +131,8 @@ def _timed(run: _Run, top: int, low: int, slower: float) -> Hop:
     off_s, land_s = (
         float(run.time_s[0] + at / GRID_HZ + EARLY_S[key]) for key, at in times.items()
     )
-    return Hop(off_s, slower * SIGMA_S["off"], land_s, slower * SIGMA_S["land"])
+    sigma_s = dict.fromkeys(SIGMA_S, JUMP_SIGMA_S) if _is_long(top, low) else SIGMA_S
+    return Hop(off_s, slower * sigma_s["off"], land_s, slower * sigma_s["land"])
 
 
 def cut(stances: Sequence[Stance], hops: Sequence[Hop]) -> list[Stance]:

@@ -27,8 +27,9 @@ def tables(
     """Return the steps and the events of a take: rows of `records.footwork`.
 
     `people` gives by person the stances of both feet, the length of the leg (m; NaN: unknown, and
-    no stance is called a lunge), and the hops, which are split steps: then no other flight is one.
-    Where these are None, flights of the stances alone are.
+    no stance is called a lunge), and the hops, which are split steps, or jumps if longer than
+    `JUMP_S`: then no other flight is a split step. Where these are None, flights of the stances
+    alone are.
     """
     steps: list[tuple] = []
     events: list[tuple] = []
@@ -43,10 +44,11 @@ def tables(
         for left, right, kind in flights:
             kinds |= {("left", left): kind, ("right", right): kind}
         kinds |= {
-            (side, at): "split_step"
+            (side, at): _kind(hop)
             for side in feet
             for at, stance in enumerate(feet[side])
-            if any(stance.onset_s == hop.land_s for hop in hops)
+            for hop in hops
+            if stance.onset_s == hop.land_s
         }
         own = []
         for side in feet:
@@ -94,14 +96,18 @@ def _is_of(feet: Feet, flight: tuple[int, int, str], hops: Sequence[Hop]) -> boo
     return any(abs(landed_s - hop.land_s) <= NEAR_S for hop in hops)
 
 
+def _kind(hop: Hop) -> str:
+    return "jump" if hop.land_s - hop.off_s > JUMP_S else "split_step"
+
+
 def _hop_event(person: str, hop: Hop, feet: Feet) -> tuple:
-    """Return the row of a split step: it lands where the feet stand next."""
+    """Return the row of a split step or jump: it lands where the feet stand next."""
     after = [next((one for one in feet[side] if one.until_s > hop.land_s), None) for side in feet]
     landing = [one for one in after if one]
     place = np.mean([one.xy for one in landing], axis=0) if landing else np.full(2, np.nan)
     times = hop.off_s, hop.off_sigma_s, hop.land_s, hop.land_sigma_s
     quality = min((one.quality for one in landing), default=np.nan)
-    return person, "split_step", "both", *times, *map(float, place), quality
+    return person, _kind(hop), "both", *times, *map(float, place), quality
 
 
 def _flights(feet: Feet) -> list[tuple[int, int, str]]:

@@ -5,6 +5,7 @@ Nothing is changed in place.
 
 from dataclasses import replace
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 import scipy
@@ -13,6 +14,10 @@ from numpy.typing import NDArray
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints3D
 
+# Of known frames beside a gap: of those next to it, and of those beyond, whose mean places count;
+# below 40 Hz it is one frame each. Chosen on true joints of the development bodies with noise of
+# 0 to 10 mm: 50 to 240 Hz, gaps of 0.1 and 0.2 s.
+NEXT_S, BEYOND_S = 0.02, 0.05
 UNCERTAIN_TIMES = 4.0  # ASSUME: times the usual standard deviation
 PAD_PERIODS = 1.0  # ASSUME: mirrored padding at both ends, in periods of the cut-off
 
@@ -21,20 +26,39 @@ def fill_gaps(points: Keypoints3D, max_gap_s: float) -> Keypoints3D:
     """Interpolate gaps of at most `max_gap_s`, cubically; longer ones and those at the ends stay.
 
     `points` has uniform times. Filled values have reason INTERPOLATED and no covariance. They are
-    on a cubic Hermite spline through the neighbours (Fritsch & Butland 1984, as scipy's PCHIP),
-    which does not overshoot.
+    on a cubic Hermite spline (Fritsch & Butland 1984, as scipy's PCHIP), which does not overshoot,
+    through two places on either side, the means of the known frames within `NEXT_S` and of those of
+    `BEYOND_S` after them: the slope between single frames is mostly noise at high frame rates.
     """
     xyz, reason = points.xyz.copy(), points.reason.copy()
-    most = int(np.floor(max_gap_s * points.rate_hz + 1e-6)) if len(points.time_s) > 1 else 0
+    rate_hz = points.rate_hz if len(points.time_s) > 1 else 0.0
+    most, *some = (int(np.floor(s * rate_hz + 1e-6)) for s in (max_gap_s, NEXT_S, BEYOND_S))
+    near, far = (max(number, 1) for number in some)
     for person, joint in np.ndindex(xyz.shape[0], xyz.shape[2]):
         line = xyz[person, :, joint]
         known = np.isfinite(line).all(axis=1)
         holes = _short_gaps(~known, most)
-        if holes.any():
-            spline = scipy.interpolate.PchipInterpolator(points.time_s[known], line[known])
-            line[holes] = spline(points.time_s[holes])
-            reason[person, holes, joint] = missing_reason.INTERPOLATED
+        for start, stop in runs(holes):
+            spline = _across(points.time_s, line, np.flatnonzero(known), start, near, far)
+            line[start:stop] = spline(points.time_s[start:stop])
+        reason[person, holes, joint] = missing_reason.INTERPOLATED
     return replace(points, xyz=xyz, reason=reason)
+
+
+def _across(
+    time_s: NDArray, line: NDArray, known: NDArray, start: int, near: int, far: int
+) -> scipy.interpolate.PchipInterpolator:
+    """Return a spline across the gap from `start` on, through means of near and far frames.
+
+    `known` are the indices of the known frames of the line (T, 3), on both sides. `near` and `far`
+    are how many of them count on each.
+    """
+    after = int(np.searchsorted(known, start))
+    edges = np.array([-near - far, -near, 0, near, near + far]) + after
+    parts = [known[first:last] for first, last in pairwise(np.maximum(edges, 0))]
+    parts = [part for part in parts if len(part)]
+    places = [line[part].mean(axis=0) for part in parts]
+    return scipy.interpolate.PchipInterpolator([time_s[part].mean() for part in parts], places)
 
 
 def leave_out_uncertain(points: Keypoints3D) -> Keypoints3D:

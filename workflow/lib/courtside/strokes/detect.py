@@ -143,9 +143,11 @@ def _extremum(
 
 
 def playing_hand(found: Signals) -> str | None:
-    """Return the hand that is in front when the trunk stops; None if the player does not move.
+    """Return the hand that is in front when the trunk stops; None if it never does so after a run.
 
-    The racket hand reaches in the direction of movement. Tested on all virtual players.
+    The racket hand reaches in the direction of movement. In a run both hands are in front in turn;
+    therefore a mere dip of the speed says nothing. One stop alone says little: in one of 20 virtual
+    takes with hits it shows the wrong hand.
     """
     speed, sure, rate_hz = found.trunk.speed, found.trunk.sure_speed, found.rate_hz
     stops, _ = scipy.signal.find_peaks(
@@ -155,7 +157,7 @@ def playing_hand(found: Signals) -> str | None:
     for stop in stops:
         before = _around(stop, round(0.5 * rate_hz), 0, len(speed))
         fastest = before[np.nanargmax(sure[before])] if np.isfinite(sure[before]).any() else stop
-        if not sure[fastest] >= TRAVEL_M_S:
+        if not (sure[fastest] >= TRAVEL_M_S and speed[stop] <= STOPPED * sure[fastest]):
             continue
         way = found.trunk.velocity[fastest, :2] / speed[fastest]
         for hand in HANDS:
