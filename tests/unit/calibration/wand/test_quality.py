@@ -56,6 +56,15 @@ def test_a_delayed_camera_has_a_warning():
     assert "frames or more late by the movement of the markers" in line
 
 
+def test_lenses_that_are_wrong_at_the_edges_are_named_as_a_cause():
+    xyz = swung(seconds=60, low=(-3, -3, 0.2), high=(3, 3, 2.2))
+    more = np.array([0.07, 0, 0, 0, 0])
+    wrong = {name: replace(lens, dist=lens.dist + more) for name, lens in LENSES.items()}
+    warnings = summary(seen(xyz, sigma_px=0.1), wrong)["warnings"]
+    (line,) = [line for line in warnings if "are correlated" in line]
+    assert "that the lenses are right: given ones up to the edges of the pictures" in line
+
+
 def test_a_wand_of_another_length_has_a_warning_by_clicked_points():
     shorter = replace(WAND, along_m=0.98 * WAND.along_m, sigma_m=1e-3)
     warnings = summary(seen(swung()), wand=shorter, clicks=floor_points())["warnings"]

@@ -104,7 +104,8 @@ def _warnings(found: Found, wand: Wand) -> list[str]:
         lines.append(
             f"wand: residuals of neighbouring frames are correlated (factor "
             f"{found.adjusted.factor:.1f} of the variance); check that the videos are "
-            "synchronised, and that the tracker follows the markers"
+            "synchronised, that the tracker follows the markers, and that the lenses are right: "
+            "given ones up to the edges of the pictures, estimated ones not too wide for k1 k2"
         )
     longer = found.adjusted.state.length
     if abs(longer) > LONGER_SIGMAS * wand.sigma_m / wand.length_m:
