@@ -198,17 +198,18 @@ def _cubic(own: NDArray, values: NDArray, times: NDArray, after: NDArray, gap: f
     `after` (T,) is the index of the first time after each.
     """
     at = after[:, None] + np.arange(-2, 2)
-    there = (at >= 0).all(axis=1) & (at < len(own)).all(axis=1)
+    outside = (at < 0) | (at >= len(own))
     at = np.clip(at, 0, len(own) - 1)
     near = own[at]
-    there &= (np.diff(near, axis=1) <= gap).all(axis=1)
+    there = ~outside.any(axis=1) & (np.diff(near, axis=1) <= gap).all(axis=1)
     found = np.zeros((len(times), values.shape[1]))
     for k in range(4):
         others = np.delete(near, k, axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):  # times twice at the ends
             weight = ((times[:, None] - others) / (near[:, [k]] - others)).prod(axis=1)
-        found += np.where(there, weight, 0.0)[:, None] * values[at[:, k]]
-    return np.where(there[:, None], found, np.nan)
+        found += np.where(there, weight, 0.0).reshape(-1, 1) * values[at[:, k]]
+    found[~there] = np.nan
+    return found
 
 
 def _theirs(path: StrPath, wand: Wand, sizes: Sequence[tuple[int, int]], program: str) -> NDArray:
