@@ -16,6 +16,8 @@ def main(images, lens_toml, *, camera, inner_corners):
     log.logger.info("%s: %d boards, %.2f px", camera, lens.n_used, lens.rms_px)
     for path, why in lens.dropped.items():
         log.logger.info("%s: left out, %s", path, why)
+    for warning in chessboard.warnings(lens, name=camera):
+        log.logger.warning("%s", warning)
     nowhere = np.eye(3, 4)  # a lens has no place
     found = cameras.Camera(camera, lens.size, lens.K, lens.dist, nowhere)
     cameras.write_toml(lens_toml, [found], source=f"chessboard, {lens.n_used} pictures")

@@ -35,7 +35,9 @@ def main(paths, cameras_toml, covariance_npz, quality_json, *, given, names, pla
         court, marked = place_checks.read(*files, list(names), placed)
         clicks = partial(clicked.court_clicks, court, marked, **weights)
     floor = calibration.Floor.of(given)
-    found = calibration.calibrate(wand, seen, sizes, lenses=lenses, floor=floor, clicks=clicks)
+    of_boards = [] if "lenses" in given else list(lenses)
+    world = {"floor": floor, "clicks": clicks}
+    found = calibration.calibrate(wand, seen, sizes, lenses=lenses, of_boards=of_boards, **world)
     report = quality.summary(found, wand, seen, set(lenses))
     if court is not None:
         with about(paths.clicks_csv):

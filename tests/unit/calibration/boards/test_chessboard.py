@@ -174,6 +174,57 @@ def test_lenses_from_action_camera_to_telephoto_are_found(share):
         assert lens.f_sigma_px < 0.02 * f_px
 
 
+def action_boards(f_px):
+    """Return 12 boards before an action camera, whose lens is equidistant, with 0.1 px noise."""
+    places = np.array([[0.06 * (x - 3), 0.06 * (y - 1.5), 0.0] for y in range(4) for x in range(7)])
+    random, xy = np.random.default_rng(0), []
+    while len(xy) < 12:
+        tilt, towards = np.radians(random.uniform(15, 40)), random.uniform(0, 2 * np.pi)
+        turn = tilt * np.array([np.cos(towards), np.sin(towards), 0.0])
+        away = random.uniform(0.3, 0.6)
+        at = away * np.append(random.uniform(-1, 1, 2) * [1.2, 0.6], 1.0)
+        px = action_px(places @ rotations.rotation_from_rodrigues(turn).T + at, f_px)
+        if ((px > 0) & (px < (1919, 1079))).all():
+            xy.append(px + random.normal(0, 0.1, px.shape))
+    paths = tuple(Path(f"{at}.png") for at in range(12))
+    return chessboard.Boards(paths, np.array(xy), (1920, 1080), (7, 4), {})
+
+
+def action_px(xyz, f_px):
+    across = np.linalg.norm(xyz[:, :2], axis=1, keepdims=True)
+    return f_px * np.arctan2(across, xyz[:, 2:]) * xyz[:, :2] / across + [955, 545]
+
+
+@pytest.mark.parametrize(("f_px", "off_px"), [(1400, 0.5), (1200, 2.0)])
+def test_the_lens_of_an_action_camera_is_followed_to_the_edges(f_px, off_px):
+    """With k1 and k2 alone directions are wrong by up to 1 px (91 degrees) and 11 px (106)."""
+    lens = chessboard.calibrate(action_boards(f_px))
+    assert lens.K[0, 0] == pytest.approx(f_px, abs=4 * lens.f_sigma_px, rel=0)
+    assert lens.f_sigma_px < 0.5 and chessboard.warnings(lens) == []
+    x, y = np.meshgrid(np.linspace(-0.5, 0.5, 9), np.linspace(-0.28, 0.28, 5))
+    true = np.column_stack([x.ravel() + 1e-9, y.ravel(), np.ones(45)])
+    px = action_px(true, f_px)
+    found = cv2.undistortPoints(px[:, None], lens.K, lens.dist, None, None, None, (3, 50, 1e-12))
+    found = np.column_stack([found[:, 0], np.ones(45)])
+    true, found = (each / np.linalg.norm(each, axis=1, keepdims=True) for each in (true, found))
+    u, _, v = np.linalg.svd(found.T @ true)  # the best rotation
+    assert f_px * np.quantile(np.linalg.norm(found @ (u @ v) - true, axis=1), 0.95) < off_px
+
+
+def test_boards_that_no_lens_model_follows_have_a_warning():
+    """An action camera of 127 degrees: directions are wrong by up to 2 px, with k3 too."""
+    lens = chessboard.calibrate(action_boards(1000))
+    (line,) = chessboard.warnings(lens, name="left")
+    assert line.startswith("camera left: expected corners of chessboards within 0.3 px of the lens")
+    assert "bends more than k1 k2 k3 follow" in line and "\n" not in line
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_an_ordinary_lens_has_no_k3_and_no_warning(seed):
+    lens = chessboard.calibrate(held(1400, (20, 40), seed))
+    assert lens.dist[2:].tolist() == [0, 0, 0] and chessboard.warnings(lens) == []
+
+
 def test_three_boards_are_too_few(folder, tmp_path):
     some(folder, tmp_path, range(3))
     cv2.imwrite(str(tmp_path / "9.png"), np.zeros(SIZE[::-1], np.uint8))

@@ -78,7 +78,21 @@ def test_of_a_waved_board_whose_lens_is_wrong_no_clock_is_told():
     wrong = replace(RIG[1], K=RIG[1].K * [[1.2], [1.2], [1]])
     lines = told(solved(seen, True, c1=wrong), seen, True)
     assert any("check `lenses`" in line for line in lines)
+    assert any("or a given lens is wrong" in line for line in lines if "scatter" in line)
     assert not any("films" in line for line in lines)
+
+
+def test_of_a_lens_that_bends_more_than_the_model_the_lens_is_told():
+    """Boards at rest, sharp and exact, before lenses with k3: the movement is not to blame."""
+    dist, wide = [-0.3, 0.15, 0, 0, -0.06], [[0.6, 1, 1], [1, 0.6, 1], [1, 1, 1]]
+    bent = [replace(one, dist=dist, K=one.K * wide) for one in RIG]
+    places = boards_made.places(60, 5)
+    places[1:, :2, 3] *= 3  # out to the edges of the pictures
+    seen = boards_made.seen(BOARD, bent, places, 0.03, 1)
+    lines = told(solved(seen, False), seen, False)
+    (line,) = (one for one in lines if "scatter" in one)
+    assert "or a wide lens bends more than k1 k2 follow" in line
+    assert "give `lenses` (those from `chessboard` have k3)" in line
 
 
 @needs_real

@@ -95,6 +95,40 @@ def test_errors_are_as_large_as_stated():
     assert 1.0 < np.mean(squares) < 6.0  # 3 over many draws: places here err together
 
 
+def board_lenses(seed):
+    """Return the lenses with the errors of chessboards: 0.2 % of f, 0.1 % of the width, k1 0.01."""
+    rng, found = np.random.default_rng(seed), {}
+    for name, lens in LENSES.items():
+        f, (cx, cy) = 1 + 0.002 * rng.standard_normal(), 1.9 * rng.standard_normal(2)
+        K = lens.K * [[f, 1, 1], [1, f, 1], [1, 1, 1]] + [[0, 0, cx], [0, 0, cy], [0, 0, 0]]
+        dist = lens.dist + np.array([0.01 * rng.standard_normal(), 0, 0, 0, 0])
+        found[name] = replace(lens, K=K, dist=dist)
+    return found
+
+
+@pytest.mark.parametrize("clicked", [False, True])
+def test_errors_of_lenses_from_chessboards_are_part_of_what_is_stated(clicked):
+    xyz, off, stated = swung(), [], []
+    for seed in range(5):
+        lenses = board_lenses(seed)
+        more = {"clicks": floor_points()} if clicked else {}
+        found = calibrate(seen(xyz, seed=seed), lenses=lenses, of_boards=list(LENSES), **more)
+        assert found.covariance.sigma("c1", "f_px") == pytest.approx(2.8, rel=0.02)
+        markers, there = (
+            triangulate_all(found.cameras, np.stack([cameras.project(c, at) for c in RIG]))
+            for at in (xyz.reshape(-1, 3), PLACES)
+        )
+        moved = similarity.rigid(markers, xyz.reshape(-1, 3))
+        off.append(((there if clicked else moved.points(there)) - PLACES) ** 2)
+        stated.append(np.trace(errors(found, xyz.reshape(-1, 3))[1], axis1=1, axis2=2))
+    least = 0.2 if clicked else 0.6  # the clicks are 3 times as exact as stated
+    assert least < np.sqrt(np.mean(np.sum(off, axis=2)) / np.mean(stated)) < 1.4
+    exact = calibrate(seen(xyz, seed=4), lenses=lenses, **more)  # as of a calibration file
+    assert exact.covariance.sigma("c1", "f_px") == 0
+    np.testing.assert_array_equal(exact.cameras[1].K, found.cameras[1].K)
+    np.testing.assert_array_equal(exact.cameras[1].cam_from_world, found.cameras[1].cam_from_world)
+
+
 def test_the_stated_length_is_the_unit_and_its_uncertainty_is_that_of_all_lengths():
     xyz = swung()
     longer = replace(WAND, along_m=1.01 * WAND.along_m, sigma_m=0.005)

@@ -62,6 +62,32 @@ def test_our_table_by_times_is_read_at_the_times_of_one_camera(tmp_path):
     np.testing.assert_allclose(found.xy[1, seen, 0, 0], 10 * np.arange(20)[seen])
 
 
+def test_arcs_between_the_times_of_a_camera_are_not_shortened(tmp_path):
+    """Marker a goes round a circle of 300 px once in 1.5 s; a line between frames misses by 1 px.
+
+    At both ends, and beside a frame that is missing, three times remain: the line is kept.
+    """
+
+    def place(t):
+        return 500 + 300 * np.cos(2 * np.pi * t / 1.5), 350 + 300 * np.sin(2 * np.pi * t / 1.5)
+
+    rows = ["camera,time_s,marker,x_px,y_px"]
+    for name, phase, count in (("cam_a", 0.0, 60), ("cam_b", 1 / 60, 59)):
+        for k in range(count):
+            if (name, k) != ("cam_b", 30):
+                t = k / 30 + phase
+                x, y = place(t)
+                rows += [f"{name},{t!r},a,{x},{y}", f"{name},{t!r},b,10,10"]
+    found = read(tmp_path, "\n".join(rows))
+    off = np.linalg.norm(found.xy[1, :, 0] - np.stack(place(found.frames), axis=1), axis=1)
+    seen = np.isfinite(off)
+    assert seen.tolist() == [0 < k < 59 for k in range(60)]
+    line = np.isin(np.arange(60), [1, 58])
+    assert off[seen & ~line & (np.abs(np.arange(60) - 30.5) > 2)].max() < 0.05
+    assert 0.5 < off[line].min() < off[line].max() < 1.5
+    assert off[30:32].max() < 5
+
+
 def test_times_of_the_floor_may_be_those_of_any_camera(tmp_path):
     """The camera with most times has no row while the wand lies on the floor, at 0.95 s."""
     rows = [f"cam_a,{k / 20},{m},{10 * k},{5 * n}"

@@ -8,6 +8,7 @@ import pytest
 from courtside.calibration.wand import calibration, quality
 from courtside.calibration.wand.calibration import Floor
 from fixtures.cameras.wands_made import LENSES, SIZES, WAND, floor_points, seen, swung
+from virtualgym.devices import wand as simulated
 
 
 def summary(found, lenses=LENSES, wand=WAND, **more):
@@ -54,6 +55,34 @@ def test_a_delayed_camera_has_a_warning():
     warnings = summary(found)["warnings"]
     (line,) = [line for line in warnings if line.startswith("camera c2")]
     assert "frames or more late by the movement of the markers" in line
+
+
+@pytest.mark.parametrize(("seed", "late", "told"), [(3, 1, True), (7, 1, True), (3, 0, False)])
+def test_a_delay_of_a_frame_of_the_video_is_told_if_only_every_twelfth_is_in_the_file(
+    seed, late, told
+):
+    """At 60 Hz, digitised by hand: 1/60 s moves cameras by 65 to 85 mm, at stated 3 mm."""
+    rng = np.random.default_rng(seed)
+    low, high = (-2, -2, 0.2), (2, 2, 2.2)
+    every = simulated.swing(WAND.along_m, low, high, seconds=30, rate_hz=60.0, rng=rng)
+    found = seen(every[6:-12:12], sigma_px=0.3)
+    found.xy[1] = seen(every[6 + late : -12 + late : 12], sigma_px=0.3, seed=2).xy[1]
+    report = summary(found)
+    lines = [line for line in report["warnings"] if "markers are not where the other" in line]
+    assert bool(lines) == told == bool([one for one in report["warnings"] if "c1: films" in one])
+    for line in lines:
+        assert line.startswith(f"cameras c1 ({report['wrong_percent']['c1']:.0f} %), c3 (")
+    if not told:
+        assert report["warnings"] == []
+
+
+def test_lenses_that_are_wrong_at_the_edges_are_named_as_a_cause():
+    xyz = swung(seconds=60, low=(-3, -3, 0.2), high=(3, 3, 2.2))
+    more = np.array([0.07, 0, 0, 0, 0])
+    wrong = {name: replace(lens, dist=lens.dist + more) for name, lens in LENSES.items()}
+    warnings = summary(seen(xyz, sigma_px=0.1), wrong)["warnings"]
+    (line,) = [line for line in warnings if "are correlated" in line]
+    assert "that the lenses are right: given ones up to the edges of the pictures" in line
 
 
 def test_a_wand_of_another_length_has_a_warning_by_clicked_points():

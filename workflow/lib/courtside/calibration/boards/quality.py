@@ -25,6 +25,12 @@ OF_GIVEN = (
     "its given lens is probably that of another zoom or camera, or its pictures are blurred; check "
     "`lenses`, and film the board at rest"
 )
+# By whether lenses are given: what else may be wrong, and what to do.
+OF_LENS = {
+    True: "given lens is wrong; let it rest, and check `lenses`",
+    False: "wide lens bends more than k1 k2 follow; let it rest, and give `lenses` (those from "
+    "`chessboard` have k3)",
+}
 
 
 def summary(found: Found, seen: Corners, board: Board, *, known: bool) -> dict[str, Any]:
@@ -75,8 +81,8 @@ def _warnings(found: Found, seen: Corners, rms_px: Sequence[float], known: bool)
     if scatters:
         lines.append(
             f"board: whole pictures scatter {found.factor:.1f} times as much as their corners: the "
-            "board moved while the cameras did not film at one time, or pictures are blurred; let "
-            f"it rest, and {'check' if known else 'give'} `lenses`"
+            "board moved while the cameras did not film at one time, pictures are blurred, or a "
+            f"{OF_LENS[known]}"
         )
     if late is not None:  # it spoils the fit of those that see the board with it
         return [*lines, _late_line(found, seen, late)]

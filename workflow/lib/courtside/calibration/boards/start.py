@@ -75,7 +75,9 @@ def lens(name: str, size: Sequence[int], board: Board, seen: Corners, camera: in
     rows = [rows[k] for k in np.unique(np.linspace(0, len(rows) - 1, MOST_VIEWS).astype(int))]
     first = plain(name, (size[0], size[1]), 1.0)
     places = [board.corners[seen.corner[at]] for at in rows]
-    _, matrix, dist, *_ = chessboard.solve(places, [seen.xy[at] for at in rows], first.size)
+    xy = [seen.xy[at] for at in rows]
+    # The adjustment has no k3.
+    _, matrix, dist, *_ = chessboard.solve(places, xy, first.size, may_have_k3=False)
     return replace(first, K=matrix, dist=dist)
 
 

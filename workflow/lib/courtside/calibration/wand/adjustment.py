@@ -97,6 +97,25 @@ def adjust(state: State, active: NDArray, of_wand: NDArray) -> Adjusted:
     return Adjusted(state, covariance[:-1, :-1], sigma_px, factor)
 
 
+def with_lens_errors(found: Adjusted, active: NDArray, sigma: NDArray) -> NDArray:
+    """Return the covariance (K, K) with errors of lenses that were kept.
+
+    `active` (K,) are the columns that were adjusted, `sigma` (K,) the standard deviations of those
+    that were kept, 0 where exact. What was adjusted follows a wrong lens by the normal equations.
+    """
+    state, kept = found.state, np.append(sigma > 0, False)
+    columns = np.append(active, state.length_sigma > 0)
+    both = columns | kept
+    normal = _normal(state, both, 0.0)
+    of, by = columns[both], kept[both]
+    own = replace(normal, information=normal.information[np.ix_(of, of)])
+    follow = np.zeros((len(both), kept.sum()))
+    follow[columns] = -_inverse(state, own) @ normal.information[np.ix_(of, by)]
+    follow[kept] = np.eye(kept.sum())
+    follow = follow[:-1] * sigma[kept[:-1]]
+    return found.covariance + follow @ follow.T
+
+
 def _redundancy(bodies: Bodies, of_cameras: int, views: int) -> float:
     """Return the share of the wand's measurements above the number of unknowns."""
     swung = bodies.sigma_m == np.inf

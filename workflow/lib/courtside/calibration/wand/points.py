@@ -158,7 +158,7 @@ def _at_frames(each: Mapping[str, Mapping[float, NDArray]]) -> Seen:
 
 
 def _at_times(each: Mapping[str, Mapping[float, NDArray]], floor: Iterable[float]) -> Seen:
-    """Return markers at the times of the camera with most times, linearly interpolated.
+    """Return markers at the times of the camera with most times, interpolated.
 
     The times at which the wand lies on the floor are added: they may be of any camera.
     """
@@ -173,7 +173,11 @@ def _at_times(each: Mapping[str, Mapping[float, NDArray]], floor: Iterable[float
 
 
 def _between(own: NDArray, values: NDArray, times: NDArray) -> NDArray:
-    """Return values (T, K) at `times`, linearly interpolated; NaN outside, and in long gaps."""
+    """Return values (T, K) at `times`; NaN outside, and in long gaps.
+
+    They are interpolated by the cubic through the four nearest times: a line shortens the arcs of a
+    wand. Linearly where one of the four is missing or beyond a long gap.
+    """
     if len(own) < 2:
         return np.full((len(times), values.shape[1]), np.nan)
     gap = LONGEST_GAP * float(np.median(np.diff(own)))
@@ -183,7 +187,29 @@ def _between(own: NDArray, values: NDArray, times: NDArray) -> NDArray:
     found = (1 - share) * values[after - 1] + share * values[after]
     inside = (times >= own[0]) & (times <= own[-1]) & (stop - start <= gap)
     found = np.where(inside[:, None], found, np.nan)
-    return np.where(share == 0, values[after - 1], np.where(share == 1, values[after], found))
+    found = np.where(share == 0, values[after - 1], np.where(share == 1, values[after], found))
+    cubic = _cubic(own, values, times, after, gap)
+    return np.where(np.isfinite(found) & np.isfinite(cubic), cubic, found)
+
+
+def _cubic(own: NDArray, values: NDArray, times: NDArray, after: NDArray, gap: float) -> NDArray:
+    """Return values (T, K) by Lagrange's cubic through two times before and two after; NaN: none.
+
+    `after` (T,) is the index of the first time after each.
+    """
+    at = after[:, None] + np.arange(-2, 2)
+    outside = (at < 0) | (at >= len(own))
+    at = np.clip(at, 0, len(own) - 1)
+    near = own[at]
+    there = ~outside.any(axis=1) & (np.diff(near, axis=1) <= gap).all(axis=1)
+    found = np.zeros((len(times), values.shape[1]))
+    for k in range(4):
+        others = np.delete(near, k, axis=1)
+        with np.errstate(divide="ignore", invalid="ignore"):  # times twice at the ends
+            weight = ((times[:, None] - others) / (near[:, [k]] - others)).prod(axis=1)
+        found += np.where(there, weight, 0.0).reshape(-1, 1) * values[at[:, k]]
+    found[~there] = np.nan
+    return found
 
 
 def _theirs(path: StrPath, wand: Wand, sizes: Sequence[tuple[int, int]], program: str) -> NDArray:

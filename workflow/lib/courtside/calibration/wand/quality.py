@@ -1,5 +1,6 @@
 """Quality of a calibration with a wand: numbers by camera for a JSON file, and warnings."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,10 @@ from courtside.statistics.normal_errors import MEDIAN_TO_SIGMA
 
 # ASSUME: limits of the warnings.
 MOST_FACTOR = 2.0  # scatter of blocks of time, relative to single frames
-LATE, LATE_SIGMAS = 0.03, 5.0  # delay of a camera, frames, and in its standard deviations
+# Delay of a camera: in its standard deviations, and either in frames, or in px along the path of
+# the markers over the sigma of a marker: frames of the file may be every tenth of the video.
+LATE_SIGMAS, LATE, LATE_PX = 5.0, 0.03, 1.0
+MOST_WRONG = 30.0  # %, of a camera's markers; of a right one it is 0 to a few
 LEAST_PATH = 0.3  # extent of the path in a picture of an unknown lens, of the diagonal
 LONGER_SIGMAS = 4.0  # error of the stated length by clicked points, in its standard deviations
 MOST_SIGMA_PX = 3.0  # of a marker
@@ -36,7 +40,7 @@ def summary(found: Found, wand: Wand, seen: Seen, known: set[str]) -> dict[str, 
     off = found.error_px
     fine = np.abs(off).max(axis=-1) < WRONG_SIGMAS * found.adjusted.sigma_px
     wrong, shared = _wrong(found, seen, fine)
-    late, late_sigma = timing.delays(found.cameras, seen, found.xyz)
+    late, *more_of_late = timing.delays(found.cameras, seen, found.xyz)
     report: dict[str, Any] = {"warnings": [], "world": found.world}
     report |= {"sigma_px": found.adjusted.sigma_px, "covariance_factor": found.adjusted.factor}
     report["length_mm"] = _length_mm(found, wand)
@@ -54,7 +58,8 @@ def summary(found: Found, wand: Wand, seen: Seen, known: set[str]) -> dict[str, 
             one |= {"k1": float(camera.dist[0]), "k1_sigma": sigma(camera.name, "k1")}
         for key, value in one.items():
             report.setdefault(key, {})[camera.name] = value
-    report["warnings"] = _warnings(found, wand) + _of_cameras(found, seen, known, late, late_sigma)
+    report["warnings"] = _warnings(found, wand) + _late(found, late, *more_of_late)
+    report["warnings"] += _often_wrong(report["wrong_percent"]) + _of_pictures(found, seen, known)
     report["remarks"] = [] if found.stated else [_world(found)]
     if not found.stated:
         report["vertical_sigma_deg"] = vertical.sigma_deg(found.covariance.frame)
@@ -104,7 +109,8 @@ def _warnings(found: Found, wand: Wand) -> list[str]:
         lines.append(
             f"wand: residuals of neighbouring frames are correlated (factor "
             f"{found.adjusted.factor:.1f} of the variance); check that the videos are "
-            "synchronised, and that the tracker follows the markers"
+            "synchronised, that the tracker follows the markers, and that the lenses are right: "
+            "given ones up to the edges of the pictures, estimated ones not too wide for k1 k2"
         )
     longer = found.adjusted.state.length
     if abs(longer) > LONGER_SIGMAS * wand.sigma_m / wand.length_m:
@@ -134,15 +140,39 @@ def _hanging(found: Found) -> list[str]:
     ]
 
 
-def _of_cameras(found: Found, seen: Seen, known: set[str], late, sigma) -> list[str]:
+def _late(found: Found, late: NDArray, sigma: NDArray, along_px: NDArray) -> list[str]:
+    """Return a warning for each camera that films at another time, from `timing.delays`."""
+    large = (np.abs(late) > LATE) | (np.abs(along_px) > LATE_PX * found.adjusted.sigma_px)
+    large &= np.abs(late) > LATE_SIGMAS * sigma
+    return [
+        f"camera {camera.name}: films {abs(late[c]):.2f} frames or more "
+        f"{'late' if late[c] > 0 else 'early'} by the movement of the markers; synchronise the "
+        "videos, or give the times of the frames (`time_s`)"
+        for c, camera in enumerate(found.cameras)
+        if large[c]
+    ]
+
+
+def _often_wrong(percent: Mapping[str, float]) -> list[str]:
+    """Return a warning if many markers of a camera are wrong: it spoils those of the others, too.
+
+    `percent` are the shares of wrong markers by camera. Which camera is to blame is not certain.
+    """
+    many = {name: each for name, each in percent.items() if each > MOST_WRONG}
+    if not many:
+        return []
+    order = sorted(many, key=many.__getitem__, reverse=True)
+    each = ", ".join(f"{name} ({many[name]:.0f} %)" for name in order)
+    return [
+        f"{'cameras' if len(many) > 1 else 'camera'} {each}: many markers are not where the other "
+        "cameras see them, and places may be wrong by far more than stated; check that the videos "
+        f"are synchronised, first {order[0]}, that no markers are exchanged, and `lenses`"
+    ]
+
+
+def _of_pictures(found: Found, seen: Seen, known: set[str]) -> list[str]:
+    """Return warnings about where in the pictures of each camera the markers are."""
     lines = []
-    for camera, frames, spread in zip(found.cameras, late, sigma, strict=True):
-        if abs(frames) > LATE and abs(frames) > LATE_SIGMAS * spread:
-            lines.append(
-                f"camera {camera.name}: films {abs(frames):.2f} frames or more "
-                f"{'late' if frames > 0 else 'early'} by the movement of the markers; synchronise "
-                "the videos, or give the times of the frames (`time_s`)"
-            )
     for camera, xy in zip(found.cameras, seen.xy, strict=True):
         low, high = np.nanquantile(xy.reshape(-1, 2), [0.02, 0.98], axis=0)
         if (high < np.array(camera.size) / 2).all():

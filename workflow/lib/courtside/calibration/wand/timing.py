@@ -15,14 +15,15 @@ FEWEST = 20  # markers with a speed
 MEDIAN_SIGMA = MEDIAN_TO_SIGMA * 1.2533
 
 
-def delays(cameras: Sequence[Camera], seen: Seen, xyz: NDArray) -> tuple[NDArray, NDArray]:
-    """Return the delay of each camera (C,) in frames, and its standard deviation.
+def delays(cameras: Sequence[Camera], seen: Seen, xyz: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+    """Return the delay of each camera (C,) in frames, its standard deviation, and the delay in px.
 
     It is the distance of markers along their path from their positions (F, M, 3) m by all cameras,
     over their speed. It is smaller than the true delay, because the delayed camera takes part in
-    these positions.
+    these positions. Frames are those of `seen`: if they are every n-th of the video, it is small.
     """
     found, sigma = np.zeros(len(cameras)), np.full(len(cameras), np.inf)
+    along_px = np.zeros(len(cameras))
     step = float(np.median(np.diff(seen.frames)))
     apart = (seen.frames[2:] - seen.frames[:-2]) / step
     for c, camera in enumerate(cameras):
@@ -36,8 +37,9 @@ def delays(cameras: Sequence[Camera], seen: Seen, xyz: NDArray) -> tuple[NDArray
         known = np.isfinite(ahead)
         if known.sum() < FEWEST:
             continue
-        each = ahead[known & (speed >= np.quantile(speed[known], 1 - FAST))]
-        found[c] = np.median(each)
-        spread = np.median(np.abs(each - found[c]))
-        sigma[c] = MEDIAN_SIGMA * spread / np.sqrt(len(each))
-    return found, sigma
+        fast = known & (speed >= np.quantile(speed[known], 1 - FAST))
+        found[c] = np.median(ahead[fast])
+        spread = np.median(np.abs(ahead[fast] - found[c]))
+        sigma[c] = MEDIAN_SIGMA * spread / np.sqrt(fast.sum())
+        along_px[c] = found[c] * np.median(speed[fast])
+    return found, sigma, along_px
