@@ -125,6 +125,18 @@ def test_y_from_the_bottom_has_a_warning_by_a_floor_that_turns_the_cameras_over(
         assert "correct `wand.program`, or subtract y_px from the picture's height" in line
 
 
+def test_the_error_of_the_vertical_is_told_unless_points_define_it():
+    xyz = swung()
+    xyz[10] = [[1.0, 0.5, 0.0], [1.0, 1.0, 0.0]]
+    xyz[20] = [[-0.5, 0.0, 0.0], [-1.0, 0.0, 0.0]]
+    found = seen(xyz, sigma_px=0.5)
+    near = summary(found, floor=Floor((10.0, 20.0)))
+    assert near["remarks"] == []
+    assert 0.05 < near["vertical_sigma_deg"] < 0.5
+    assert summary(found)["vertical_sigma_deg"] > 1
+    assert "vertical_sigma_deg" not in summary(found, clicks=floor_points())
+
+
 def test_markers_in_the_upper_left_quarter_may_be_of_a_smaller_copy():
     found = seen(swung())
     found = replace(found, cameras=found.cameras[:2], xy=found.xy[:2] / 2)

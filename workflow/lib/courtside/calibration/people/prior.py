@@ -41,8 +41,8 @@ def stated(
 def knowledge(cameras: Sequence[Camera], known: CameraCovariance) -> solver.Quadratic:
     """Return what a covariance says of cameras, about them; numbers without variance are fixed.
 
-    The covariance of cameras that define the world frame (a wand without clicks) is singular. Their
-    common movement, which it excludes, is known as well.
+    The covariance of cameras that define the world frame (a wand without clicks and floor) is
+    singular. Their common movement, which it excludes, is known as well.
     """
     covariance = known.of([camera.name for camera in cameras]).of_columns()
     free = np.diag(covariance) > 0

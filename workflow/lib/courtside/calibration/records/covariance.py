@@ -31,7 +31,8 @@ class CameraCovariance:
 
     `frame` (3, 3) is the covariance of the world frame itself where people or the pictures define
     it: a small rotation of the world about its x and y axes (rad), and a shift along z (m). The
-    other errors do not contain it. It is 0 where court points, a floor or a file define the frame.
+    other errors do not contain it. It is 0 where a file defines the frame, and where court points,
+    or a wand or a board on the floor do: `covariance` contains their errors.
     """
 
     cameras: list[str]

@@ -15,12 +15,11 @@ from courtside.calibration.people import world_frame
 from courtside.calibration.people.adjustment import Clicks
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records.covariance import CameraCovariance
-from courtside.calibration.wand import adjustment, culprit, start, timing, world
+from courtside.calibration.wand import adjustment, culprit, floor_errors, start, timing, world
 from courtside.calibration.wand.adjustment import Adjusted, Bodies, State
 from courtside.calibration.wand.points import Seen, Wand
 from courtside.geometry import rotations, similarity
 from courtside.geometry.camera import Camera, project, undistort
-from courtside.geometry.similarity import Sim3
 from courtside.study.errors import InputError
 
 MOST_FRAMES = 1000  # in the adjustment; neighbouring frames add little
@@ -45,9 +44,15 @@ class Found:
     covariance: CameraCovariance
     world: str  # description of the world frame
     stated: bool  # whether floor or points define it
+    vertical_deg: float | None  # standard deviation of its z; None with clicked points
     xyz: NDArray  # (F, M, 3) m: markers whose views agree, others NaN
     error_px: NDArray  # (C, F, M, 2): projected minus measured; NaN where either is missing
     adjusted: Adjusted
+
+
+# In a world frame: cameras, markers (F, M, 3) m, the covariance of the cameras, and the standard
+# deviation of the vertical, degrees.
+Placed = tuple[list[Camera], NDArray, CameraCovariance, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,21 +94,22 @@ def calibrate(
         cameras, found = _agreeing(wand, seen, sizes, lenses)
     except start.Disagreement as fault:
         raise culprit.named(fault, wand, seen, sizes, lenses) from None
-    xyz = start.triangulated(cameras, seen.xy)
     if clicks is not None:
         cameras, found = _clicked(wand, seen, cameras, lenses, clicks)
-        covariance = _with_boards(found, cameras, lenses, of_boards)
-        text, xyz = "clicked points", start.triangulated(cameras, seen.xy)
+    xyz = start.triangulated(cameras, seen.xy)
+    covariance = _with_boards(found, cameras, lenses, of_boards)
+    if clicks is not None:
+        text, vertical_deg = "clicked points", None
+        named = camera_covariance.of_network(seen.cameras, covariance)
+    elif floor is None:
+        text = "the cameras' own"
+        cameras, xyz, named, vertical_deg = _of_cameras(xyz, cameras, covariance)
     else:
-        covariance = _with_boards(found, cameras, lenses, of_boards)
-        moved, datum, text = _world(seen, xyz, cameras, floor)
-        cameras, xyz = [moved.camera(camera) for camera in cameras], moved.points(xyz)
-        covariance = world_frame.of_shape(cameras, covariance, moved.points(datum), None)
+        text, placed = world.FLOOR, _of_floor(seen, xyz, cameras, covariance, floor, found.sigma_px)
+        cameras, xyz, named, vertical_deg = placed
     error_px = np.stack([project(camera, xyz) for camera in cameras]) - seen.xy
     stated = clicks is not None or floor is not None
-    frame = None if stated else vertical.error_of_pictures(cameras)
-    named = camera_covariance.of_network(seen.cameras, covariance, frame)
-    return Found(cameras, named, text, stated, xyz, error_px, found)
+    return Found(cameras, named, text, stated, vertical_deg, xyz, error_px, found)
 
 
 def _agreeing(
@@ -139,15 +145,28 @@ def _clicked(
     return _cameras(found, cameras, lenses), found
 
 
-def _world(
-    seen: Seen, xyz: NDArray, cameras: Sequence[Camera], floor: Floor | None
-) -> tuple[Sim3, NDArray, str]:
-    """Return `world_from_cameras`, the positions (N, 3) that define it, and its description."""
-    if floor is None:
-        places = xyz.reshape(-1, 3)
-        places = places[np.isfinite(places).all(axis=1)]
-        at = np.linspace(0, len(places) - 1, min(len(places), MOST_PLACES)).astype(int)
-        return world.of_cameras(xyz, cameras), places[at], "the cameras' own"
+def _of_cameras(xyz: NDArray, cameras: Sequence[Camera], covariance: NDArray) -> Placed:
+    """Return what is `Placed` in the cameras' own world frame."""
+    moved = world.of_cameras(xyz, cameras)
+    places = xyz.reshape(-1, 3)
+    places = places[np.isfinite(places).all(axis=1)]
+    at = np.linspace(0, len(places) - 1, min(len(places), MOST_PLACES)).astype(int)
+    cameras = [moved.camera(camera) for camera in cameras]
+    covariance = world_frame.of_shape(cameras, covariance, moved.points(places[at]), None)
+    frame = vertical.error_of_pictures(cameras)
+    named = camera_covariance.of_network([one.name for one in cameras], covariance, frame)
+    return cameras, moved.points(xyz), named, vertical.sigma_deg(frame)
+
+
+def _of_floor(
+    seen: Seen,
+    xyz: NDArray,
+    cameras: Sequence[Camera],
+    covariance: NDArray,
+    floor: Floor,
+    sigma_px: float,
+) -> Placed:
+    """Return what is `Placed` in the world frame of a floor."""
     filled = seen.frames[np.isfinite(seen.xy[..., 0]).any(axis=(0, 2))]
     missing = [frame for frame in floor.frames if frame not in filled]
     if missing:
@@ -155,10 +174,12 @@ def _world(
             f"wand.floor: expected frames of the wand's file, or times at which a camera sees it, "
             f"found {missing[0]:g}; list frames in which the wand lies on the floor"
         )
-    lying = xyz[[int(np.flatnonzero(seen.frames == frame)[0]) for frame in floor.frames]]
-    places = lying.reshape(-1, 3)
-    moved = world.of_floor(lying, floor.above_m, cameras)
-    return moved, places[np.isfinite(places).all(axis=1)], world.FLOOR
+    lying = [int(np.flatnonzero(seen.frames == frame)[0]) for frame in floor.frames]
+    moved = world.of_floor(xyz[lying], floor.above_m, cameras)
+    cameras, xy = [moved.camera(camera) for camera in cameras], seen.xy[:, lying]
+    covariance, frame = floor_errors.covariances(cameras, covariance, xy, floor.above_m, sigma_px)
+    named = camera_covariance.of_network(seen.cameras, covariance)
+    return cameras, moved.points(xyz), named, vertical.sigma_deg(frame)
 
 
 def _check_path(seen: Seen) -> None:

@@ -18,7 +18,7 @@ from courtside.calibration.wand.points import Seen, Wand
 from courtside.geometry import camera as camera_models
 from courtside.geometry import epipolar
 from courtside.geometry.camera import Camera, undistort
-from courtside.geometry.triangulation import triangulate_robust
+from courtside.geometry.triangulation import Triangulated, triangulate_robust
 from courtside.study.errors import InputError
 
 # ASSUME: focal lengths over the picture's longer side, from action cameras to short telephoto
@@ -217,12 +217,16 @@ def _related(wand: Wand, xy: NDArray, lenses: Sequence[Camera]) -> _Pair | None:
 
 def triangulated(cameras: Sequence[Camera], xy: NDArray) -> NDArray:
     """Return markers (F, M, 3) from views (C, F, M, 2) that agree; NaN for others."""
+    return robust(cameras, xy)[0].xyz.reshape(*xy.shape[1:3], 3)
+
+
+def robust(cameras: Sequence[Camera], xy: NDArray) -> tuple[Triangulated, float]:
+    """Return F M markers from views (C, F, M, 2) that agree, and the limit of their errors, px."""
     flat = xy.reshape(len(xy), -1, 2)
     limit = TOLERANCE * max(max(camera.size) for camera in cameras)
     score = np.isfinite(flat[..., 0]).astype(float)
     with np.errstate(divide="ignore", invalid="ignore"):  # markers that only one camera sees
-        found = triangulate_robust(cameras, flat, score, max_error_px=limit)
-    return found.xyz.reshape(*xy.shape[1:3], 3)
+        return triangulate_robust(cameras, flat, score, max_error_px=limit), limit
 
 
 def _lengths(xyz: NDArray) -> NDArray:
