@@ -16,6 +16,7 @@ ABOVE_M = 0.02
 FIRST = [[1.0, 0.0, ABOVE_M], [1.0, 0.5, ABOVE_M]]
 SECOND = [[-1.0, 0.0, ABOVE_M], [-1.5, 0.0, ABOVE_M]]
 THIRD = [[0.0, 1.5, ABOVE_M], [0.5, 1.5, ABOVE_M]]
+FLOOR = Floor((10.0, 20.0), ABOVE_M)
 INTO_FLOOR = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # x along FIRST
 PLACES = np.stack(np.meshgrid([-1.5, 0, 1.5], [-1.5, 0, 1.5], [0.3, 1.1, 2.0]), -1).reshape(-1, 3)
 TRUE = (PLACES - [1.0, 0.0, 0.0]) @ INTO_FLOOR.T
@@ -82,10 +83,23 @@ def test_a_marker_of_the_floor_that_is_hidden_is_left_out():
     xyz[[10, 20]] = [FIRST, SECOND]
     found = seen(xyz)
     found.xy[:, 20, 0] = np.nan
-    floor = Floor((10.0, 20.0), ABOVE_M)
-    hidden = calibration.calibrate(WAND, found, SIZES, lenses=LENSES, floor=floor)
+    hidden = calibration.calibrate(WAND, found, SIZES, lenses=LENSES, floor=FLOOR)
     off, stated = errors(hidden)
     squared = np.einsum("ni,nij,nj->n", off, np.linalg.inv(stated), off)
     assert np.median(squared) < 6.251
     whole = errors(solved([FIRST, SECOND], [10, 20]))[1]
     assert np.trace(whole.mean(axis=0)) < np.trace(stated.mean(axis=0)) < 1.5e-4
+
+
+def test_a_wrong_marker_on_the_floor_widens_what_is_stated():
+    """6 px off in one of two cameras: the views still meet, somewhere else."""
+    xyz = swung()
+    xyz[[10, 20]] = [FIRST, SECOND]
+    found = seen(xyz)
+    found.xy[2:, 10, 1] = np.nan
+    right = calibration.calibrate(WAND, found, SIZES, lenses=LENSES, floor=FLOOR)
+    found.xy[0, 10, 1, 1] += 6.0
+    wrong = calibration.calibrate(WAND, found, SIZES, lenses=LENSES, floor=FLOOR)
+    (off, stated), before = errors(wrong), errors(right)[1]
+    assert np.mean(off**2) > 4 * np.mean(np.einsum("nii->ni", before))
+    assert np.mean(off**2) < 4 * np.mean(np.einsum("nii->ni", stated))

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import conversion
 from courtside.calibration.wand import start, world
+from courtside.calibration.wand.adjustment import WRONG_SIGMAS
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
 from courtside.geometry.similarity import Sim3
@@ -26,9 +27,10 @@ def covariances(
     """Return the covariance (K, K) of cameras in their world, and that (6, 6) of this world.
 
     `cameras` are in the world frame `world.of_floor` of markers `xy` (C, F, M, 2) px with a
-    standard deviation of `sigma_px`; `above_m` is their height. `covariance` is that of a network's
-    columns in any frame. The world's is by `sigma_px` alone: a small rotation about its axes (rad)
-    and a shift (m). That of the cameras contains it.
+    standard deviation of `sigma_px`, or of the worst residual of a marker that is wrong; `above_m`
+    is their height. `covariance` is that of a network's columns in any frame. The world's is by the
+    markers' own errors alone: a small rotation about its axes (rad) and a shift (m). That of the
+    cameras contains it.
     """
     found, limit_px = start.robust(cameras, xy)
     known = np.isfinite(found.xyz).all(axis=1)
@@ -42,7 +44,9 @@ def covariances(
     by_cameras = point_covariance.sensitivity(network, places, seen)
     keep = np.eye(len(covariance)) + by_world @ np.einsum("api,pik->ak", by_place, by_cameras)
     marker = np.flatnonzero(known) % xy.shape[2]
-    own = np.linalg.cholesky(found.covariance[known]) * sigma_px / limit_px
+    off_px = np.where(found.accepted, found.error_px, 0.0)[:, known].max(axis=0)
+    sigma = np.where(off_px > WRONG_SIGMAS * sigma_px, off_px, sigma_px) / limit_px
+    own = np.linalg.cholesky(found.covariance[known]) * sigma[:, None, None]
     shift = np.zeros((len(places), 6, 3))
     np.add.at(shift, _still(places, marker), np.einsum("api,pij->paj", by_place, own))
     frame = np.einsum("paj,pbj->ab", shift, shift)
