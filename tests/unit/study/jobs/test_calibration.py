@@ -275,9 +275,9 @@ def test_takes_that_refine_cameras_must_be_filmed(job, study):
 @pytest.mark.parametrize(
     ("given", "beside"),
     [
-        (".", [*easymocap.FILES, "left.XML", f"Cam0/{opencap.IN_SESSION}", *colmap.NAMES]),
-        *[(one, set(easymocap.FILES) - {one}) for one in easymocap.FILES],
-        *[(one, colmap.NAMES - {one}) for one in colmap.NAMES],
+        (".", [*easymocap.FILES, "left.XML", f"Cam0/{opencap.IN_SESSION}", *sorted(colmap.NAMES)]),
+        *[(one, sorted(set(easymocap.FILES) - {one})) for one in easymocap.FILES],
+        *[(one, sorted(colmap.NAMES - {one})) for one in sorted(colmap.NAMES)],
         ("left.XML", []),
     ],
 )
