@@ -135,7 +135,7 @@ def test_a_wand_calibrates_all_cameras(gym):
     ).all()
     replace_by_an_older_one(folder / "wand.csv")
     said = snakemake("-n", "--configfile", "config/mine.yaml", root=gym).stderr
-    assert "Error: data/wand: expected files as in the last run, or newer ones" in said
+    assert "Error: data/wand: expected files as in the last run, or newer than the results" in said
     subprocess.run(said.strip().rpartition(": ")[2], shell=True, check=True, cwd=gym)
     said = snakemake("-n", "--configfile", "config/mine.yaml", root=gym)
     assert said.returncode == 0 and "calibrate_wand" in said.stdout + said.stderr
