@@ -258,14 +258,7 @@ def _best_shift(one: _Camera, tested: NDArray) -> tuple[float, float]:
     followed = np.isfinite(one.left(one.followed))
     found = []
     for frames in _shifts(seen):
-        moved = _moved(seen, one.at, frames)
-        if not followed:
-            at = seen.at + frames
-            inside = (at >= 0) & (at < seen.xy.shape[2])
-            moved[...] = np.nan
-            rows = seen.rows[one.at][:, at[inside]]
-            picked = rows[np.maximum(one.row[:, inside], 0), np.arange(inside.sum())]
-            moved[:, inside] = np.where((one.row[:, inside] >= 0)[..., None, None], picked, np.nan)
+        moved = _moved(seen, one.at, frames) if followed else _moved_rows(one, frames)
         error = one.left(np.where(one.expected[..., None, None], moved, np.nan))
         found.append((np.nan_to_num(error, nan=np.inf), abs(frames), frames))
     error, _, frames = min(found)
@@ -281,11 +274,27 @@ def _shifts(seen: Seen) -> NDArray:
 
 def _moved(seen: Seen, camera: int, frames: int) -> NDArray:
     """Return the keypoints (P, S, K, 2) px of a camera so many frames later."""
+    at, inside = _later(seen, frames)
+    moved = np.full(seen.xy[camera][:, seen.at].shape, np.nan)
+    moved[:, inside] = seen.xy[camera][:, at]
+    return moved
+
+
+def _moved_rows(one: _Camera, frames: int) -> NDArray:
+    """Return the same of the tracklets that are nearest to the persons, whoever they are."""
+    at, inside = _later(one.seen, frames)
+    moved = np.full(one.followed.shape, np.nan)
+    rows, row = one.seen.rows[one.at][:, at], one.row[:, inside]
+    picked = rows[np.maximum(row, 0), np.arange(len(at))]
+    moved[:, inside] = np.where((row >= 0)[..., None, None], picked, np.nan)
+    return moved
+
+
+def _later(seen: Seen, frames: int) -> tuple[NDArray, NDArray]:
+    """Return the frames so many later, and which (S,) of those looked at have one."""
     at = seen.at + frames
     inside = (at >= 0) & (at < seen.xy.shape[2])
-    moved = np.full(seen.xy[camera][:, seen.at].shape, np.nan)
-    moved[:, inside] = seen.xy[camera][:, at[inside]]
-    return moved
+    return at[inside], inside
 
 
 def _best_video(one: _Camera) -> tuple[str, float]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from courtside.records.devices.clocks import Clock
 from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.devices.events import TPose
+from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
 from courtside.synchronisation import motion_signals, smooth_tracks
 from courtside.synchronisation.motion_signals import Signals
@@ -125,9 +126,7 @@ def _exchanged(motions, spells, signals, time_s, clock) -> str:
 
 def _mirrored(motion: DeviceMotion) -> DeviceMotion:
     """Return the motion of a mirror image, in which left and right are exchanged."""
-    other = {"left": "right", "right": "left"}
-    sides = [str(name).partition("_") for name in motion.joints]
-    names = ["".join((other.get(side, side), *rest)) for side, *rest in sides]
+    names = [skeleton.other_side(str(name)) for name in motion.joints]
     return replace(motion, joints=np.array(names), xyz=motion.xyz * [-1.0, 1.0, 1.0])
 
 

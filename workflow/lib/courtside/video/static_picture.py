@@ -1,6 +1,7 @@
 """Static pictures of fixed cameras: temporal median, and checks of movement and light."""
 
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from courtside.video.camera_movement import MIN_MATCHES, Movement, movement, unk
 BAND = 65536  # values of the median at a time: those of 25 pictures fit into the cache
 TAKE = "its static picture and in its take"
 AGAIN = "film the static picture and the walk again with the camera as in the take"
+UNTOUCHED = "film it again without touching the camera"
 KNOCKED = "end the take before it with `trim_s`, or state `steady: true` to measure the movement"
 # ASSUME: a picture is too dark if this share of its pixels is below this level in all channels.
 BLACK_LEVEL, BLACK_SHARE = 20, 0.8
@@ -76,13 +78,14 @@ def check_still(
     max_zoom_percent: float,
     where: str = TAKE,
     mend: str = AGAIN,
+    must_be_known: bool = True,
 ) -> Movement:
     """Check that a fixed camera neither moved nor zoomed between two pictures.
 
     Pictures are (H, W, 3) uint8, BGR. `max_shift_px` limits the shift of the picture's centre, and
     that of the middle of its sides by rotation. `where` and `mend` tell in the message where the
     pictures are from and what to do. Raises `InputError` if the sizes differ, the camera moved, or
-    too few background points agree to tell.
+    too few background points agree to tell; with `must_be_known` False these say nothing.
     """
     start = f"camera {camera}: expected the same view in {where}"
     if reference.shape != other.shape:
@@ -92,6 +95,8 @@ def check_still(
         )
     found = movement(reference, other)
     if not found.known:
+        if not must_be_known:
+            return found
         raise InputError(
             f"{start}, found only {found.n_matches} background points that agree (of {MIN_MATCHES} "
             "needed, spread over the picture): check that both are of this camera, in light, and "
@@ -121,18 +126,9 @@ def static_picture(
     are not checked. Raises `InputError` if the camera moved, that cannot be told, or the median is
     mostly black.
     """
-    image, third, found = temporal_median(images), len(images) // 3, unknown()
+    image = temporal_median(images)
     check_light(source, image)
-    if third:
-        found = check_still(
-            camera,
-            temporal_median(images[:third]),
-            temporal_median(images[-third:]),
-            where=f"the first and the last third of {source}",
-            mend="film it again without touching the camera",
-            **limits,
-        )
-    return image, found
+    return image, _check_thirds(camera, source, images, mend=UNTOUCHED, **limits)
 
 
 def check_kept_still(
@@ -143,13 +139,19 @@ def check_kept_still(
     The median of a whole take shows nothing of a knock in its later half. If people leave too
     little of the background in a third, nothing is checked.
     """
+    _check_thirds(camera, source, images, mend=KNOCKED, must_be_known=False, **limits)
+
+
+def _check_thirds(
+    camera: str, source: StrPath, images: Sequence[NDArray], **options: Any
+) -> Movement:
+    """Check the first against the last third of a recording; unknown below three pictures."""
     third = len(images) // 3
     if not third:
-        return
-    first, last = temporal_median(images[:third]), temporal_median(images[-third:])
-    if movement(first, last).known:
-        where = f"the first and the last third of {source}"
-        check_still(camera, first, last, where=where, mend=KNOCKED, **limits)
+        return unknown()
+    ends = temporal_median(images[:third]), temporal_median(images[-third:])
+    where = f"the first and the last third of {source}"
+    return check_still(camera, *ends, where=where, **options)
 
 
 def check_light(path: StrPath, image: NDArray) -> None:

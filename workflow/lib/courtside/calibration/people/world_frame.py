@@ -4,7 +4,7 @@ The origin is on the floor below the middle of the people's paths, z is up, and 
 floor in the direction from the first camera to the second.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -156,16 +156,22 @@ def of_shape(
     moved += [Sim3(1.0, np.eye(3), e) for e in TINY_STEP * np.eye(3)]
     if scale_sigma is not None:
         moved.append(_about(middle, 1 + TINY_STEP, np.eye(3)))
-    of_cameras = np.stack([
-        conversion.network_of([one.camera(camera) for camera in cameras]).difference(network)
-        for one in moved
-    ], axis=1) / TINY_STEP  # fmt: skip
+    of_cameras = by_similarities(cameras, moved)
     of_points = np.stack([(one.points(xyz) - xyz).ravel() for one in moved], axis=1) / TINY_STEP
     seen = point_covariance.views(cameras, xyz)
     by_column = point_covariance.sensitivity(network, xyz, seen).reshape(xyz.size, -1)
     keep = np.eye(len(covariance)) - of_cameras @ (np.linalg.pinv(of_points) @ by_column)
     scale = of_cameras[:, -1:] * (scale_sigma or 0.0)
     return keep @ covariance @ keep.T + scale @ scale.T
+
+
+def by_similarities(cameras: Sequence[Camera], moved: Iterable[Sim3]) -> NDArray:
+    """Return how a network's columns (K,) follow similarities of `TINY_STEP`, (K, N)."""
+    network = conversion.network_of(cameras)
+    return np.stack([
+        conversion.network_of([one.camera(camera) for camera in cameras]).difference(network)
+        for one in moved
+    ], axis=1) / TINY_STEP  # fmt: skip
 
 
 def _about(middle: NDArray, scale: float, rotation: NDArray) -> Sim3:

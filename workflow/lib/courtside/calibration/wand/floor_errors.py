@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import conversion
+from courtside.calibration.people import world_frame
+from courtside.calibration.people.world_frame import TINY_STEP
 from courtside.calibration.wand import start, world
 from courtside.calibration.wand.adjustment import WRONG_SIGMAS
 from courtside.geometry import rotations
@@ -18,7 +20,6 @@ from courtside.geometry.camera import Camera
 from courtside.geometry.similarity import Sim3
 
 STILL_M = 0.05  # ASSUME: a marker that is nearer to its place in another frame has not moved
-TINY_STEP = 1e-6  # for numerical derivatives
 
 
 def covariances(
@@ -36,12 +37,8 @@ def covariances(
     known = np.isfinite(found.xyz).all(axis=1)
     places, seen = found.xyz[known], found.accepted[:, known].T
     by_place = _world_by_place(found.xyz.reshape(*xy.shape[1:3], 3), above_m, cameras)[:, known]
-    network = conversion.network_of(cameras)
-    by_world = np.stack([
-        conversion.network_of([moved.camera(camera) for camera in cameras]).difference(network)
-        for moved in map(_moved, TINY_STEP * np.eye(6))
-    ], axis=1) / TINY_STEP  # fmt: skip
-    by_cameras = point_covariance.sensitivity(network, places, seen)
+    by_world = world_frame.by_similarities(cameras, map(_moved, TINY_STEP * np.eye(6)))
+    by_cameras = point_covariance.sensitivity(conversion.network_of(cameras), places, seen)
     keep = np.eye(len(covariance)) + by_world @ np.einsum("api,pik->ak", by_place, by_cameras)
     marker = np.flatnonzero(known) % xy.shape[2]
     off_px = np.where(found.accepted, found.error_px, 0.0)[:, known].max(axis=0)

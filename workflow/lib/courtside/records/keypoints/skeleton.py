@@ -62,7 +62,7 @@ class Skeleton:
 
 def mirror(joints: Sequence[str]) -> list[int]:
     """Return for each joint the index of its counterpart on the other side, else its own."""
-    return [joints.index(_other_side(joint)) for joint in joints]
+    return [joints.index(other_side(joint)) for joint in joints]
 
 
 def without_side(name: str) -> str:
@@ -70,7 +70,8 @@ def without_side(name: str) -> str:
     return name.removeprefix("left_").removeprefix("right_")
 
 
-def _other_side(joint: str) -> str:
+def other_side(joint: str) -> str:
+    """Return the name of the counterpart on the other side, else the same name."""
     for side, other in SIDES.items():
         if joint.startswith(side):
             return other + joint.removeprefix(side)
@@ -98,7 +99,7 @@ def read(path: StrPath) -> Skeleton:
 
 def _check(path: StrPath, skeleton: Skeleton) -> None:
     used = [*skeleton.bones, *skeleton.segments.values(), *skeleton.groups.values()]
-    used += [tuple(skeleton.names), tuple(map(_other_side, skeleton.joints))]
+    used += [tuple(skeleton.names), tuple(map(other_side, skeleton.joints))]
     for joint in chain(*used):
         if joint not in skeleton.joints:
             raise InputError(
