@@ -100,7 +100,7 @@ def doubts(
     if abs(clock.drift_ppm) > 1e6 * MOST_DRIFT * prior_drift:
         said.append(
             f"expected a drift of at most {1e6 * MOST_DRIFT * prior_drift:.0f} ppm, found "
-            f"{clock.drift_ppm:.0f} ppm: a file lacks frames, or its rate is not the true one"
+            f"{clock.drift_ppm:.0f} ppm: look whether a file lacks frames, or states a wrong rate"
         )
     said += _beside(signals, time_s, clock)
     return [line for line in said if line]
