@@ -27,7 +27,7 @@ LABEL = (
     "real, `walk-4cams/balancing`, against OpenPose's joints in Pose2Sim's TRC, which rests on the "
     "original, faulty calibration file (no truth)"
 )
-COMMAND = "`python benchmarks/correct_real_footage.py`"
+COMMAND = "`python benchmarks/correct_real_footage.py RECORDINGS`"
 
 
 def rows(results, theirs):

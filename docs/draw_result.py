@@ -6,6 +6,7 @@ Nobody was filmed.
 known.
 """
 
+import argparse
 import sys
 from pathlib import Path
 
@@ -22,6 +23,7 @@ from courtside.records.cameras import footage
 from courtside.records.keypoints import derived_joints, keypoints, skeleton
 from courtside.records.truth import take_truth
 from courtside.statistics import normal_errors
+from courtside.study.errors import InputError
 from courtside.video import reader
 
 SESSION, TAKE, TIME_S = "players-b", "shot", 2.37
@@ -111,4 +113,16 @@ def compare(axis, drawn, true):
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]) if sys.argv[1:] else ROOT / "results", ROOT / "docs" / "result.png")
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument(
+        "results",
+        type=Path,
+        nargs="?",
+        default=ROOT / "results",
+        help="folder of a default run (default: results)",
+    )
+    given = parser.parse_args()
+    try:
+        main(given.results, ROOT / "docs" / "result.png")
+    except (InputError, OSError) as error:
+        sys.exit(f"Error: {error}")

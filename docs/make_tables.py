@@ -25,8 +25,18 @@ def main(results, documents_only):
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("results", type=Path, nargs="?", default=ROOT / "results")
-    parser.add_argument("--documents", action="store_true", help="from the register as it is")
+    parser.add_argument(
+        "results",
+        type=Path,
+        nargs="?",
+        default=ROOT / "results",
+        help="folder of a default run (default: results)",
+    )
+    parser.add_argument(
+        "--documents",
+        action="store_true",
+        help="write the documents from docs/numbers.csv, without results",
+    )
     given = parser.parse_args()
     try:
         print("\n".join(main(given.results, given.documents)))

@@ -1,7 +1,9 @@
 """Documents name only files that exist, their lines are short, the glossary leads to every term."""
 
 import re
+import runpy
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -79,3 +81,31 @@ def long_lines(path):
 @pytest.mark.parametrize("path", [*MARKDOWN, *tracked("workflow/report/*.rst")], ids=name)
 def test_lines_are_short(path):
     assert long_lines(path) == []
+
+
+def ended(monkeypatch, program, *words):
+    """Return how a program ends when it is given these words."""
+    monkeypatch.setattr(sys, "argv", [program, *words])
+    with pytest.raises(SystemExit) as end:
+        runpy.run_path(str(ROOT / program), run_name="__main__")
+    return end.value.code
+
+
+@pytest.mark.parametrize(
+    ("program", "explained"),
+    [
+        ("docs/draw_result.py", ["results"]),
+        ("docs/make_tables.py", ["results", "--documents"]),
+        ("workflow/draft_session.py", ["folder", "--name NAME", "--court COURT", "--sessions"]),
+    ],
+)
+def test_help_explains_every_argument(program, explained, monkeypatch, capsys):
+    assert ended(monkeypatch, program, "--help") == 0
+    said = capsys.readouterr().out
+    lines = re.findall(r"^  (\S.*?)(?:  +|\n {10,})\S", said, flags=re.M)
+    assert [word for word in explained if not any(one.startswith(word) for one in lines)] == []
+
+
+def test_the_picture_of_the_readme_without_results_is_refused_in_one_line(monkeypatch, tmp_path):
+    said = ended(monkeypatch, "docs/draw_result.py", str(tmp_path / "nothing"))
+    assert said.startswith("Error: ") and len(said.splitlines()) == 1

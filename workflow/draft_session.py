@@ -86,9 +86,18 @@ def shown(path):
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=" ".join(__doc__.split("\n\n")[:2]))
     parser.add_argument("folder", type=Path, help="folder of recordings, such as data/north")
-    parser.add_argument("--name", help="of the session; the folder's without it")
-    parser.add_argument("--court", help="a file of config/courts (default: badminton), or none")
-    parser.add_argument("--sessions", type=Path, default=REPOSITORY / "config" / "sessions")
+    parser.add_argument("--name", help="of the session (default: the name of the folder)")
+    parser.add_argument(
+        "--court",
+        help="a file of config/courts, or none (default: badminton; none with a calibration file "
+        "or without videos of fixed cameras)",
+    )
+    parser.add_argument(
+        "--sessions",
+        type=Path,
+        default=REPOSITORY / "config" / "sessions",
+        help="folder of the files of sessions (default: config/sessions)",
+    )
     given = parser.parse_args()
     try:
         print("\n".join(main(given.folder, given.name, given.court, given.sessions)))

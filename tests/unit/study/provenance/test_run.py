@@ -201,7 +201,7 @@ def test_sessions_that_wait_for_clicks_are_told(study):
     waiting = replace(study.sessions["plain-tiny"], unclicked="data/p.csv")
     (line,) = run.waiting_for_clicks(replace(study, sessions={"plain-tiny": waiting}))
     assert line.startswith("plain-tiny: court points are not clicked yet: open results/plain-tiny/")
-    assert "save them as data/p.csv" in line
+    assert line.endswith("save them as data/p.csv, and give the same command again")
 
 
 def test_warnings_about_cameras_of_recorded_takes_are_told(study, tmp_path, monkeypatch):

@@ -31,15 +31,13 @@ SUMMED_UP = {  # what was measured: table, regular expression of its row, what i
         "^all ",
         "{walk18} cm in the median hall, {walk18_worst} cm in the worst",
     ),
-    "the same halls with the court's lines, in other trials: median, worst hall, cm; points in "
-    "90 % ellipsoids": (
+    "the same halls, with the court's painted lines too (other trials): RMS error in the median "
+    "hall, in the worst, cm; points in their 90 % ellipsoids": (
         "walk-lines",
         "^the six halls",
-        "{both} (walk and 18 clicks alone in these trials: {clicks})",
+        "{both} (without the lines: {clicks})",
     ),
-    "joints of two virtual players (one of them in four of five takes alone), four cameras, "
-    "corrected (joint offsets were fitted in three layouts; one of them is that of these players): "
-    "median / 95 %": (
+    "joints of two virtual players, four cameras, corrected: median / 95 % of the errors": (
         "players-sessions",
         "^`players-b`",
         "{corrected_median} / {corrected_p95} mm in the median take, "

@@ -197,7 +197,7 @@ def waiting_for_clicks(study: Study) -> list[str]:
     pages = [paths.CLICKING_PAGE.format(session=session.name) for session in waiting]
     return [
         f"{session.name}: court points are not clicked yet: open {page} in a browser, "
-        f"click them, save them as {session.unclicked}, and run snakemake again"
+        f"click them, save them as {session.unclicked}, and give the same command again"
         for session, page in zip(waiting, pages, strict=True)
     ]
 
@@ -278,7 +278,7 @@ def told_without_jobs(study: Study, is_dry: bool) -> list[str]:
     except OSError as error:
         return [
             f"Error: {error.filename}: expected a file that can be written, with what persons have "
-            f"not agreed to, found: {error.strerror}; mend this, then run `snakemake` again"
+            f"not agreed to, found: {error.strerror}; mend this, then give the same command again"
         ]
 
 
