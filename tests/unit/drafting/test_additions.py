@@ -5,7 +5,7 @@ import yaml
 
 from courtside.drafting import additions
 from courtside.drafting import guess as session_guess
-from courtside.drafting.guess import Recording
+from courtside.drafting.recordings import Recording
 from courtside.study.configuration import schemas
 from courtside.study.errors import InputError
 

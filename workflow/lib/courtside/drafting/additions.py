@@ -5,8 +5,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from courtside.drafting import draft
-from courtside.drafting.guess import Guess, Take
 from courtside.drafting.names import distinct
+from courtside.drafting.recordings import Guess, Take
 from courtside.drafting.survey import written
 from courtside.study.configuration.yaml_files import Content
 from courtside.study.errors import InputError, StrPath

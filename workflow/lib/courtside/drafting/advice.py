@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from courtside.drafting import draft
-from courtside.drafting.guess import Guess, Take, is_called_walk
+from courtside.drafting.recordings import Guess, Take, is_called_walk
 from courtside.study.errors import StrPath
 from courtside.study.methods import NEEDS_COURT
 

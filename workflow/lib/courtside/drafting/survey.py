@@ -9,7 +9,7 @@ from typing import Any
 
 from courtside.calibration import file_formats
 from courtside.devices import depth_folder, frame_numbers, openpose
-from courtside.drafting.guess import Recording
+from courtside.drafting.recordings import Recording
 from courtside.records.cameras import clicks
 from courtside.study.errors import InputError, StrPath
 from courtside.study.execution.files import PHOTOS
