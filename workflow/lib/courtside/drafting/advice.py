@@ -3,7 +3,8 @@
 from collections.abc import Iterator
 
 from courtside.drafting import draft
-from courtside.drafting.recordings import Guess, Take, is_called_walk
+from courtside.drafting.names import words_of
+from courtside.drafting.recordings import Guess, Take, is_called_walk, uncounted
 from courtside.study.errors import StrPath
 from courtside.study.methods import NEEDS_COURT
 
@@ -86,11 +87,30 @@ def _odd(guess: Guess) -> Iterator[str]:
             yield f"camera {camera} has pictures of {found} pixels"
     for name, take in guess.takes.items():
         yield from _odd_take(name, take)
+    yield from _doubtful(guess)
     yield from _only_video(guess)
     filmed = [recording for take in guess.takes.values() for recording in take.values()]
     for recording in [*guess.walks.values(), *filmed, *(r for *_, r in guess.devices)]:
         if recording.note:
             yield f"{recording.path}: {recording.note}"
+
+
+def _doubtful(guess: Guess) -> Iterator[str]:
+    """Yield where names may be read in another way: takes for cameras, or takes for walks."""
+    if guess.doubtful and any(guess.takes.values()):
+        yield (
+            f"the file names can be read in several ways: {', '.join(guess.cameras)} were taken "
+            f"for cameras, {', '.join(guess.takes)} for takes; check that the videos of each take "
+            "show one recording"
+        )
+    own = {word for camera in guess.cameras for word in words_of([camera])}
+    for walk in (walk for walk in guess.walks.values() if walk.kind == "video"):
+        taken = any(uncounted(word) in own for word in walk.words)
+        if taken or (guess.cameras and not guess.takes and not is_called_walk(walk)):
+            yield (
+                f"{walk.path} was taken for a walk; if a fixed camera filmed it, name the camera "
+                "and the take in its name"
+            )
 
 
 def _only_video(guess: Guess) -> Iterator[str]:

@@ -35,7 +35,8 @@ def guess(recordings: Sequence[Recording]) -> Guess:
     filmed = any(r.kind == "video" for r in recordings)
     videos = [r for r in recordings if r.kind == ("video" if filmed else "keypoints")]
     own = _own_words(recordings, videos)
-    cameras = camera_words.of(recordings, videos, own)
+    cameras, found.doubtful = camera_words.of(recordings, videos, own)
+    own = camera_words.without_trials(recordings, own, cameras)
     rest = _sort_pictures(found, recordings, own, cameras)
     rest = pairing.numbered(found, rest) if not cameras else rest
     pairing.group(found, rest)

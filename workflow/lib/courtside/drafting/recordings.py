@@ -1,7 +1,7 @@
 """Recordings of a folder, the words of their names, and what a session may use them for."""
 
 import re
-from collections.abc import Container
+from collections.abc import Container, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -27,6 +27,8 @@ WEBCAM = "webcam"
 RECORDERS = {*DEVICES.values(), WEBCAM, "depth"}
 RECORDERS |= {"d405", "d415", "d435", "d455", "l515"}  # of RealSense
 D435I = ["d435", "i"]  # as words
+# ASSUME: cameras that are started and stopped by hand for one take differ by no more than both.
+APART_S, APART = 5.0, 0.2
 
 
 @dataclass(frozen=True)
@@ -101,6 +103,7 @@ class Guess:
     people: Recording | None = None  # in which persons are named
     calibration: Recording | None = None
     unused: list[tuple[Recording, str]] = field(default_factory=list)  # with the reason
+    doubtful: bool = False  # whether names may be read in another way: takes for cameras
 
     def films(self, camera: str) -> list[Recording]:
         """Return a camera's recordings of takes."""
@@ -110,6 +113,12 @@ class Guess:
 def called(recording: Recording, vocabulary: Container[str]) -> bool:
     """Say whether a word of a recording's name, but for its number, is one of these."""
     return any(uncounted(word) in vocabulary for word in recording.words)
+
+
+def lengths_fit(recordings: Iterable[Recording]) -> bool:
+    """Say whether recordings are about as long as each other, as those of one take are."""
+    lengths = [r.duration_s for r in recordings if r.duration_s is not None]
+    return not lengths or max(lengths) - min(lengths) <= max(APART_S, APART * max(lengths))
 
 
 def uncounted(word: str) -> str:
