@@ -8,5 +8,5 @@ pairing: `group`, `numbered`: recordings that are one take
 names: `words_of`, `name`, `distinct`, `alike`: words of any script; `device_names`: of recorders
 additions: `to_paste`: takes that a session's file has not yet
 draft: `text`, `write`, `write_study`: the session's file and its study
-advice: `to_check`: what a user should check after that
+advice: `to_check`, `doubts`: what a user should check after that
 """

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from courtside.drafting import draft
 from courtside.drafting.names import words_of
-from courtside.drafting.recordings import Guess, Take, is_called_walk, uncounted
+from courtside.drafting.recordings import Guess, Take, is_called_walk, lengths_fit, uncounted
 from courtside.study.errors import StrPath
 from courtside.study.methods import NEEDS_COURT
 
@@ -87,7 +87,7 @@ def _odd(guess: Guess) -> Iterator[str]:
             yield f"camera {camera} has pictures of {found} pixels"
     for name, take in guess.takes.items():
         yield from _odd_take(name, take)
-    yield from _doubtful(guess)
+    yield from doubts(guess)
     yield from _only_video(guess)
     filmed = [recording for take in guess.takes.values() for recording in take.values()]
     for recording in [*guess.walks.values(), *filmed, *(r for *_, r in guess.devices)]:
@@ -95,8 +95,13 @@ def _odd(guess: Guess) -> Iterator[str]:
             yield f"{recording.path}: {recording.note}"
 
 
-def _doubtful(guess: Guess) -> Iterator[str]:
-    """Yield where names may be read in another way: takes for cameras, or takes for walks."""
+def doubts(guess: Guess) -> Iterator[str]:
+    """Yield what names leave open: which words name cameras, which videos are takes and which."""
+    if guess.by_order:
+        yield (
+            f"no name tells which videos are of one take: those of {', '.join(guess.by_order)} "
+            "were put together in the order of each camera's files; check them"
+        )
     if guess.doubtful and any(guess.takes.values()):
         yield (
             f"the file names can be read in several ways: {', '.join(guess.cameras)} were taken "
@@ -134,6 +139,9 @@ def _odd_take(name: str, take: Take) -> Iterator[str]:
     lengths = [r.duration_s for r in take.values() if r.duration_s is not None]
     if max(lengths) > 2 * min(lengths):
         yield f"take {name} has videos whose lengths differ more than twofold"
+    elif not lengths_fit(take.values()):
+        found = f"{min(lengths):.1f} to {max(lengths):.1f} s"
+        yield f"take {name} has videos of {found}; check that they show one recording"
     if len(lengths) > 1 and min(lengths) < SHORT_S and not draft.as_many_frames(take):
         yield (
             f"take {name} is {min(lengths):.1f} s long: in less than {SHORT_S} s the clocks of "

@@ -248,6 +248,7 @@ def _rename(found: Guess) -> None:
         own = [r for name, _, r in found.devices if name == take == _take_of(r)]
         shown = [*films.values()] or own
         takes[take] = distinct(_named(take, shown, f"take{at}"), takes.values())
+    found.by_order = [takes[take] for take in found.by_order]
     found.takes, found.keypoints = (
         {takes[key]: {cameras[c]: r for c, r in take.items()} for key, take in kind.items()}
         for kind in (found.takes, found.keypoints)

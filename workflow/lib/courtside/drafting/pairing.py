@@ -1,5 +1,7 @@
 """Which recordings of several cameras belong to one take."""
 
+import re
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import timedelta
 
@@ -8,6 +10,8 @@ from courtside.drafting.recordings import FOLDERS, Guess, Placed, Recording, Tak
 
 # ASSUME: what is started for one take is started within so long.
 SLACK = timedelta(seconds=30)
+# ASSUME: counters of one camera that differ by more went from 9999 to 1 between.
+ANEW = 9000
 
 
 def numbered(found: Guess, rest: Sequence[Placed]) -> list[Placed]:
@@ -39,7 +43,7 @@ def group(found: Guess, rest: Iterable[Placed]) -> None:
     """Group recordings into takes: by the words other than the camera's, else by their order."""
     takes: dict[str, Take] = {}
     left: dict[str, list[Recording]] = {}
-    for recording, camera, words in _with_counters(list(rest)):
+    for recording, camera, words in _without_counted(found, _with_marks(list(rest))):
         if camera is None:
             found.unused.append((recording, _nameless(recording)))
             continue
@@ -58,16 +62,64 @@ def group(found: Guess, rest: Iterable[Placed]) -> None:
     _pair(found, left)
 
 
-def _with_counters(rest: Sequence[Placed]) -> list[Placed]:
-    """Add counters and moments to the words of recordings of one camera that are else alike."""
-    seen: dict[tuple[str | None, tuple[str, ...]], int] = {}
-    for _, camera, words in rest:
-        seen[camera, words] = seen.get((camera, words), 0) + 1
+def _with_marks(rest: Sequence[Placed]) -> list[tuple[Placed, str]]:
+    """Add the counter or moment to recordings of one camera whose words are else alike."""
+    seen = Counter((camera, words) for _, camera, words in rest)
     repeated = {words for (_, words), count in seen.items() if count > 1}
     return [
-        (r, c, (*words, r.device.mark) if words in repeated and r.device else words)
-        for r, c, words in rest
+        (one, one[0].device.mark if one[2] in repeated and one[0].device else "") for one in rest
     ]
+
+
+def _without_counted(found: Guess, marked: Sequence[tuple[Placed, str]]) -> list[Placed]:
+    """Pair those that counters alone tell apart; return the others, with marks as words.
+
+    Cameras count for themselves: equal counters of two do not mean one take.
+    """
+    alike: dict[tuple[str, ...], dict[str, list[Recording]]] = {}
+    for (recording, camera, words), mark in marked:
+        if mark and camera is not None:
+            alike.setdefault(words, {}).setdefault(camera, []).append(recording)
+    done = set()
+    for words, own in alike.items():
+        every = [recording for films in own.values() for recording in films]
+        if len(own) > 1 and not all(r.device and r.device.begun for r in every):
+            done |= {recording.path for recording in every}
+            _pair_in_order(found, own, words)
+    rest = [(one, mark) for one, mark in marked if one[0].path not in done]
+    return [(r, camera, (*words, mark) if mark else words) for (r, camera, words), mark in rest]
+
+
+def _pair_in_order(
+    found: Guess, own: Mapping[str, Sequence[Recording]], words: Sequence[str] = ()
+) -> None:
+    """Make the recordings of each camera takes in their order, if all have as many."""
+    if len({len(films) for films in own.values()}) > 1:
+        counts = ", ".join(f"{camera} {len(films)}" for camera, films in own.items())
+        why = (
+            f"no name tells which recordings are one take, and the cameras have not as many "
+            f"({counts}): remove those of no take, or name the takes in the names of the files"
+        )
+        found.unused += [(recording, why) for films in own.values() for recording in films]
+        return
+    in_order = zip(*map(_in_order, own.values()), strict=True)
+    for at, together in enumerate(in_order, start=1):
+        marks = {recording.device.mark if recording.device else "" for recording in together}
+        name = "_".join(words) + str(at) if words else f"take{at}"
+        if len(marks) == 1 and any(marks):
+            name = "_".join([*words, *marks])
+        name = distinct(name, found.takes)
+        found.takes[name] = dict(zip(own, together, strict=True))
+        found.by_order.append(name)
+
+
+def _in_order(recordings: Sequence[Recording]) -> list[Recording]:
+    """Return recordings of a camera in the order of its counter, which may begin anew."""
+    marks = [re.search("[0-9]{4}$", r.device.mark if r.device else "") for r in recordings]
+    numbers = {r.path: int(mark[0]) for r, mark in zip(recordings, marks, strict=True) if mark}
+    if not all(marks) or max(numbers.values()) - min(numbers.values()) < ANEW:
+        return list(recordings)
+    return sorted(recordings, key=lambda r: numbers[r.path] < ANEW / 2)
 
 
 def _nameless(recording: Recording) -> str:
@@ -98,9 +150,7 @@ def _pair(found: Guess, left: Mapping[str, Sequence[Recording]]) -> None:
             else:
                 _leave(found, group, camera_of)
     elif len(left) > 1 and len({len(own) for own in left.values()}) == 1:
-        for at, together in enumerate(zip(*left.values(), strict=True), start=1):
-            name = distinct(f"take{at}", found.takes)
-            found.takes[name] = dict(zip(left, together, strict=True))
+        _pair_in_order(found, left)
     else:
         _leave(found, every, camera_of)
 

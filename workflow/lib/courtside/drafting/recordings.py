@@ -103,6 +103,7 @@ class Guess:
     people: Recording | None = None  # in which persons are named
     calibration: Recording | None = None
     unused: list[tuple[Recording, str]] = field(default_factory=list)  # with the reason
+    by_order: list[str] = field(default_factory=list)  # takes that no name tells, but the order
     doubtful: bool = False  # whether names may be read in another way: takes for cameras
 
     def films(self, camera: str) -> list[Recording]:
