@@ -5,7 +5,7 @@ import yaml
 
 from courtside.drafting import additions
 from courtside.drafting import guess as session_guess
-from courtside.drafting.guess import Recording
+from courtside.drafting.recordings import Recording
 from courtside.study.configuration import schemas
 from courtside.study.errors import InputError
 
@@ -93,3 +93,13 @@ def test_takes_are_not_poured_into_a_session_of_another_folder(content, found):
         "north.yaml: expected no file of that name, or one of recordings in data/north, found "
         f"{found} and left it; give this session another name by --name"
     )
+
+
+def test_new_takes_that_only_the_order_of_files_makes_are_told():
+    counted = [("left", 7), ("left", 8), ("right", 12), ("right", 13)]
+    films = recordings("a_left", "a_right", *(f"{c}_IMG_{n:04d}" for c, n in counted))
+    guess = session_guess.guess(films)
+    content = yaml.safe_load(SESSION)
+    lines = additions.to_paste(guess, content, path="north.yaml", folder="data/north")
+    (line,) = (line for line in lines if line.startswith("Odd"))
+    assert "those of take1, take2 were put together in the order of each camera's files" in line

@@ -89,3 +89,26 @@ def test_names_of_another_script_are_said():
     said = "\n".join(advice.to_check(guess, "north.yaml", "c.csv", "n.yaml"))
     assert "camera left (data/north/左カメラ_試技1.mp4)" in said
     assert "take trial1 (data/north/左カメラ_試技1.mp4)" in said
+
+
+def odd(*recordings):
+    lines = advice.to_check(guessed(*recordings), "n.yaml", "c.csv", "s.yaml")
+    return [line for line in lines if line.startswith("Odd")]
+
+
+def test_takes_that_only_the_order_of_files_makes_are_told():
+    films = [
+        recording(f"data/north/{camera}/clip ({number}).mp4", duration_s=20.0)
+        for camera, numbers in (("left", (8, 9)), ("right", (1, 2)))
+        for number in numbers
+    ]
+    (line,) = odd(*films)
+    assert "those of take1, take2 were put together in the order of each camera's files" in line
+
+
+def test_videos_of_unlike_lengths_in_a_take_are_told():
+    films = {"clip1_left": 24.0, "clip1_right": 14.0}
+    (line,) = odd(*(recording(f"data/north/{n}.mp4", duration_s=s) for n, s in films.items()))[:1]
+    assert line == (
+        "Odd: take clip1 has videos of 14.0 to 24.0 s; check that they show one recording"
+    )

@@ -5,7 +5,7 @@ import yaml
 
 from courtside.drafting import advice
 from courtside.drafting import draft as session_draft
-from courtside.drafting.guess import Recording
+from courtside.drafting.recordings import Recording
 from courtside.study.configuration import schemas, session_faults, session_files, yaml_files
 from courtside.study.errors import InputError
 from fixtures.study.drafts import CALIBRATION, TAKE, THREE, WALK, draft, recording

@@ -5,7 +5,7 @@ from pathlib import PurePosixPath
 import pytest
 
 from courtside.drafting import guess as session_guess
-from courtside.drafting.guess import Recording
+from courtside.drafting.recordings import Recording
 from courtside.study.configuration import configuration
 
 

@@ -70,6 +70,14 @@ def test_every_kind_is_found(gym):
     assert found["data/My Gym/cut right.mp4"].note.startswith("expected a video")
 
 
+def test_numbers_in_names_are_in_order_of_their_values(tmp_path):
+    names = ["cam 2/clip (9).mp4", "cam 2/clip (10).mp4", "cam 10/clip (1).mp4"]
+    for name in names:
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        video_files.write(str(tmp_path / name), n=2, rate=10)
+    assert [r.path for r in survey.survey(tmp_path, root=tmp_path)] == names
+
+
 def test_a_table_of_named_persons_is_known_by_its_columns(tmp_path):
     (tmp_path / "who.csv").write_text("take,subject,camera,time_s,x_px,y_px,from_s,to_s\n")
     (found,) = survey.survey(tmp_path, root=tmp_path)

@@ -1,4 +1,4 @@
-"""The size of a board: one remark where no board has it."""
+"""Remarks on boards: a size that no board has, lenses from a chessboard that nothing uses."""
 
 import pytest
 
@@ -26,3 +26,39 @@ def test_it_is_told_with_the_session(hall):
     hall.content["board"] = {"squares": [4, 5], "square_m": 0.54}
     _, (line,) = hall.said()
     assert line.startswith("config/sessions/hall.yaml: board: expected a longer side")
+
+
+def chessboards(hall, *names):
+    """Give cameras of the hall pictures of a chessboard, as a draft writes them."""
+    pictures = {"images": str(hall.root), "inner_corners": [7, 4]}
+    hall.content["cameras"] |= {name: {"chessboard": pictures} for name in names}
+
+
+def test_lenses_from_chessboards_that_no_calibration_uses_are_told(hall):
+    chessboards(hall, "left", "back")
+    assert hall.said() == (
+        [],
+        [
+            "config/sessions/hall.yaml: cameras: the lenses from `chessboard` of left, back are "
+            "not used by file; `board` and `wand` (without `lenses`), `people` and "
+            "`known18-board` use them"
+        ],
+    )
+
+
+def test_lenses_that_a_wand_or_people_use_are_not_told(hall):
+    chessboards(hall, "left", "right", "back")
+    hall.content["subjects"]["p1"]["height_m"] = 1.74
+    hall.content["override"] = {"calibrations": ["people"], "take_calibrations": ["people"]}
+    assert hall.said() == ([], [])
+    ways = ["file", "people", "file-people"]
+    hall.content["override"] = {"calibrations": ways, "take_calibrations": ways[2:]}
+    (line,) = hall.said()[1]
+    assert "are not used by file-people;" in line
+    hall.content["override"] = {"calibrations": ["wand"], "take_calibrations": ["wand"]}
+    wand = {"points": str(hall.root / "w.csv"), "length_m": 0.5}
+    hall.content["wand"] = wand
+    assert hall.said() == ([], [])
+    hall.content["wand"] = wand | {"lenses": str(hall.root / "cameras.toml")}
+    (line,) = hall.said()[1]
+    assert "are not used by wand;" in line

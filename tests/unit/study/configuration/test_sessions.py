@@ -232,6 +232,26 @@ def test_a_walk_measures_takes_only_where_a_court_gives_metres():
     assert on_court.unscaled() == []
 
 
+@pytest.mark.parametrize(
+    ("way", "reads"),
+    [
+        *((way, True) for way in ("known18-board", "known18-board-people", "people")),
+        *((way, True) for way in ("board", "wand", "board-people", "wand-people")),
+        *((way, False) for way in ("file", "known", "known18", "dlt18")),
+        *((way, False) for way in ("sfm-n40", "sfm-n40-lines", "sfm-n40-people", "paper-n40")),
+    ],
+)
+def test_some_calibrations_read_the_lenses_from_chessboards(way, reads):
+    cameras = {name: sessions.FixedCamera(chessboard=BOARD) for name in "ab"}
+    assert session(cameras=cameras).chessboards_of(way) == ["a", "b"] * reads
+    stated = {"lenses": "c.toml"}
+    other = session(cameras=cameras, board=stated, wand=stated).chessboards_of(way)
+    assert other == ["a", "b"] * (reads and not way.startswith(("board", "wand")))
+    one = {**cameras, "b": sessions.FixedCamera()}
+    assert session(cameras=one).chessboards_of("wand") == ["a"]
+    assert session(cameras=one).chessboards_of("board") == []
+
+
 def test_fixed_cameras_measure_a_take_that_enough_of_them_see_where_they_are_calibrated():
     parameters = {"calibrations": WAYS, "take_calibrations": ["file"], "fusions": ["all-robust"]}
     found = session(calibration_file="c.toml", parameters=parameters)

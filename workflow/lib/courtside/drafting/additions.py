@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from courtside.drafting import draft
-from courtside.drafting.guess import Guess, Take
+from courtside.drafting import advice, draft
 from courtside.drafting.names import distinct
+from courtside.drafting.recordings import Guess, Take
 from courtside.drafting.survey import written
 from courtside.study.configuration.yaml_files import Content
 from courtside.study.errors import InputError, StrPath
@@ -38,7 +38,7 @@ def to_paste(guess: Guess, content: Content, *, path: StrPath, folder: str) -> l
         f"Left {path} as it is. {n_new} take{'s' * (n_new > 1)} of {folder} "
         f"{'are' if n_new > 1 else 'is'} not in it: copy these lines to the end of its `takes`.",
         *["", *lines, ""],
-        *_odd(new, content),
+        *(f"Odd: {line}" for line in (*_odd(new, content), *advice.doubts(new))),
         *filter(None, [guesses]),
         "Write new persons into its `subjects`, with their consent.",
     ]
@@ -84,6 +84,7 @@ def missing(guess: Guess, content: Content) -> Guess:
         cameras=[own[camera] for camera in guess.cameras],
         takes=named(guess.takes),
         keypoints=named(guess.keypoints),
+        by_order=[names[take] for take in guess.by_order if take in names],
         devices=[(names[take], kind, r) for take, kind, r in guess.devices if take in names],
     )
 
@@ -119,4 +120,4 @@ def _subjects(content: Content) -> list[str]:
 def _odd(new: Guess, content: Content) -> Iterator[str]:
     filmed = {camera for take in new.takes.values() for camera in take}
     for camera in sorted(filmed - {*content["cameras"]}):
-        yield f"Odd: the session has no camera {camera}: correct the name, or add it to `cameras`."
+        yield f"the session has no camera {camera}: correct the name, or add it to `cameras`."

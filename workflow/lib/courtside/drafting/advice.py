@@ -3,7 +3,8 @@
 from collections.abc import Iterator
 
 from courtside.drafting import draft
-from courtside.drafting.guess import Guess, Take, is_called_walk
+from courtside.drafting.names import words_of
+from courtside.drafting.recordings import Guess, Take, is_called_walk, lengths_fit, uncounted
 from courtside.study.errors import StrPath
 from courtside.study.methods import NEEDS_COURT
 
@@ -86,11 +87,35 @@ def _odd(guess: Guess) -> Iterator[str]:
             yield f"camera {camera} has pictures of {found} pixels"
     for name, take in guess.takes.items():
         yield from _odd_take(name, take)
+    yield from doubts(guess)
     yield from _only_video(guess)
     filmed = [recording for take in guess.takes.values() for recording in take.values()]
     for recording in [*guess.walks.values(), *filmed, *(r for *_, r in guess.devices)]:
         if recording.note:
             yield f"{recording.path}: {recording.note}"
+
+
+def doubts(guess: Guess) -> Iterator[str]:
+    """Yield what names leave open: which words name cameras, which videos are takes and which."""
+    if guess.by_order:
+        yield (
+            f"no name tells which videos are of one take: those of {', '.join(guess.by_order)} "
+            "were put together in the order of each camera's files; check them"
+        )
+    if guess.doubtful and any(guess.takes.values()):
+        yield (
+            f"the file names can be read in several ways: {', '.join(guess.cameras)} were taken "
+            f"for cameras, {', '.join(guess.takes)} for takes; check that the videos of each take "
+            "show one recording"
+        )
+    own = {word for camera in guess.cameras for word in words_of([camera])}
+    for walk in (walk for walk in guess.walks.values() if walk.kind == "video"):
+        taken = any(uncounted(word) in own for word in walk.words)
+        if taken or (guess.cameras and not guess.takes and not is_called_walk(walk)):
+            yield (
+                f"{walk.path} was taken for a walk; if a fixed camera filmed it, name the camera "
+                "and the take in its name"
+            )
 
 
 def _only_video(guess: Guess) -> Iterator[str]:
@@ -114,6 +139,9 @@ def _odd_take(name: str, take: Take) -> Iterator[str]:
     lengths = [r.duration_s for r in take.values() if r.duration_s is not None]
     if max(lengths) > 2 * min(lengths):
         yield f"take {name} has videos whose lengths differ more than twofold"
+    elif not lengths_fit(take.values()):
+        found = f"{min(lengths):.1f} to {max(lengths):.1f} s"
+        yield f"take {name} has videos of {found}; check that they show one recording"
     if len(lengths) > 1 and min(lengths) < SHORT_S and not draft.as_many_frames(take):
         yield (
             f"take {name} is {min(lengths):.1f} s long: in less than {SHORT_S} s the clocks of "

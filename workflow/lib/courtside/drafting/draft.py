@@ -8,7 +8,7 @@ from pathlib import Path
 import yaml
 
 from courtside.drafting import names as file_names
-from courtside.drafting.guess import Guess, Recording, Take
+from courtside.drafting.recordings import Guess, Recording, Take
 from courtside.geometry import picture_size
 from courtside.study.configuration import configuration, schemas, yaml_files
 from courtside.study.configuration.sessions import FEWEST_ALONE

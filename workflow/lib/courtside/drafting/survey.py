@@ -9,12 +9,12 @@ from typing import Any
 
 from courtside.calibration import file_formats
 from courtside.devices import depth_folder, frame_numbers, openpose
-from courtside.drafting.guess import Recording
+from courtside.drafting.recordings import Recording
 from courtside.records.cameras import clicks
 from courtside.study.errors import InputError, StrPath
 from courtside.study.execution.files import PHOTOS
+from courtside.video import images, walk_frames
 from courtside.video import reader as video
-from courtside.video import walk_frames
 
 Reader = Callable[[Path], dict[str, Any] | None]  # what keys of a `Recording` a path has, if any
 VIDEOS = {".mp4", ".mov", ".m4v", ".avi", ".mkv", ".mts", ".m2ts", ".ts", ".mpg", ".mpeg"}
@@ -48,15 +48,21 @@ def survey(folder: StrPath, *, root: StrPath) -> list[Recording]:
         )
     found = []
     for at, inner, names in os.walk(folder):
-        inner[:] = sorted(name for name in inner if not name.startswith("."))
+        inner[:] = _in_name_order(inner)
         if depth_folder.is_one(at):
             found.append(_described(Path(at), folder, root, _depth))
             inner[:] = []
             continue
-        names = sorted(name for name in names if not name.startswith("."))
-        for path, reader in _readers(Path(at), inner, names, below=Path(at) != folder):
+        files = _in_name_order(names)
+        for path, reader in _readers(Path(at), inner, files, below=Path(at) != folder):
             found.append(_described(path, folder, root, reader))
     return [recording for recording in found if recording]
+
+
+def _in_name_order(names: Sequence[str]) -> list[str]:
+    """Return the names in a folder but hidden ones, numbers by value: `clip 9` before `clip 10`."""
+    shown = [name for name in names if not name.startswith(".")]
+    return sorted(shown, key=lambda name: images.name_order(Path(name)))
 
 
 def _readers(

@@ -2,7 +2,7 @@
 
 check: `check`: all sessions of a study; every fault in one `InputError`
 bodies: `remarks`, `unlike`, `compared`: unlikely masses; persons who differ; nobody to compare
-boards: `remarks`: a board of an impossible size
+boards: `remarks`: a board of an impossible size; `unread_lenses` from chessboards
 calibrated: `faults`: cameras and sizes against the calibration file, sizes of a camera's recordings
 views: `faults`: one view given for two cameras, exchanged cameras
 lengths: `faults`, `remarks`: numbers of frames and rates of the cameras of a take

@@ -224,7 +224,8 @@ class _Session:
         return sum(int(s / every_s) + 1 for s in known_s) if len(known_s) == len(walks) else None
 
     def _of_session(self) -> Iterator[str]:
-        """Yield why the cameras of a walk measure no take, and takes of the same video."""
+        """Yield lenses that are not used, takes of one video, why a walk's cameras measure none."""
+        yield from boards.unread_lenses(self._session)
         yield from stated_times.repeated(self._session)
         filmed = any(len(take.cameras) > 1 for take in self._session.takes.values())
         if filmed and self._session.unscaled() and not self._session.take_calibrations():

@@ -191,6 +191,19 @@ class Session:
         ways = map(Calibration.parse, self.parameters["calibrations"])
         return [way.name for way in ways if allowed(way)]
 
+    def chessboards_of(self, way: str) -> list[str]:
+        """Return the cameras whose lenses from a chessboard a calibration, or its base, reads."""
+        own = [name for name, camera in self.cameras.items() if camera.chessboard]
+        found = Calibration.parse(way)
+        kind = Calibration.parse(found.base).kind if found.base else found.kind
+        stated = {"board": self.board, "wand": self.wand}.get(kind) or {}
+        reads = {
+            "board": "lenses" not in stated and len(own) == len(self.cameras),
+            "wand": "lenses" not in stated,
+            ALONE: True,
+        }
+        return own if reads.get(kind, found.board) else []
+
     def has_covariance(self, way: Calibration) -> bool:
         """Return whether the covariance of the cameras of a calibration is known."""
         return way.has_covariance or (way.kind == "file" and self.file_covariance is not None)

@@ -115,8 +115,7 @@ def joint_offsets(job: Job) -> Path | list:
 
 def known_lenses(job: Job) -> list[str]:
     """Return the lenses of the cameras that have pictures of a chessboard."""
-    own = [name for name, camera in job.session.cameras.items() if camera.chessboard]
-    return job.of_each(paths.LENS, camera=own)
+    return _lenses(job, "people")
 
 
 def wanted_takes(job: Job) -> list[str]:
@@ -251,7 +250,11 @@ def boards(job: Job) -> str | list[str]:
 
 def lenses(job: Job) -> list[str]:
     """Return the lens of each fixed camera where the calibration needs it."""
-    return each_fixed(job, paths.LENS) if _way(job).board else []
+    return _lenses(job, job["calibration"])
+
+
+def _lenses(job: Job, way: str) -> list[str]:
+    return job.of_each(paths.LENS, camera=job.session.chessboards_of(way))
 
 
 def board_files(job: Job) -> list[str]:
@@ -270,9 +273,7 @@ def _files_of(source: str) -> list[str]:
 
 def board_lenses(job: Job) -> list[str]:
     """Return the lenses from chessboards of each camera, where boards do not state others."""
-    cameras = job.session.cameras.values()
-    known = "lenses" in (job.session.board or {}) or not all(c.chessboard for c in cameras)
-    return [] if known else each_fixed(job, paths.LENS)
+    return _lenses(job, "board")
 
 
 def board_pictures(job: Job) -> list[str]:
@@ -289,7 +290,7 @@ def wand_files(job: Job) -> list[str]:
 
 def wand_lenses(job: Job) -> list[str]:
     """Return the lenses from chessboards of cameras, if the wand gives no `lenses`."""
-    return [] if "lenses" in (job.session.wand or {}) else known_lenses(job)
+    return _lenses(job, "wand")
 
 
 def wand_pictures(job: Job) -> list[str]:

@@ -1,0 +1,127 @@
+"""Which words of file names are taken for cameras."""
+
+import pytest
+
+from courtside.drafting import advice, camera_words
+from courtside.drafting import guess as session_guess
+from fixtures.study.drafts import recording
+
+
+def takes(*names, **lengths_s):
+    """Return the cameras and takes of videos of 20 s, and whether users are told to check them.
+
+    `lengths_s` are those of others, by the name of the file without its ending.
+    """
+    films = [
+        recording(f"data/north/{name}.mp4", duration_s=lengths_s.get(name, 20.0))
+        for name in sorted(names)
+    ]
+    guess = session_guess.guess(films)
+    said = advice.to_check(guess, "n.yaml", "c.csv", "s.yaml")
+    files = {
+        take: {camera: r.path.removeprefix("data/north/")[:-4] for camera, r in own.items()}
+        for take, own in guess.takes.items()
+    }
+    odd = [line for line in said if line.startswith("Odd: ")]
+    return files, odd
+
+
+def each(pattern, **words):
+    """Return the names that a pattern gives with all combinations of words."""
+    names = [pattern]
+    for key, values in words.items():
+        names = [name.replace(f"<{key}>", value) for name in names for value in values.split()]
+    return names
+
+
+SIDES = {"camera": "left right"}
+EMPTY = ("left_empty", "right_empty")
+
+
+def test_a_number_behind_the_word_of_a_known_camera_counts_takes():
+    found, odd = takes(*each("smash_<camera>_<n>", **SIDES, n="01 02 03"), *EMPTY)
+    assert found == {
+        f"smash_{n}": {"left": f"smash_left_{n}", "right": f"smash_right_{n}"}
+        for n in ("01", "02", "03")
+    }
+    assert odd == []
+    found, odd = takes(*each("<camera> <n>", **SIDES, n="1 2"), *EMPTY, "walk1")
+    assert found == {n: {"left": f"left {n}", "right": f"right {n}"} for n in ("1", "2")}
+    assert odd == []
+
+
+@pytest.mark.parametrize("pattern", ["smash_<camera>_<n>", "<camera> <n>", "smash <camera>-<n>"])
+def test_equal_numbers_behind_the_words_of_cameras_count_takes(pattern):
+    found, odd = takes(*each(pattern, **SIDES, n="1 2 3"))
+    assert found == {
+        n: {camera: each(pattern, camera=camera, n=n)[0] for camera in ("left", "right")}
+        for n in ("1", "2", "3")
+    }
+    (line,) = odd
+    assert "left, right were taken for cameras, 1, 2, 3 for takes" in line
+
+
+def test_numbers_at_the_words_of_cameras_may_belong_to_them_if_lengths_allow_it():
+    names = each("<take>_<camera><n>", take="serve lob", **SIDES, n="1 2")
+    found, odd = takes(*names)
+    assert set(found) == {"serve", "lob"}
+    assert set(found["lob"]) == {"left1", "left2", "right1", "right2"}
+    assert "can be read in several ways" in odd[0]
+    found, odd = takes(*names, lob_left2=40.0, lob_right2=41.0)
+    assert found["lob_2"] == {"left": "lob_left2", "right": "lob_right2"}
+    assert "can be read in several ways" in odd[0]
+
+
+def test_sides_of_a_person_are_no_cameras_beside_numbered_ones_and_folders_of_cameras():
+    found, odd = takes(*each("<camera>_<leg>_leg", camera="cam1 cam2", leg="left right"))
+    assert found == {
+        leg: {c: f"{c}_{leg}_leg" for c in ("cam1", "cam2")} for leg in ("left", "right")
+    }
+    assert "cam1, cam2 were taken for cameras, left, right for takes" in odd[0]
+    found, odd = takes(*each("<camera>/<leg>_leg", camera="front side", leg="left right"))
+    assert found == {
+        leg: {c: f"{c}/{leg}_leg" for c in ("front", "side")} for leg in ("left", "right")
+    }
+    assert "front, side were taken for cameras, left, right for takes" in odd[0]
+    found, odd = takes(*each("<leg>/<camera>", camera="front side", leg="left right"))
+    assert set(found) == {"left", "right"}
+    assert "can be read in several ways" in odd[0]
+
+
+def test_numbers_alone_may_be_cameras_or_takes():
+    found, odd = takes("1_1", "1_2", "2_1", "2_2")
+    assert found == {"1": {"1": "1_1", "2": "1_2"}, "2": {"1": "2_1", "2": "2_2"}}
+    assert "1, 2 were taken for cameras, 1, 2 for takes" in odd[0]
+
+
+def test_unknown_words_may_be_cameras_or_takes():
+    assert "can be" in takes(*each("<camera>_<take>", camera="tall low", take="serve lob"))[1][0]
+    assert takes("serve_tall", "serve_low")[1] == []
+
+
+def test_the_words_of_two_cameras_in_a_name_are_told():
+    _, odd = takes(*each("<camera>/<leg>_leg", **SIDES, leg="left right"), *EMPTY)
+    assert any("can be read in several ways" in line for line in odd)
+
+
+def test_names_with_take_before_camera_need_no_look():
+    assert takes(*each("smash_<n>_<camera>", **SIDES, n="1 2"))[1] == []
+    assert takes(*each("<camera>_<n>", camera="cam1 cam2", n="1 2"))[1] == []
+    assert takes(*each("P1_<camera>_squat_<n>", **SIDES, n="1 2"))[1] == []
+
+
+def test_walks_that_may_be_takes_are_told():
+    """No take is found, or a walk has the word of a camera."""
+    found, odd = takes("left_empty", "serve_left", "serve_right")
+    assert found == {}
+    assert "serve_right.mp4 was taken for a walk" in odd[0]
+    _, odd = takes(*each("walking_<camera>_<n>", **SIDES, n="01 02"), *EMPTY)
+    assert sum("was taken for a walk" in line for line in odd) == 4
+    assert takes(*EMPTY, "walk")[1] == []
+
+
+def test_a_camera_of_more_words_goes_first():
+    cameras = {"left": ("left",), "far_left": ("far", "left")}
+    assert camera_words.told(("far", "left", "serve"), cameras) == ("far_left", ("serve",))
+    assert camera_words.told(("serve", "left"), cameras) == ("left", ("serve",))
+    assert camera_words.told(("serve",), cameras) == (None, ("serve",))
