@@ -226,6 +226,8 @@ def test_frames_left_out_give_a_warning_with_the_reason():
     assert found.level == warned.FAILED
     assert "30 of 100" in found.text and "too uncertain" in found.text
     assert "one view" in warned.frames("p1", 10, 100, {"one_view": 10}).text
+    when = "from 0.0 to 3.0 s of the take"
+    assert f"10 of 100 frames {when};" in warned.frames("p1", 10, 100, {"unseen": 10}, when).text
 
 
 def test_a_truth_outside_the_error_bar_gives_a_warning():

@@ -22,10 +22,14 @@ LIMITS = {
     "expected_cm": (2, 5, "expected error of the calibration over the playing volume, cm"),
     "tie_px": (1, 2, "residual of the tie points between pictures of the walk, px"),
     "unregistered": (0.1, 0.3, "share of the pictures that were not registered in the model"),
-    "missing": (0.05, 0.2, "share of the limb joints that are missing, before filtering"),
+    "missing": (
+        0.05,
+        0.2,
+        "share of limb joints missing while a person is there, before filtering",
+    ),
     "two_views": (0.5, 0.8, "share of the reconstructed limb joints that only two cameras see"),
     "distance": (0.05, 0.2, "error bar of the neck's distance, as a share of the distance"),
-    "frames": (0.05, 0.2, "share of the frames in which the path of the neck is unknown"),
+    "frames": (0.05, 0.2, "share of a person's frames in which the path of the neck is unknown"),
 }
 
 
@@ -294,13 +298,18 @@ def true_path(row: dict) -> Warned | None:
     return Warned(DOUBTFUL, f"{row['person']}: {text}, outside the error bar.")
 
 
-def frames(person: str, lost: int, total: int, why: dict[str, int]) -> Warned | None:
-    """Return a warning if the neck's path is unknown in many frames; `why` counts reasons."""
+def frames(
+    person: str, lost: int, total: int, why: dict[str, int], when: str = ""
+) -> Warned | None:
+    """Return a warning if the neck's path is unknown in many frames; `why` counts reasons.
+
+    `when` says which part of the take these frames are; empty: the whole take.
+    """
     level = _level_of("frames", lost / total) if total else DOUBTFUL
     if not level:
         return None
     words = {"uncertain": "the position of the neck is too uncertain there"}
     most = max(why, key=lambda word: why[word], default="")
     reason = words.get(most, f"mostly {most.replace('_', ' ')}" if most else "nobody was found")
-    text = f"the path of the neck is unknown in {lost} of {total} frames"
+    text = f"the path of the neck is unknown in {lost} of {total} frames{f' {when}' * bool(when)}"
     return Warned(level, f"{person}: {text}; {reason}.")
