@@ -160,6 +160,18 @@ def test_cameras_judged_by_points_alone_are_not_in_the_error_bars():
     assert found.text == "Calibration known18: the error bars do not include its error."
 
 
+@pytest.mark.parametrize(("name", "fitted"), [("known8", True), ("sim3-n40", False)])
+def test_an_error_of_points_that_the_cameras_were_fitted_to_says_so(name, fitted):
+    (found,) = (
+        each
+        for each in warned.calibration(name, {"left_out": {"p01": {"error_cm": 3.0}}})
+        if each.level == warned.DOUBTFUL
+    )
+    words = f"Calibration {name}: the median error of clicked points, each aligned to the others, "
+    hidden = "; the cameras were fitted to these points, which hides a part of the error"
+    assert found.text == words + "is 3.0 cm" + hidden * fitted + "."
+
+
 def test_the_median_of_points_that_were_left_out():
     errors = dict(zip("abcd", (1.0, 9.0, 3.0, None), strict=True))
     quality = {"left_out": {name: {"error_cm": error} for name, error in errors.items()}}
