@@ -246,7 +246,10 @@ def test_a_truth_outside_the_error_bar_gives_a_warning():
     row = {"person": "m3", "point": "neck", "distance_sigma_percent": 1.0}
     assert warned.true_path(row | {"distance_error_percent": -1.6}) is None
     found = warned.true_path(row | {"distance_error_percent": -2.3})
-    assert found.level == warned.DOUBTFUL and "2.3 % larger" in found.text
+    assert found.level == warned.DOUBTFUL and "the distance is 2.3 % too short;" in found.text
+    measured, true = 15.0, 10.0
+    found = warned.true_path(row | {"distance_error_percent": 100 * (measured / true - 1)})
+    assert "the distance is 50.0 % too long;" in found.text
     assert warned.true_path(row | {"distance_error_percent": math.nan}) is None
     assert warned.true_path(row | {"point": "mass", "distance_error_percent": 9.0}) is None
 

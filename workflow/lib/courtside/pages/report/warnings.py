@@ -301,9 +301,9 @@ def true_path(row: dict) -> Warned | None:
     off, sigma = row["distance_error_percent"], row["distance_sigma_percent"]
     if row["point"] != "neck" or math.isnan(off) or abs(off) <= WITHIN_90 * sigma:
         return None
-    side = "smaller" if off > 0 else "larger"
-    text = f"the true distance of this simulated take is {abs(off):.1f} % {side}"
-    return Warned(DOUBTFUL, f"{row['person']}: {text}, outside the error bar.")
+    text = f"the distance is {abs(off):.1f} % too {'long' if off > 0 else 'short'}"
+    said = "the true one of this simulated take is outside its error bar"
+    return Warned(DOUBTFUL, f"{row['person']}: {text}; {said}.")
 
 
 def frames(
