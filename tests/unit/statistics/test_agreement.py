@@ -198,4 +198,26 @@ def test_the_smallest_detectable_change_is_that_of_the_network_that_was_used():
     for name, spread in (("old", 1.0), ("new", np.hypot(1.0, 3.0))):
         (row,) = found[name].to_dict("records")
         assert row["detectable"] == pytest.approx(1.96 * np.sqrt(2) * spread, rel=0.2)
-        assert (row["measure"], row["n"], row["n_subjects"]) == ("noisy", 72, 12)
+        assert (row["measure"], row["freedom"]) == ("noisy", 60)
+
+
+def test_what_changes_between_sessions_is_not_the_spread_of_repeats():
+    """A true change of 30 between two sessions; repeats within each have a spread of 1."""
+    first = values({"moved": (1.0, 4.0, 0.3)})
+    later = values({"moved": (1.0, 4.0, 0.3)}, seed=1).assign(session="later")
+    later["value"] += 30
+    rows = pd.concat([first, later], ignore_index=True)
+    (row,) = agreement.compare(agreement.pair(rows, NETWORKS), NETWORKS).to_dict("records")
+    assert row["detectable"] == pytest.approx(1.96 * np.sqrt(2), rel=0.2)
+    assert row["detectable_second"] == pytest.approx(1.96 * np.sqrt(2), rel=0.2)
+    assert (row["verdict"], row["freedom"], row["n_subjects"]) == ("no", 2 * 12 * 5, 12)
+
+
+def test_repeats_are_counted_within_one_session():
+    rows = values({"close": (1.0, 0.0, 0.3)}, subjects=3, repeats=6)
+    rows.loc[rows["take"].str.endswith(("-3", "-4", "-5")), "session"] = "later"
+    pairs = agreement.pair(rows, NETWORKS)
+    with pytest.raises(InputError, match=r"in one session at most {'p0': 3, 'p1': 3, 'p2': 3}"):
+        agreement.compare(pairs, NETWORKS)
+    (row,) = agreement.compare(pairs, NETWORKS, min_repeats=3).to_dict("records")
+    assert (row["n"], row["freedom"]) == (18, 12)

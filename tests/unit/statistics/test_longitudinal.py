@@ -82,8 +82,7 @@ def test_a_study_of_repeats_stands_in_for_missing_ones():
         {
             "measure": ["neck_distance"],
             "detectable": [1.959964 * np.sqrt(2) * sem],
-            "n": [100003],
-            "n_subjects": [3],
+            "freedom": [100000],
         }
     )
     row = compared(single, known)[1].iloc[0]

@@ -1,5 +1,7 @@
 """Strokes of virtual players, whose hits are known; motions without a stroke."""
 
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -24,6 +26,13 @@ def compared():
         rows = evaluation.table(detect.table(points, {}), points, truth)
         parts.append(rows.assign(true_hand=hand))
     return pd.concat(parts, ignore_index=True)
+
+
+def test_the_caption_of_the_rally_says_from_which_height_a_stroke_is_overhead():
+    assert detect.OVERHEAD == 1 / 5
+    text = Path("workflow/report/draw_rally.rst").read_text(encoding="utf-8")
+    words = "overhead if the wrist is above the shoulders by a fifth of arm and trunk,"
+    assert words in " ".join(text.split())
 
 
 def test_every_hit_is_found_within_two_frames_and_nothing_else(compared):

@@ -1,5 +1,6 @@
 """Numbers of calibrations, from trials worked out by hand."""
 
+import pandas as pd
 import pytest
 
 from courtside.evaluation.numbers import calibration
@@ -34,6 +35,27 @@ def test_over_halls_the_worst_stands_beside_the_median(found, value):
     assert value(found, "all 2 halls", "walk18_worst").value == pytest.approx(1.1)
     assert value(found, "all 2 halls", "walk18_less_known18").value == pytest.approx(-0.125)
     assert value(found, "all 2 halls", "walk18").sessions == "plain-a plain-b"
+
+
+def test_a_difference_is_the_median_of_halls_medians_as_the_errors_beside_it_are(
+    source, value, monkeypatch
+):
+    """One hall, and one trial in each, gain much more than all others."""
+    differences = {"a": (-0.2, -0.3, -9.0), "b": (-0.1, -0.2, -9.0), "c": (-5.0, -6.0, -9.0)}
+    trials = [
+        (hall, draw, part, known + difference)
+        for hall, values in differences.items()
+        for draw, difference in enumerate(values)
+        for part, known, difference in (("known18", 20.0, 0.0), ("walk18", 20.0, difference))
+    ]
+    rows = pd.DataFrame(trials, columns=["session", "draw", "part", "value"])
+    rows = rows.assign(hall=rows["session"], structure=rows["session"], points=1.0)
+    rows = rows.assign(preset="plain", layout=rows["session"])
+    monkeypatch.setattr(calibration, "sessions", lambda source: ["a", "b", "c"])
+    monkeypatch.setattr(calibration, "trials", lambda source, names: rows)
+    found = calibration.calibrations(source)
+    assert value(found, "all 3 halls", "walk18_less_known18").value == pytest.approx(-0.3)
+    assert value(found, "`a`", "walk18_less_known18").value == pytest.approx(-0.3)
 
 
 def test_ways_growth_and_capture_take_all_sessions(source, value):

@@ -1,6 +1,7 @@
 """Networks made with known errors, exchanges, gaps and jitter are told apart by just these."""
 
 from dataclasses import dataclass, fields, replace
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -77,6 +78,29 @@ def test_jitter_is_the_noise_of_each_axis_and_no_steady_error():
     assert rows.loc[("still", "jitter"), "value"] < 1e-9
     np.testing.assert_allclose(rows.loc[("noisy", "jitter"), "value"], 3.0, rtol=0.05)
     assert np.isclose(rows.loc[("noisy", "jitter"), "n"], 2 * 118 * 12)
+
+
+def slow(kept):
+    """Return errors of 1 px per axis that keep this share from frame to frame, by joint."""
+
+    def off_px(rng, shape):
+        fresh = rng.normal(0, 1, (shape[0] // len(skeleton.JOINTS), len(skeleton.JOINTS), 2))
+        fresh[1:] *= np.sqrt(1 - kept**2)
+        for at in range(1, len(fresh)):
+            fresh[at] += kept * fresh[at - 1]
+        return fresh.reshape(shape)
+
+    return off_px
+
+
+def test_jitter_is_less_than_the_change_from_frame_to_frame_as_its_descriptions_say():
+    """Changes have sqrt(2 - 2 kept) px per axis: 1.41 and 0.45."""
+    rows = measured({"white": made(slow(0.0)), "slow": made(slow(0.9))})["value"]
+    np.testing.assert_allclose(rows["white", "jitter"], 1.0, rtol=0.1)
+    assert rows["slow", "jitter"] < 0.32
+    for name in ("workflow/report/draw_networks.rst", "docs/measured/networks.md"):
+        text = " ".join(Path(name).read_text(encoding="utf-8").split())
+        assert "noise of the error, taken as independent from frame to frame" in text
 
 
 def test_exchanged_and_missing_joints_are_counted_in_the_frames_with_a_truth():

@@ -89,6 +89,15 @@ def test_subjects_with_too_few_repeats_are_hollow():
     assert faces == ["white", *["#444444"] * 4]
 
 
+def test_a_session_with_too_few_repeats_is_hollow_beside_another_of_the_subject():
+    pairs, _ = made()
+    few = pairs[(pairs["subject"] == "p2") & pairs["take"].isin(["p2-0", "p2-1"])]
+    panel = panel_of(pd.concat([pairs, few.assign(session="later")]), "a")
+    faces = {(line.get_marker(), line.get_markerfacecolor()) for line in points_of(panel)}
+    assert {(agreement.MARKERS[1], "white"), (agreement.MARKERS[1], "#444444")} <= faces
+    assert sum(face == "white" for _, face in faces) == 1
+
+
 def test_limits_beyond_the_axis_have_arrows():
     pairs, table = made()
     for name, reach in (("lower", 8.5), ("upper", 9), ("upper_to", 10)):

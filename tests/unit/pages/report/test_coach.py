@@ -9,7 +9,7 @@ from courtside.pages.report import coach
 from courtside.pages.report.warnings import DOUBTFUL, FAILED, GOOD, Warned
 from fixtures.study.report_made import ROGUE
 
-FACTS = {"persons": {}, "left_out": {}, "seconds": None, "devices": [], "true_paths": []}
+FACTS = {"persons": {}, "left_out": {}, "seconds": {}, "devices": [], "true_paths": []}
 FACTS |= {"footwork": {}, "strokes": {}}
 
 
@@ -50,8 +50,8 @@ def test_a_take_says_distance_speeds_and_angles():
     }
     facts = FACTS | {
         "persons": {"p1": measures},
-        "left_out": {"p1": (6, 100, {})},
-        "seconds": 24.03,
+        "left_out": {"p1": (6, 100, {}, "")},
+        "seconds": {"p1": (24.03, "")},
     }
     take = {"id": "take-x", "name": "smash", "links": [("a/viewer.html", "3D viewer")]}
     html = coach.take(take, facts, [Warned(DOUBTFUL, "Camera left moved.")])
@@ -62,6 +62,14 @@ def test_a_take_says_distance_speeds_and_angles():
     text = " ".join(html.split())
     assert f"{space}</b> in 24.0 s, up and down included, on the ground <b>{ground}" in text
     assert html.index("doubtful") < html.index("29.33")
+
+
+def test_the_time_of_a_distance_is_that_of_the_path():
+    facts = FACTS | {"persons": {"p1": {"neck_distance": (2.37, 0.01, "m")}}}
+    facts["seconds"] = {"p1": (3.0, "from 0.0 to 3.0 s of the take")}
+    html = coach.take({"id": "t", "name": "t", "links": []}, facts, [])
+    words = "</b> in 3.0 s, from 0.0 to 3.0 s of the take, up and down included."
+    assert words in " ".join(html.split())
 
 
 def test_a_take_says_what_the_feet_did():

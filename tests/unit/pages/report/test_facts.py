@@ -25,8 +25,21 @@ def test_measures_come_with_half_of_their_90_percent_interval(tmp_path):
 
 def test_frames_that_are_left_out_are_counted(tmp_path):
     facts = report_facts.of_take(report_made.files_of_take(tmp_path, n_frames=20))
-    assert facts["left_out"] == {"p1": (1, 20, {"uncertain": 1})}
-    assert facts["seconds"] == pytest.approx(19 / 50)
+    assert facts["left_out"] == {"p1": (1, 20, {"uncertain": 1}, "")}
+    assert facts["seconds"] == {"p1": (pytest.approx(18 / 50), "")}
+
+
+def test_who_comes_later_or_leaves_earlier_is_counted_while_there(tmp_path):
+    files = report_made.files_of_take(tmp_path, n_frames=20)
+    words = ["unseen"] * 4 + ["ok", "ok", "unseen", "one_view", "ok", "ok"] + ["unseen"] * 10
+    lines = [f"{at},{at / 10},p1,{word}" for at, word in enumerate(words)]
+    lines += [f"{at},{at / 10},p2,unseen" for at in range(20)]
+    Path(files["frames"]).write_text("\n".join(["frame_idx,time_s,person,neck_reason", *lines]))
+    facts = report_facts.of_take(files)
+    when = "from 0.4 to 0.9 s of the take"
+    assert facts["left_out"]["p1"] == (2, 6, {"unseen": 1, "one_view": 1}, when)
+    assert facts["left_out"]["p2"] == (20, 20, {"unseen": 20}, "")
+    assert facts["seconds"]["p1"] == (pytest.approx(0.5), when)
 
 
 def test_cut_offs_are_those_that_were_used(tmp_path):
@@ -77,6 +90,18 @@ def test_missing_joints_are_counted_by_reason():
     assert facts["joints"]["right_ankle"] == {"missing": 0.0, "reasons": {}, "few": 0.0}
     assert len(facts["joints"]) == 12
     assert sum(facts["views"].values()) == pytest.approx(1.0)
+
+
+def test_joints_are_missing_only_while_their_person_is_there():
+    made = walker.points(n_frames=10, n_persons=2)
+    for lost in (np.s_[1, 5:], np.s_[1, :2], np.s_[1, 3, list(made.joints).index("left_wrist")]):
+        made.xyz[lost], made.reason[lost], made.n_views[lost] = np.nan, missing_reason.UNSEEN, 0
+    joints = report_facts.of_skeleton(made)["joints"]
+    assert joints["right_ankle"] == {"missing": 0.0, "reasons": {}, "few": 0.0}
+    assert joints["left_wrist"]["missing"] == pytest.approx(1 / 13)
+    made.xyz[1], made.reason[1] = np.nan, missing_reason.UNSEEN
+    joints = report_facts.of_skeleton(made)["joints"]
+    assert joints["right_ankle"]["missing"] == pytest.approx(0.5)
 
 
 def test_a_contradicted_camera_has_a_low_accepted_share():

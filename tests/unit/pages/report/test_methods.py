@@ -147,3 +147,13 @@ def test_names_of_users_are_escaped(study):
     study["sessions"][0] |= {"name": report_made.ROGUE, "model": report_made.ROGUE}
     study["sessions"][0]["overrides"] = {report_made.ROGUE: {"x": report_made.ROGUE}}
     assert "<img" not in methods_text(study)
+
+
+def test_only_calibrations_that_need_a_court_are_said_to_rest_on_court_points():
+    """`known` is also the way of points with places of their own."""
+    words = {
+        name: methods.calibrated(Calibration.parse(name), clicked=False, has_covariance=True)
+        for name in ("known", "known18", "known8-board", "dlt8")
+    }
+    assert words.pop("known") == "calibrated from clicked points at known places alone"
+    assert all("clicked court points alone" in each for each in words.values())

@@ -160,6 +160,18 @@ def test_cameras_judged_by_points_alone_are_not_in_the_error_bars():
     assert found.text == "Calibration known18: the error bars do not include its error."
 
 
+@pytest.mark.parametrize(("name", "fitted"), [("known8", True), ("sim3-n40", False)])
+def test_an_error_of_points_that_the_cameras_were_fitted_to_says_so(name, fitted):
+    (found,) = (
+        each
+        for each in warned.calibration(name, {"left_out": {"p01": {"error_cm": 3.0}}})
+        if each.level == warned.DOUBTFUL
+    )
+    words = f"Calibration {name}: the median error of clicked points, each aligned to the others, "
+    hidden = "; the cameras were fitted to these points, which hides a part of the error"
+    assert found.text == words + "is 3.0 cm" + hidden * fitted + "."
+
+
 def test_the_median_of_points_that_were_left_out():
     errors = dict(zip("abcd", (1.0, 9.0, 3.0, None), strict=True))
     quality = {"left_out": {name: {"error_cm": error} for name, error in errors.items()}}
@@ -226,13 +238,18 @@ def test_frames_left_out_give_a_warning_with_the_reason():
     assert found.level == warned.FAILED
     assert "30 of 100" in found.text and "too uncertain" in found.text
     assert "one view" in warned.frames("p1", 10, 100, {"one_view": 10}).text
+    when = "from 0.0 to 3.0 s of the take"
+    assert f"10 of 100 frames {when};" in warned.frames("p1", 10, 100, {"unseen": 10}, when).text
 
 
 def test_a_truth_outside_the_error_bar_gives_a_warning():
     row = {"person": "m3", "point": "neck", "distance_sigma_percent": 1.0}
     assert warned.true_path(row | {"distance_error_percent": -1.6}) is None
     found = warned.true_path(row | {"distance_error_percent": -2.3})
-    assert found.level == warned.DOUBTFUL and "2.3 % larger" in found.text
+    assert found.level == warned.DOUBTFUL and "the distance is 2.3 % too short;" in found.text
+    measured, true = 15.0, 10.0
+    found = warned.true_path(row | {"distance_error_percent": 100 * (measured / true - 1)})
+    assert "the distance is 50.0 % too long;" in found.text
     assert warned.true_path(row | {"distance_error_percent": math.nan}) is None
     assert warned.true_path(row | {"point": "mass", "distance_error_percent": 9.0}) is None
 

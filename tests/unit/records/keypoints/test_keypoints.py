@@ -117,3 +117,9 @@ def test_what_is_known_of_the_errors_of_some_points_is_read_and_left_out_with_th
     found = keypoints.read_3d(path).without(lost).covariance_2d
     assert np.isnan(found[0, 2, 3]).all() and np.isnan(found[0, 5:]).all()
     np.testing.assert_array_equal(found[0, :2], record.covariance_2d[0, :2])
+
+
+def test_a_person_is_there_from_the_first_to_the_last_frame_seen():
+    seen = np.array([[0, 1, 0, 1, 0], [0, 0, 0, 0, 0], [1, 0, 0, 0, 1]], bool)
+    there = keypoints.while_there(seen).astype(int).tolist()
+    assert there == [[0, 1, 1, 1, 0], [1, 1, 1, 1, 1], [1, 1, 1, 1, 1]]

@@ -95,6 +95,18 @@ def test_takes_whose_networks_cannot_be_compared_are_told():
     ]
 
 
+def test_beginnings_of_compared_takes_that_no_take_has_are_told():
+    step = PARAMETERS["compare_networks"] | {"sessions": ["spring", "autumn"]}
+    step["networks"] = ["a", "b"]
+    one = study(compare_networks=step | {"takes": ["mid"]})
+    assert said(one) == [
+        "season.yaml: compare_networks.takes: expected how names of takes of spring, autumn begin, "
+        "['post1', 'pre1'], found mid; correct it, or remove it"
+    ]
+    elsewhere = step | {"takes": ["mid"], "sessions": ["spring", "winter"]}
+    assert said(study(compare_networks=elsewhere)) == []
+
+
 def test_a_take_without_the_sources_of_the_thesis_figures_is_told():
     step = {"take": "spring/pre1", "sources": ["suit", "bag-depth"]}
     one = study(draw_thesis_fig3=step)

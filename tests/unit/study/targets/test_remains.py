@@ -91,6 +91,7 @@ def test_tables_of_compared_networks_that_nobody_agrees_to_are_found(study, tmp_
     monkeypatch.chdir(tmp_path)
     session = study.sessions["walk-4cams-tiny"]
     networks = {"sessions": [session.name], "networks": session.parameters["models"][:1]}
+    networks["takes"] = None
     parameters = {**study.parameters, "compare_networks": networks}
     only = {session.name: replace(session, takes={}, withheld=session.takes)}
     study = replace(study, parameters=parameters, sessions=only)

@@ -86,6 +86,17 @@ def test_networks_are_compared_take_by_take(study, studies):
     assert [row.labels["model"] for row in found] == ["blazepose-full", "blazepose-static"]
 
 
+def test_networks_are_compared_in_takes_of_one_task(study, studies):
+    """Takes of several tasks are no repeats of one movement."""
+    step = {**study.parameters["compare_networks"], "sessions": ["players-tiny"]}
+    assert len({row.labels["take"] for row in compared(studies, step | {"takes": None})}) > 1
+    assert {row.labels["take"] for row in compared(studies, step | {"takes": ["sh"]})} == {"shot"}
+
+
+def compared(studies, step):
+    return together.compared_takes(studies(compare_networks=step))
+
+
 def test_a_take_with_two_calibrations_is_one_repeat(study, studies):
     step = {**study.parameters["compare_networks"], "sessions": ["players-tiny"]}
     both = studies(take_calibrations=["known18", "known", "file"], compare_networks=step)

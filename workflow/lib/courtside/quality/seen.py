@@ -17,7 +17,7 @@ from courtside.geometry.camera import Camera, project
 from courtside.reconstruction import person_height, resampling
 from courtside.records.cameras.footage import Footage
 from courtside.records.keypoints import skeleton as limbs
-from courtside.records.keypoints.keypoints import Keypoints3D
+from courtside.records.keypoints.keypoints import Keypoints3D, while_there
 from courtside.records.keypoints.skeleton import Skeleton
 
 MOST_FRAMES = 600  # ASSUME: of all persons together; enough for shares known to 2 %
@@ -55,10 +55,7 @@ class Seen:
 
         Who is followed in two cameras at no time is there all the time: lost, as far as is known.
         """
-        placed = self.followed.sum(axis=0) >= 2
-        came = np.maximum.accumulate(placed, axis=1)
-        stays = np.maximum.accumulate(placed[:, ::-1], axis=1)[:, ::-1]
-        return (came & stays) | ~placed.any(axis=1, keepdims=True)
+        return while_there(self.followed.sum(axis=0) >= 2)
 
     def expected(self, camera: int) -> NDArray:
         """Return whether a person is expected in a picture, (P, S): inside, or position unknown.

@@ -16,6 +16,7 @@ from courtside.study.errors import InputError
 
 LEVEL = 0.95  # of the limits and of their confidence intervals, as is usual
 PAIRS = ["subject", "session", "take", "measure", "unit", "definition", "first", "second"]
+REPEATS = ["subject", "session"]  # whose takes are repeats: of one subject on one day
 SAME_PLACE = ["subject", "session", "take", "calibration", "measure", "unit"]
 YES, UNSURE, NO, UNKNOWN = "yes", "unsure", "no", "unknown"
 
@@ -54,18 +55,20 @@ def compare(
     """Compare two networks, one row per measure of the `pairs` of `pair`.
 
     Columns: `agreement.table.csv` of `docs/results.md`. A verdict is `unsure` if the limits lie
-    within the change, their intervals do not; `unknown` for too few values. `InputError` if no
-    measure has `min_subjects` subjects with `min_repeats` repeats each.
+    within the change, their intervals do not; `unknown` for too few values. Takes of one subject
+    in one session are repeats; what differs between sessions is not counted as their spread.
+    `InputError` if no measure has `min_subjects` subjects with `min_repeats` repeats each.
     """
     table = [
         _row(name, unit, part, networks, min_subjects, min_repeats)
         for (name, unit), part in pairs.groupby(["measure", "unit"], sort=False)
     ]
     if all(row["verdict"] == UNKNOWN for row in table):
-        counts = pairs.groupby("subject")["take"].nunique()
+        counts = pairs.groupby(REPEATS)["take"].nunique().groupby("subject").max()
         raise InputError(
             f"networks {networks[0]} and {networks[1]}: expected {min_repeats} takes or more of "
-            f"{min_subjects} subjects or more, found {counts.to_dict()}; film more repeats"
+            f"{min_subjects} subjects or more, found in one session at most {counts.to_dict()}; "
+            "film more repeats"
         )
     return pd.DataFrame(table)
 
@@ -79,21 +82,22 @@ def _row(
     min_repeats: int,
 ) -> dict[str, Any]:
     part = part.dropna(subset=["first", "second"])
-    repeats = part.groupby("subject")["first"].transform("count")
-    part = part[repeats >= min_repeats]
+    part = part[part.groupby(REPEATS)["first"].transform("count") >= min_repeats]
     marked = ", ".join(sorted(set(part["definition"]) - {""}))
     row = {"measure": name, "unit": unit, "n_subjects": part["subject"].nunique(), "n": len(part)}
     row |= {"definitions_differ": marked}
     if row["n_subjects"] < min_subjects:
         return row | {"verdict": UNKNOWN, "sentence": f"unknown for {name}: too few repeats"}
     found = limits(part["subject"], part["second"] - part["first"])
-    change, interval = smallest_detectable_change(part["subject"], part["first"])
-    second, _ = smallest_detectable_change(part["subject"], part["second"])
+    day = part.groupby(REPEATS).ngroup()
+    change, interval = smallest_detectable_change(day, part["first"])
+    second, _ = smallest_detectable_change(day, part["second"])
     row |= {"bias": found.bias}
     row |= _with_interval("lower", found.lower, found.lower_interval)
     row |= _with_interval("upper", found.upper, found.upper_interval)
     row |= {"sd_between": found.sd_between, "sd_within": found.sd_within}
     row |= _with_interval("detectable", change, interval) | {"detectable_second": second}
+    row |= {"freedom": len(part) - day.nunique()}
     return row | verdict(row, networks)
 
 
@@ -102,11 +106,12 @@ def detectable_of(
 ) -> pd.DataFrame | None:
     """Return the smallest detectable changes of one network from the `table` of `compare`.
 
-    Columns measure, detectable, n and n_subjects; None of a network that is not compared.
+    Columns measure, detectable and freedom; None of a network that is not compared.
     """
     own = dict(zip(networks, ("detectable", "detectable_second"), strict=True)).get(model)
-    counts = table[["measure", "n", "n_subjects"]]
-    return counts.assign(detectable=table[own]) if own in table else None
+    if own not in table:
+        return None
+    return table[["measure", "freedom"]].assign(detectable=table[own])
 
 
 def _with_interval(name: str, value: float, ends: tuple[float, float]) -> dict[str, float]:
@@ -228,8 +233,9 @@ def smallest_detectable_change(
 ) -> tuple[float, tuple[float, float]]:
     """Find the smallest change of one subject that repeats alone do not explain.
 
-    `subject` (N,) are labels, `value` (N,) those of one method. Return the change, 1.96 sqrt(2)
-    times the standard error of measurement, and its 95 % confidence interval.
+    `subject` (N,) are labels, one for each subject and session; `value` (N,) are those of one
+    method. Return the change, 1.96 sqrt(2) times the standard error of measurement, and its 95 %
+    confidence interval.
 
     The standard error of measurement is the standard deviation between repeats of one subject,
     pooled (Bland & Altman 1996, BMJ 312:1654; de Vet et al. 2006, Health Qual Life Outcomes 4:54).

@@ -114,9 +114,8 @@ def errors_of_measurement(
     """Return each measure's standard error of measurement: sem and freedom, by measure.
 
     From `detectable` where it has the measure, and else from the takes of `of_subject` within one
-    session: NaN where there are none. `detectable` (measure, detectable, n, n_subjects) holds
-    smallest detectable changes of single takes from a study of repeats, with n less n_subjects
-    degrees of freedom.
+    session: NaN where there are none. `detectable` (measure, detectable, freedom) holds smallest
+    detectable changes of single takes from a study of repeats.
     """
     keys = ["measure", "session", *CONDITIONS, "definition"]
     own = rows.dropna(subset=["value"]).groupby(keys, sort=False)["value"]
@@ -132,7 +131,7 @@ def errors_of_measurement(
         for measure in found.index.intersection(known.index):
             row = known.loc[measure]
             sem = row["detectable"] / (FACTOR * np.sqrt(2))
-            found.loc[measure] = [sem, int(row["n"] - row["n_subjects"])]
+            found.loc[measure] = [sem, int(row["freedom"])]
     return found
 
 

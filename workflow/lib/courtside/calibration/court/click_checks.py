@@ -85,7 +85,8 @@ def leave_one_out(cameras: Sequence[Camera], clicks: ClickedPoints, court: Court
     """Compare each court point with its prediction from all the other points.
 
     The cameras, in one frame of structure from motion or the world, stay fixed. The similarity to
-    the world is estimated again without the point, robustly against other wrong clicks. Raises
+    the world is estimated again without the point, robustly against other wrong clicks. Cameras
+    that were fitted to the clicks hide a part of the error, the more so the fewer points. Raises
     `InputError` if the others cannot be aligned without one point: too few, collinear, mirrored.
     """
     xyz = sfm_alignment.reconstruct(cameras, clicks)

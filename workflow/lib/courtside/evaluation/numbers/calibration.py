@@ -123,15 +123,15 @@ def differences(rows: pd.DataFrame, part: str = "walk18") -> pd.DataFrame:
 def _difference(build: Builder, row: str, rows: pd.DataFrame, cut: Cut) -> None:
     for part in ("walk18", "walk3"):
         pairs = differences(rows, part)
-        means = pairs.groupby("hall")["value"].mean()
-        if means.isna().all():
+        medians = pairs.groupby("hall")["value"].median()
+        if medians.isna().all():
             continue
-        low, high = intervals.bootstrap(pairs, np.nanmean)
+        low, high = intervals.bootstrap(pairs, np.nanmedian)
         count: dict[str, Any] = {"n": int(pairs["value"].notna().sum()), "unit": "cm"}
         count["n_failed"] = len(pairs) - count["n"]
         name = f"{part}_less_known18"
         where = f"{part} less known18, same clicks"
-        build.add(row, name, means.mean(), cut, f"{where}: mean", **count)
+        build.add(row, name, medians.median(), cut, f"{where}: median over halls", **count)
         build.add(row, f"{name}_from", low, cut, f"{where}: 95 % interval", **count)
         build.add(row, f"{name}_to", high, cut, f"{where}: 95 % interval", **count)
 

@@ -22,8 +22,9 @@ COLUMNS = [
 KEY = ["person", "camera", "joint"]
 USED = ["x_px", "y_px", "true_x_px", "true_y_px", "torso_px", "error_px", "error_torso"]
 USED += ["in_picture", "placed", "exchanged"]
-# The second difference of independent noise has 6 times its variance per axis; the median length of
-# a normal vector of two axes is sqrt(2 ln 2) times its standard deviation per axis.
+# Jitter: the noise of the error as if it were independent from frame to frame; slow errors hardly
+# count. The second difference of independent noise has 6 times its variance per axis; the median
+# length of a normal vector of two axes is sqrt(2 ln 2) times its standard deviation per axis.
 JITTER = 1 / np.sqrt(6 * 2 * np.log(2))
 MEASURES = {  # name: unit, series that it is of, percentile of this series or None for its mean
     "error_median": ("px", "error_px", 50),

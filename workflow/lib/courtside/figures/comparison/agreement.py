@@ -6,6 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from courtside.figures.style import style
+from courtside.statistics.agreement import REPEATS
 from courtside.study.errors import StrPath
 
 COLOURS = {"yes": "#009E73", "unsure": "#E69F00", "no": "#D55E00"}
@@ -62,13 +63,15 @@ def _differences(axis: Axes, part: pd.DataFrame, row: pd.Series) -> None:
     part = part.dropna(subset=["first", "second"])
     detectable = row["detectable"]
     axis.axhspan(-detectable, detectable, color=BAND, linewidth=0, zorder=0)
+    days = part.groupby(REPEATS, sort=True)
     # Those with enough repeats to count have more of them than all others.
-    counted = part["subject"].value_counts().index[: int(row["n_subjects"])]
-    for at, (subject, own) in enumerate(part.groupby("subject", sort=True)):
+    counted = days.size().sort_values().index[::-1][: int(row["n"] - row["freedom"])]
+    subjects = sorted(set(part["subject"]))
+    for day, own in days:
         mean, difference = (own["first"] + own["second"]) / 2, own["second"] - own["first"]
         look = {"color": "#444444", "markersize": 2.8}
-        look["markerfacecolor"] = "#444444" if subject in counted else "white"
-        axis.plot(mean, difference, MARKERS[at % len(MARKERS)], **look)
+        look["markerfacecolor"] = "#444444" if day in counted else "white"
+        axis.plot(mean, difference, MARKERS[subjects.index(day[0]) % len(MARKERS)], **look)
     colour = COLOURS[row["verdict"]]
     axis.axhline(row["bias"], color="black", linewidth=0.8)
     for name in ("lower", "upper"):

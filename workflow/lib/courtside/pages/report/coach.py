@@ -61,7 +61,8 @@ def _person(person: str, facts: dict) -> dict:
     phrases: list[tuple] = []
     distance = measures.get("neck_distance")
     if distance and not math.isnan(distance[0]):
-        over = f" in {facts['seconds']:.1f} s" if facts["seconds"] else ""
+        seconds, when = facts["seconds"].get(person, (0.0, ""))
+        over = f" in {seconds:.1f} s" * (seconds > 0) + f", {when}" * bool(when)
         phrases.append(
             ("the neck travelled", with_error(*distance), f"{over}, up and down included")
         )
@@ -72,7 +73,7 @@ def _person(person: str, facts: dict) -> dict:
         if name in measures:
             phrases.append((words, with_error(*measures[name]), ""))
     if facts["left_out"].get(person):
-        lost, total, _ = facts["left_out"][person]
+        lost, total, *_ = facts["left_out"][person]
         phrases.append((f"from {total - lost} of {total} frames", "", ""))
     phrases += _strokes(facts["strokes"].get(person, []))
     phrases += _steps(facts["footwork"].get(person, {}))

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from courtside.kinematics import cutoffs
 from courtside.records import tables
@@ -19,6 +20,7 @@ from courtside.study.execution.files import read_json
 SUMMARY = ("person", "measure", "value", "sigma", "sigma_camera", "unit", "n")
 OBSERVED = {"static": "points at rest", "people": "people"}  # by a check of a calibration file
 FRAMES = ("person", "time_s", "neck_reason")
+KNOWN = [missing_reason.WORDS[code] for code in (missing_reason.OK, missing_reason.INTERPOLATED)]
 FOOTWORK = ("person", "measure", "value", "sigma", "unit", "n")
 
 
@@ -27,8 +29,9 @@ def of_take(files: dict) -> dict:
 
     `persons`: {person: {measure: (value, half of the 90 % interval, unit)}}; `footwork` likewise;
     `cutoffs`: {group of joints: Hz}; `strokes`: {person: rows}; `left_out`: {person: (frames
-    without a neck, frames, {reason: frames})}; `seconds`; `joints` and `cameras` as `of_skeleton`
-    returns them; `clocks`: {camera: Clock}; `shake`: lines; `movement`, `devices`, `truth`,
+    without a neck, frames, {reason: frames}, when)}, while the person is there, and when that is;
+    `seconds`: {person: (of the path, when)}; `joints` and `cameras` as `of_skeleton` returns them;
+    `clocks`: {camera: Clock}; `shake`: lines; `movement`, `devices`, `truth`,
     `true_paths` and `quality`: rows. Empty without a file. `InputError` if a file is missing or has
     another content.
 
@@ -37,12 +40,13 @@ def of_take(files: dict) -> dict:
     and `kinematics` (against the truth), and by `quality` the `file` of verdicts and the `way` in
     which the take was measured; each may be left out.
     """
-    facts: dict = {"persons": {}, "left_out": {}, "seconds": None, "joints": {}, "cameras": {}}
+    facts: dict = {"persons": {}, "left_out": {}, "seconds": {}, "joints": {}, "cameras": {}}
     if files.get("summary"):
         facts["persons"] = _measures(_table(files["summary"], SUMMARY))
         frames = _table(files["frames"], FRAMES)
-        facts["left_out"] = {p: _left_out(rows) for p, rows in frames.groupby("person")}
-        facts["seconds"] = float(np.ptp(frames["time_s"])) if len(frames) else None
+        by_person = list(frames.groupby("person"))
+        facts["left_out"] = {p: _left_out(rows) for p, rows in by_person}
+        facts["seconds"] = {p: _seconds(rows) for p, rows in by_person}
     steps = _table(files["footwork"], FOOTWORK) if files.get("footwork") else None
     facts["footwork"] = {} if steps is None else _measures(steps.assign(sigma_camera=np.nan))
     facts["cutoffs"] = cutoffs.read(files["cutoffs"])[0] if files.get("cutoffs") else {}
@@ -108,7 +112,7 @@ def _agreement(check: dict) -> str:
 
 
 def of_skeleton(found: Keypoints3D) -> dict:
-    """Return statistics of the 12 limb joints.
+    """Return statistics of the 12 limb joints; missing ones are counted while a person is there.
 
     `joints`: {joint: {`missing`: share, `reasons`: {word: share of all}, `few`: share of the
     reconstructed ones that rest on two views}}; `cameras`: {camera: {`accepted`: share of its
@@ -118,10 +122,12 @@ def of_skeleton(found: Keypoints3D) -> dict:
     names = [str(name) for name in found.joints]
     at = [names.index(joint) for joint in skeleton.JOINTS if joint in names]
     reason, views = found.reason[:, :, at], found.n_views[:, :, at]
+    seen = ~np.isin(reason, missing_reason.FEW_VIEWS)
+    there = keypoints.while_there(np.any(seen, axis=2))
     joints = {}
     for number, index in enumerate(at):
-        codes, lost = reason[:, :, number], np.isnan(found.xyz[:, :, index, 0])
-        placed = views[:, :, number][~lost]
+        codes, lost = reason[there][:, number], np.isnan(found.xyz[there][:, index, 0])
+        placed = views[there][:, number][~lost]
         words = {
             missing_reason.WORDS[code]: float(np.mean(lost & (codes == code)))
             for code in set(codes[lost])
@@ -155,10 +161,33 @@ def _measures(table: pd.DataFrame) -> dict:
     return found
 
 
-def _left_out(rows: pd.DataFrame) -> tuple[int, int, dict[str, int]]:
-    """Return (frames without a neck, frames, why); an interpolated neck counts as present."""
-    lost = rows["neck_reason"][~rows["neck_reason"].isin(["ok", "interpolated"])]
-    return len(lost), len(rows), {str(word): int(n) for word, n in lost.value_counts().items()}
+def _left_out(rows: pd.DataFrame) -> tuple[int, int, dict[str, int], str]:
+    """Return (frames without a neck, frames, why, when); an interpolated neck counts as present.
+
+    Frames are counted from the first to the last in which two cameras see the neck.
+    """
+    there = rows[_there(rows)]
+    lost = there["neck_reason"][~there["neck_reason"].isin(KNOWN)]
+    why = {str(word): int(n) for word, n in lost.value_counts().items()}
+    return len(lost), len(there), why, _when(rows, there)
+
+
+def _there(rows: pd.DataFrame) -> NDArray:
+    few = [missing_reason.WORDS[code] for code in missing_reason.FEW_VIEWS]
+    return keypoints.while_there(~rows["neck_reason"].isin(few).to_numpy())
+
+
+def _seconds(rows: pd.DataFrame) -> tuple[float, str]:
+    """Return how long a person's path lasts, from the first to the last known neck, and when."""
+    path = rows[keypoints.while_there(rows["neck_reason"].isin(KNOWN).to_numpy())]
+    part = "" if _there(rows).all() else _when(rows, path)
+    return float(np.ptp(path["time_s"])), part
+
+
+def _when(rows: pd.DataFrame, part: pd.DataFrame) -> str:
+    """Return between which times a part of a take's frames is; empty: the whole take."""
+    first_s, last_s = part["time_s"].iloc[[0, -1]]
+    return "" if len(part) == len(rows) else f"from {first_s:.1f} to {last_s:.1f} s of the take"
 
 
 def _table(path: StrPath, columns: Sequence[str]) -> pd.DataFrame:

@@ -44,6 +44,8 @@ CALIBRATED = {  # by the kind of a calibration
     "people": "calibrated in another way and refined by the people in takes, where people and "
     "points that the adjustment did not see say that this is better",
 }
+# Of the kind `known` with all points: those of a court, or points with places of their own
+BY_POINTS = "calibrated from clicked points at known places alone"
 UNCLICKED = (  # of the kind `sfm`
     "calibrated by one bundle adjustment of structure from motion over the pictures of a walk "
     "alone, without a court: scale and axes are arbitrary"
@@ -125,6 +127,8 @@ def calibrated(way: Calibration, *, clicked: bool, has_covariance: bool) -> str:
         return AGAIN
     if way.kind == "sfm" and not clicked:
         return UNCLICKED
+    if way.kind == "known" and not way.n_points:
+        return BY_POINTS
     return WITH_LINES if way.lines else CALIBRATED[way.kind]
 
 

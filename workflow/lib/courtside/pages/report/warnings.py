@@ -18,14 +18,18 @@ VAGUE_CLOCK = "the uncertainty of its clock is unknown"
 LIMITS = {
     "moved": (0.5, 1.0, "movement of a fixed camera, as a share of the configured limit"),
     "clock_ms": (8, 20, "90 % error of a clock, ms"),
-    "left_out_cm": (2, 5, "median error of left-out court points, cm (no expected error known)"),
+    "left_out_cm": (2, 5, "median error of clicked points, cm (no expected error known)"),
     "expected_cm": (2, 5, "expected error of the calibration over the playing volume, cm"),
     "tie_px": (1, 2, "residual of the tie points between pictures of the walk, px"),
     "unregistered": (0.1, 0.3, "share of the pictures that were not registered in the model"),
-    "missing": (0.05, 0.2, "share of the limb joints that are missing, before filtering"),
+    "missing": (
+        0.05,
+        0.2,
+        "share of limb joints missing while a person is there, before filtering",
+    ),
     "two_views": (0.5, 0.8, "share of the reconstructed limb joints that only two cameras see"),
     "distance": (0.05, 0.2, "error bar of the neck's distance, as a share of the distance"),
-    "frames": (0.05, 0.2, "share of the frames in which the path of the neck is unknown"),
+    "frames": (0.05, 0.2, "share of a person's frames in which the path of the neck is unknown"),
 }
 
 
@@ -163,8 +167,8 @@ def no_tpose(row: dict) -> Warned | None:
 def calibration(name: str, quality: dict) -> list[Warned]:
     """Return the warnings of a calibration; `quality` is the content of its quality.json.
 
-    Points left out contain the errors of their own clicks, which the cameras average: the error
-    expected of the cameras says more, where it is known.
+    Errors of points contain those of their own clicks, which the cameras average, and hide what the
+    cameras owe to these clicks: the error expected of the cameras says more, where it is known.
     """
     found = said("Calibration", quality)
     error, expected = left_out_cm(quality), quality.get("expected_volume_rms_cm")
@@ -174,7 +178,8 @@ def calibration(name: str, quality: dict) -> list[Warned]:
         (
             "left_out_cm",
             error if expected is None else None,
-            "the median error of court points left out in turn is {:.1f} cm",
+            "the median error of clicked points, each aligned to the others, is {:.1f} cm"
+            + _fitted(name),
         ),
         ("tie_px", ties, "the residual of tie points between pictures of the walk is {:.1f} px"),
     ):
@@ -189,6 +194,13 @@ def calibration(name: str, quality: dict) -> list[Warned]:
         text += "the error bars do not include its error"
         found.append(Warned(DOUBTFUL if error is None else GOOD, f"Calibration {made}: {text}."))
     return found
+
+
+def _fitted(name: str) -> str:
+    """Return what a calibration whose cameras were fitted to the points hides of their errors."""
+    if Calibration.parse(name).kind in ("sim3", "paper"):
+        return ""
+    return "; the cameras were fitted to these points, which hides a part of the error"
 
 
 def has_covariance(name: str, quality: dict) -> bool:
@@ -210,7 +222,7 @@ def said(what: str, content: dict) -> list[Warned]:
 
 
 def left_out_cm(quality: dict) -> float | None:
-    """Return the median error (cm) of the court points, each left out in turn; None if unknown."""
+    """Return the median error (cm) of the points, each aligned to the others; None if unknown."""
     table = quality.get("left_out")
     errors = [row["error_cm"] for row in table.values()] if isinstance(table, dict) else []
     known = [error for error in errors if error is not None]
@@ -289,18 +301,23 @@ def true_path(row: dict) -> Warned | None:
     off, sigma = row["distance_error_percent"], row["distance_sigma_percent"]
     if row["point"] != "neck" or math.isnan(off) or abs(off) <= WITHIN_90 * sigma:
         return None
-    side = "smaller" if off > 0 else "larger"
-    text = f"the true distance of this simulated take is {abs(off):.1f} % {side}"
-    return Warned(DOUBTFUL, f"{row['person']}: {text}, outside the error bar.")
+    text = f"the distance is {abs(off):.1f} % too {'long' if off > 0 else 'short'}"
+    said = "the true one of this simulated take is outside its error bar"
+    return Warned(DOUBTFUL, f"{row['person']}: {text}; {said}.")
 
 
-def frames(person: str, lost: int, total: int, why: dict[str, int]) -> Warned | None:
-    """Return a warning if the neck's path is unknown in many frames; `why` counts reasons."""
+def frames(
+    person: str, lost: int, total: int, why: dict[str, int], when: str = ""
+) -> Warned | None:
+    """Return a warning if the neck's path is unknown in many frames; `why` counts reasons.
+
+    `when` says which part of the take these frames are; empty: the whole take.
+    """
     level = _level_of("frames", lost / total) if total else DOUBTFUL
     if not level:
         return None
     words = {"uncertain": "the position of the neck is too uncertain there"}
     most = max(why, key=lambda word: why[word], default="")
     reason = words.get(most, f"mostly {most.replace('_', ' ')}" if most else "nobody was found")
-    text = f"the path of the neck is unknown in {lost} of {total} frames"
+    text = f"the path of the neck is unknown in {lost} of {total} frames{f' {when}' * bool(when)}"
     return Warned(level, f"{person}: {text}; {reason}.")

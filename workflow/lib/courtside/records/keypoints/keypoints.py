@@ -123,6 +123,17 @@ class Keypoints3D:
         return replace(self, joints=self.joints[list(at)], **cut)
 
 
+def while_there(seen: NDArray) -> NDArray:
+    """Return whether each person is there, (..., T): from the first to the last frame `seen`.
+
+    `seen` (..., T): whether two cameras see the person. Who is seen at no time is there all the
+    time: lost, as far as is known.
+    """
+    came = np.maximum.accumulate(seen, axis=-1)
+    stays = np.maximum.accumulate(seen[..., ::-1], axis=-1)[..., ::-1]
+    return (came & stays) | ~seen.any(axis=-1, keepdims=True)
+
+
 def blocks(n_frames: int) -> Iterator[slice]:
     """Yield the frames of a take in order, at most `BLOCK` of them at a time."""
     return (slice(at, at + BLOCK) for at in range(0, max(n_frames, 1), BLOCK))

@@ -13,6 +13,9 @@ OUT_OF_IMAGE = 6  # the network placed it outside the picture
 NO_DEPTH = 7  # a depth camera has no trusted depth there: a hole, an edge, something in front
 UNCERTAIN = 8  # placed, but far less certain than usual: left out of kinematics
 
+# Two cameras did not see it.
+FEW_VIEWS = (UNSEEN, LOW_SCORE, ONE_VIEW, OUT_OF_IMAGE)
+
 WORDS = {
     OK: "ok",
     UNSEEN: "unseen",

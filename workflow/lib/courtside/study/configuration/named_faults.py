@@ -34,7 +34,7 @@ def find(config_file: str, study: Study) -> Iterator[str]:
                 f"{config_file}: {key}: expected one of the takes of session {session_name}, "
                 f"{_takes(session)}, found {name}; correct the name, or remove it"
             )
-    checks = (_without_truth, _without_sources, _without_views, _without_networks)
+    checks = (_without_truth, _without_sources, _without_views, _without_networks, _without_takes)
     for key, told in (fault for check in checks for fault in check(study)):
         if is_own(key):
             yield f"{config_file}: {told}"
@@ -88,7 +88,12 @@ def _without_networks(study: Study) -> Iterator[tuple[str, str]]:
     A network looks in videos; keypoints of another program are those of the take.
     """
     step, key = study.parameters["compare_networks"], "compare_networks.sessions"
-    named = [pair for pair in study.takes() if pair[0].name in step["sessions"]]
+    begins = tuple(step["takes"] or [""])
+    named = [
+        (session, take)
+        for session, take in study.takes()
+        if session.name in step["sessions"] and take.name.startswith(begins)
+    ]
     for (session, take), model in product(named, step["networks"]):
         known = model in take.pose2d or (model in study.models and take.videos)
         if session.measures(take) and not known:
@@ -98,6 +103,13 @@ def _without_networks(study: Study) -> Iterator[tuple[str, str]]:
                 f"{key}: expected takes with {wanted}, found none in {session.name}/{take.name}; "
                 f"remove the session, or {model} from compare_networks.networks",
             )
+
+
+def _without_takes(study: Study) -> Iterator[tuple[str, str]]:
+    """Yield the key and a fault of each beginning of compared takes that no take has."""
+    key = "compare_networks.takes"
+    for told in _beginnings(key, study, study.parameters["compare_networks"]):
+        yield key, told
 
 
 def _without_sources(study: Study) -> Iterator[tuple[str, str]]:
@@ -153,15 +165,26 @@ def _compared(where: str, study: Study) -> Iterator[str]:
     compared = [study.sessions[name] for name in step["sessions"]]
     of = f"of {', '.join(step['sessions'])}"
     persons = sorted({name for session in compared for name in session.subjects})
-    takes = sorted({name for session in compared for name in _takes(session)})
     if step["subject"] not in persons:
         yield (
             f"{where}.subject: expected one of the persons {of}, {persons}, found "
             f"{step['subject']}; correct the name, or the list of sessions"
         )
-    for beginning in step["takes"]:
+    yield from _beginnings(f"{where}.takes", study, step)
+
+
+def _beginnings(where: str, study: Study, step: dict[str, Any]) -> Iterator[str]:
+    """Yield a fault for each beginning in a step's `takes` that no take of its `sessions` has.
+
+    None if the study does not run all these sessions.
+    """
+    if not set(step["sessions"]) <= set(study.sessions):
+        return
+    sessions = [study.sessions[name] for name in step["sessions"]]
+    takes = sorted({name for session in sessions for name in _takes(session)})
+    for beginning in (step["takes"] or []) if sessions else []:
         if not any(name.startswith(beginning) for name in takes):
             yield (
-                f"{where}.takes: expected how names of takes {of} begin, {takes}, found "
-                f"{beginning}; correct it, or remove it"
+                f"{where}: expected how names of takes of {', '.join(step['sessions'])} begin, "
+                f"{takes}, found {beginning}; correct it, or remove it"
             )

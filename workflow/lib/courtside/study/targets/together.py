@@ -142,7 +142,9 @@ def tabulated_takes(study: Study) -> list[dict[str, Any]]:
 def compared_takes(study: Study) -> list[MeasuredTake]:
     """Return the takes in which two networks are compared."""
     step = study.parameters["compare_networks"]
-    return measured_takes(study, step["sessions"], step["networks"])
+    rows = measured_takes(study, step["sessions"], step["networks"])
+    begins = tuple(step["takes"] or [""])
+    return [row for row in rows if row.labels["take"].startswith(begins)]
 
 
 def evaluated_takes(study: Study) -> list[EvaluatedTake]:
