@@ -6,6 +6,7 @@ import pytest
 from courtside.reconstruction import resampling
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import keypoints as record
+from courtside.study.errors import InputError
 from fixtures.cameras import sync_takes
 from fixtures.people import performers
 from virtualgym.body import stance
@@ -139,6 +140,22 @@ def test_common_times_are_what_two_cameras_share():
     assert time_s[0] == pytest.approx(0.0)
     assert time_s[-1] == pytest.approx(299 / 30 - 4.0)
     np.testing.assert_allclose(np.diff(time_s), 1 / 30)
+
+
+def test_times_that_one_camera_films_alone_are_not_common():
+    """The first camera films before and after all others, of which two overlap."""
+    views = [view(np.arange(n) / 30) for n in (60, 300, 300)]
+    clocks = [Clock(), Clock(offset_s=-20.0), Clock(offset_s=-25.0)]
+    time_s = resampling.common_times(views, clocks)
+    assert time_s[0] == pytest.approx(25.0)
+    assert time_s[-1] == pytest.approx(20.0 + 299 / 30)
+
+
+def test_cameras_that_never_film_together_are_refused_in_one_line():
+    views = [view(np.arange(300) / 30) for _ in range(3)]
+    clocks = [Clock(), Clock(offset_s=-45.0), Clock(offset_s=70.0)]
+    with pytest.raises(InputError, match="expected cameras that film at the same time, found"):
+        resampling.common_times(views, clocks)
 
 
 @pytest.mark.parametrize("rate_hz", [30, 60])
