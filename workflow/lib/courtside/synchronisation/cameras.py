@@ -16,7 +16,7 @@ from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.statistics import autocorrelation
 from courtside.study.errors import InputError
-from courtside.synchronisation import clock_adjustment, lost_frames, smooth_tracks
+from courtside.synchronisation import clock_adjustment, clock_doubts, lost_frames, smooth_tracks
 from courtside.synchronisation.epipolar import Epipolar
 from courtside.synchronisation.speed import Speeds
 
@@ -80,7 +80,7 @@ def synchronise(
         else:
             clock = _not_found(placed.get(camera), max_offset_s)
         found[views[camera].camera] = clock
-    return _doubted(found, evidence, time_s)
+    return _doubted(found, evidence)
 
 
 def of_take(
@@ -196,17 +196,22 @@ def _found(adjusted, camera, overlap, rows_apart) -> Clock:
     )
 
 
-def _doubted(found, evidence, time_s) -> dict[str, Clock]:
+def _doubted(found: dict[str, Clock], evidence: Epipolar | Speeds) -> dict[str, Clock]:
     """Return the clocks, with what speaks against one that is used: the others see it too."""
-    middle_s = float(time_s.mean())
-    own_s = np.array([clock.from_reference(middle_s) for clock in found.values()])
-    used = [at for at, clock in enumerate(found.values()) if clock.usable]
+    own = list(found.values())
+    used = [at for at, clock in enumerate(own) if clock.usable]
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "All-NaN|Mean of empty|Degrees of freedom")
-        said = {at: lost_frames.doubt(evidence, at, own_s, used) for at in used}
+        said = {at: lost_frames.doubt(evidence, at, own, used) for at in used}
     worst = max(used, key=lambda at: said[at][0])
-    name = list(found)[worst]
-    return found | {name: replace(found[name], doubt=said[worst][1])}
+    doubts = {
+        name: [clock_doubts.drift(clock, PRIOR_DRIFT), said[at][1] if at == worst else ""]
+        for at, (name, clock) in enumerate(found.items())
+    }
+    return {
+        name: replace(clock, doubt="; ".join(filter(None, doubts[name])))
+        for name, clock in found.items()
+    }
 
 
 def _not_found(placed: "Placed | None", max_offset_s: float) -> Clock:
