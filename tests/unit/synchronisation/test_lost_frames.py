@@ -45,6 +45,14 @@ def test_lost_frames_of_one_camera_are_told(camera, at_s, lag_ms):
     assert f"from {start} to {stop} s of its video" in said and f"{lag_ms:+d} ms" in said
 
 
+def test_lost_frames_of_several_cameras_are_told_of_each():
+    rig = sync_takes.rig(4)
+    shown = views(0, seconds=60.0, rig=rig)
+    shown[1], shown[3] = without(shown[1], 20.0, 6), without(shown[3], 40.0, 9)
+    found = cameras.synchronise(shown, rig)
+    assert {name for name, clock in found.items() if clock.doubt} == {"c1", "c3"}
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_whole_takes_are_not_doubted(seed):
     for known in (RIG, None):

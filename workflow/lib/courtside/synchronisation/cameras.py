@@ -197,21 +197,31 @@ def _found(adjusted, camera, overlap, rows_apart) -> Clock:
 
 
 def _doubted(found: dict[str, Clock], evidence: Epipolar | Speeds) -> dict[str, Clock]:
-    """Return the clocks, with what speaks against one that is used: the others see it too."""
-    own = list(found.values())
-    used = [at for at, clock in enumerate(own) if clock.usable]
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "All-NaN|Mean of empty|Degrees of freedom")
-        said = {at: lost_frames.doubt(evidence, at, own, used) for at in used}
-    worst = max(used, key=lambda at: said[at][0])
+    """Return the clocks, with what speaks against those that are used."""
+    lost = _lost_frames(evidence, list(found.values()))
     doubts = {
-        name: [clock_doubts.drift(clock, PRIOR_DRIFT), said[at][1] if at == worst else ""]
+        name: filter(None, [clock_doubts.drift(clock, PRIOR_DRIFT), lost.get(at, "")])
         for at, (name, clock) in enumerate(found.items())
     }
-    return {
-        name: replace(clock, doubt="; ".join(filter(None, doubts[name])))
-        for name, clock in found.items()
-    }
+    return {name: replace(clock, doubt="; ".join(doubts[name])) for name, clock in found.items()}
+
+
+def _lost_frames(evidence: Epipolar | Speeds, own: Sequence[Clock]) -> dict[int, str]:
+    """Return what is said of cameras that lost frames, by their index.
+
+    The others see it of the worst, too: they are asked again without it.
+    """
+    used, doubts = [at for at, clock in enumerate(own) if clock.usable], {}
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "All-NaN|Mean of empty|Degrees of freedom")
+        while used:
+            said = {at: lost_frames.doubt(evidence, at, own, used) for at in used}
+            worst = max(used, key=lambda at: said[at][0])
+            if not said[worst][1]:
+                break
+            doubts[worst] = said[worst][1]
+            used.remove(worst)
+    return doubts
 
 
 def _not_found(placed: "Placed | None", max_offset_s: float) -> Clock:
