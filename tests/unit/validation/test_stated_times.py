@@ -91,6 +91,8 @@ def test_cameras_whose_parts_share_no_time_are_told(hall):
     assert ["clocks.right" in line for line in faults] == [True, False]
     assert "overlaps that of another camera, found offset_s -0.5" in faults[0]
     assert "or a longer trim_s: `trim_s` cuts each video at the times of its own" in faults[0]
+    faults, _ = cut(hall, [0.8, 1.2], right=-0.5).said()  # when `back` films is not known yet
+    assert not any("clocks.right" in line for line in faults)
 
 
 def test_cameras_whose_parts_share_little_are_a_remark_with_the_part_to_state(hall):

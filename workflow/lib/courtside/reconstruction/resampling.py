@@ -9,7 +9,6 @@ from courtside.geometry import interpolation
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import keypoints
 from courtside.records.keypoints.keypoints import Keypoints2D
-from courtside.study.errors import InputError
 from courtside.video.glance import longest_step_s
 
 # Frame times closer than this share of a frame are equal: rounding of containers' clocks.
@@ -23,7 +22,7 @@ def common_times(views: Sequence[Keypoints2D], clocks: Sequence[Clock]) -> NDArr
     """Return uniform times (T,) of a take on the reference clock.
 
     They have the frame interval of the first camera and cover the span that at least two
-    cameras share. An `InputError` if no two share any time.
+    cameras share; there are none if no two share any time.
     """
     on_reference = [c.to_reference(v.time_s) for c, v in zip(clocks, views, strict=True)]
     spans = [(time_s[0], time_s[-1]) for time_s in on_reference]
@@ -32,17 +31,10 @@ def common_times(views: Sequence[Keypoints2D], clocks: Sequence[Clock]) -> NDArr
     def shared(time_s: float) -> bool:
         return sum(first <= time_s <= last for first, last in spans) >= enough
 
-    start = min((first for first, _ in spans if shared(first)), default=None)
-    stop = max((last for _, last in spans if shared(last)), default=None)
-    if start is None or stop is None:
-        found = ", ".join(
-            f"{view.camera} {first:.2f} to {last:.2f} s"
-            for view, (first, last) in zip(views, spans, strict=True)
-        )
-        raise InputError(
-            f"expected cameras that film at the same time, found, on the clock of the first, "
-            f"{found}; correct the `clocks` or the `trim_s` of the take"
-        )
+    if not any(shared(first) for first, _ in spans):
+        return np.empty(0)
+    start = min(first for first, _ in spans if shared(first))
+    stop = max(last for _, last in spans if shared(last))
     step_s = interpolation.frame_step_s(on_reference[0])
     return start + step_s * np.arange(int(np.floor((stop - start) / step_s + RATE_TOLERANCE)) + 1)
 

@@ -222,11 +222,11 @@ def _found(adjusted, camera, views, time_s, stated_s) -> Clock:
 def _doubted(found: dict[str, Clock], evidence: Epipolar | Speeds) -> dict[str, Clock]:
     """Return the clocks, with what speaks against those that are used."""
     lost = _lost_frames(evidence, list(found.values()))
-    doubts = {
-        name: filter(None, [clock_doubts.drift(clock, PRIOR_DRIFT), lost.get(at, "")])
-        for at, (name, clock) in enumerate(found.items())
-    }
-    return {name: replace(clock, doubt="; ".join(doubts[name])) for name, clock in found.items()}
+    doubted = {}
+    for at, (name, clock) in enumerate(found.items()):
+        drift = clock_doubts.drift(clock, PRIOR_DRIFT) if clock.usable else ""
+        doubted[name] = replace(clock, doubt="; ".join(filter(None, [drift, lost.get(at, "")])))
+    return doubted
 
 
 def _lost_frames(evidence: Epipolar | Speeds, own: Sequence[Clock]) -> dict[int, str]:

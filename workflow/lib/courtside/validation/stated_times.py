@@ -105,13 +105,16 @@ def _sighting(take: Take, entry: Mapping, look: Glance) -> Iterator[str]:
 def _clocks(take: Take, looks: Looks) -> Iterator[str]:
     """Yield cameras whose stated clock puts what is used of their video outside of all others'."""
     own = _stated(take)
-    spans = {n: own[n].to_reference(used).tolist() for n, used in _used(take, looks).items()}
+    # A part may overlap that of a camera whose clock is found later.
+    trim_s = take.trim_s if set(take.videos) <= set(own) else None
+    parts = _used(take, looks, trim_s)
+    spans = {name: own[name].to_reference(part).tolist() for name, part in parts.items()}
     for name in (name for name in take.clocks if name in spans and len(spans) > 1):
         others = [span for other, span in spans.items() if other != name]
         start, stop = spans[name]
         if all(stop <= first or last <= start for first, last in others):
-            used = "the part by `trim_s` of its video" if take.trim_s else "its video"
-            remedy = f", or a longer trim_s: {clocks.ON_OWN_CLOCK}" if take.trim_s else ""
+            used = "the part by `trim_s` of its video" if trim_s else "its video"
+            remedy = f", or a longer trim_s: {clocks.ON_OWN_CLOCK}" if trim_s else ""
             yield (
                 f"clocks.{name}: expected an offset with which {used} of {stop - start:.2f} s "
                 f"overlaps that of another camera, found offset_s "
@@ -121,14 +124,16 @@ def _clocks(take: Take, looks: Looks) -> Iterator[str]:
 
 def _shared(take: Take, looks: Looks) -> Iterator[str]:
     """Yield whether `trim_s` cuts different times out of videos whose clocks are stated."""
-    used = _used(take, looks)
+    used = _used(take, looks, take.trim_s)
     if take.trim_s and len(used) > 1 and (line := clocks.little_shared(used, _stated(take))):
         yield line
 
 
-def _used(take: Take, looks: Looks) -> dict[str, tuple[float, float]]:
+def _used(
+    take: Take, looks: Looks, trim_s: tuple[float, ...] | None
+) -> dict[str, tuple[float, float]]:
     """Return what is used of the videos whose clock is stated (start, stop), on their own clock."""
-    start_s, stop_s = take.trim_s or (0.0, inf)
+    start_s, stop_s = trim_s or (0.0, inf)
     ends_s = {n: min(stop_s, looks[n].duration_s or 0.0) for n in _stated(take) if n in looks}
     return {name: (start_s, end_s) for name, end_s in ends_s.items() if start_s < end_s}
 
