@@ -181,7 +181,7 @@ rule synchronise_devices:
     params:
         code=code("synchronise_devices.py"),
         devices=of_job(devices.clocks, corrected=False),
-        stated=of_job(lambda job: takes.clocks(job, job.take.devices)),
+        stated=of_job(devices.stated_clocks),
         step=step("synchronise_devices"),
     script:
         "../scripts/synchronise_devices.py"

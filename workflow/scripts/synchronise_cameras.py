@@ -20,6 +20,11 @@ def main(cameras_toml, pose2d_npz, sync_json, *, synchronised, stated, **options
     for camera, clock in clocks.items():
         if clock.doubt:
             log.tell(f"{camera}: {clock.doubt}", sync_json)
+    used = {view.camera: view.time_s[[0, -1]] for view in views}
+    cut = all(start_s > 0 for start_s, _ in used.values())  # whole videos start with zero
+    usable = all(clock.usable for clock in clocks.values())
+    if cut and usable and (line := sync.little_shared(used, clocks)):
+        log.tell(line, sync_json)
     sync.write(sync_json, views[0].camera, clocks)
 
 

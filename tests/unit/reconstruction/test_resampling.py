@@ -141,6 +141,22 @@ def test_common_times_are_what_two_cameras_share():
     np.testing.assert_allclose(np.diff(time_s), 1 / 30)
 
 
+def test_times_that_one_camera_films_alone_are_not_common():
+    """The first camera films before and after all others, of which two overlap."""
+    views = [view(np.arange(n) / 30) for n in (60, 300, 300)]
+    clocks = [Clock(), Clock(offset_s=-20.0), Clock(offset_s=-25.0)]
+    time_s = resampling.common_times(views, clocks)
+    assert time_s[0] == pytest.approx(25.0)
+    assert time_s[-1] == pytest.approx(20.0 + 299 / 30)
+
+
+def test_cameras_that_never_film_together_have_no_common_times():
+    """`association.everybody` refuses them in one line."""
+    views = [view(np.arange(300) / 30) for _ in range(3)]
+    clocks = [Clock(), Clock(offset_s=-45.0), Clock(offset_s=70.0)]
+    assert len(resampling.common_times(views, clocks)) == 0
+
+
 @pytest.mark.parametrize("rate_hz", [30, 60])
 def test_times_of_a_container_that_keeps_milliseconds_have_the_rate_of_the_frames(rate_hz):
     """At 60 Hz most intervals are 17 ms: as a step they would be 58.8 Hz, away from the frames."""

@@ -64,6 +64,36 @@ def test_clocks_of_a_take_are_one_or_found_or_stated():
     assert found["c2"] == Clock(-3.0, note="stated by the session")
 
 
+@pytest.mark.parametrize("known", [True, False], ids=["calibrated", "uncalibrated"])
+def test_a_stated_clock_helps_to_find_one_that_is_not_found_without(known):
+    """The third camera starts near the second one, long after the first one."""
+    clocks = [Clock(), Clock(-21.0, 80.0), Clock(-24.0)]
+    views = take(2, seconds=50.0, rate_hz=15, clocks=clocks)
+    rig = {camera.name: camera for camera in CAMERAS} if known else None
+
+    def of_take(**stated):
+        return camera_sync.of_take(views, rig, synchronised=False, stated=stated)
+
+    assert of_take()["c2"].status == "unknown"
+    told = {"offset_s": -21.0, "drift_ppm": 80.0}
+    found = of_take(c1=told)
+    assert found["c1"] == Clock(**told, note="stated by the session")
+    assert found["c2"].status == "found"
+    common = np.array([24.0, 50.0])
+    wrong_s = found["c2"].from_reference(common) - clocks[2].from_reference(common)
+    assert np.abs(wrong_s).max() < 0.008
+    doubtful = of_take(c1=told | {"uncertainty_s": 0.05})["c2"]
+    assert doubtful.status == "unknown" and doubtful.uncertainty_s > 0.05
+
+
+def test_a_wrong_stated_clock_changes_none_that_is_found_without():
+    views = take(0)
+    known = {camera.name: camera for camera in CAMERAS}
+    stated = {"c2": {"offset_s": CLOCKS[2].offset_s + 0.1}}
+    found = camera_sync.of_take(views, known, synchronised=False, stated=stated)
+    assert found["c1"] == camera_sync.synchronise(views, CAMERAS)["c1"]
+
+
 def test_stated_clocks_of_all_cameras_need_no_motion():
     views = take(0, seconds=0.5)  # too short to be synchronised by
     known = {camera.name: camera for camera in CAMERAS}

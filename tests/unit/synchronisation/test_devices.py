@@ -220,3 +220,5 @@ def test_checks_have_a_row_per_source():
     assert rows.n_claps["mocopi"] == 2
     assert rows.latency_s["mocopi"] == 0.02
     assert rows.offset_s["mocopi"] == found["mocopi"].clock.offset_s
+    doubtful = {"mocopi": replace(found["mocopi"], clock=Clock(doubt="sides exchanged"))}
+    assert devices.checks(found | doubtful).doubt.tolist() == ["", "sides exchanged"]

@@ -12,13 +12,15 @@ RIG = sync_takes.rig(3)
 SECONDS, RATE_HZ = 24.0, 30
 
 
-def views(seed):
+def views(seed, *, seconds=SECONDS, rate_hz=RATE_HZ, drift_ppm=0.0, rig=RIG):
+    """Return what cameras see; the clock of the second one drifts."""
     rng = np.random.default_rng(seed)
-    person = sync_takes.athlete(rng, SECONDS)
-    own_s = np.arange(round(SECONDS * RATE_HZ)) / RATE_HZ
+    person = sync_takes.athlete(rng, seconds)
+    own_s = np.arange(round(seconds * rate_hz)) / rate_hz
+    clocks = [cameras.Clock(0.7 * at, drift_ppm * (at == 1)) for at in range(len(rig))]
     return [
-        sync_takes.seen(rng, camera, [person], own_s, cameras.Clock(offset_s=0.7 * at))
-        for at, camera in enumerate(RIG)
+        sync_takes.seen(rng, camera, [person], own_s, clock)
+        for camera, clock in zip(rig, clocks, strict=True)
     ]
 
 
@@ -43,8 +45,33 @@ def test_lost_frames_of_one_camera_are_told(camera, at_s, lag_ms):
     assert f"from {start} to {stop} s of its video" in said and f"{lag_ms:+d} ms" in said
 
 
+def test_lost_frames_of_several_cameras_are_told_of_each():
+    rig = sync_takes.rig(4)
+    shown = views(0, seconds=60.0, rig=rig)
+    shown[1], shown[3] = without(shown[1], 20.0, 6), without(shown[3], 40.0, 9)
+    found = cameras.synchronise(shown, rig)
+    assert {name for name, clock in found.items() if clock.doubt} == {"c1", "c3"}
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_whole_takes_are_not_doubted(seed):
     for known in (RIG, None):
         found = cameras.synchronise(views(seed), known)
         assert [clock.doubt for clock in found.values()] == ["", "", ""]
+
+
+@pytest.mark.parametrize("known", [RIG, None], ids=["calibrated", "uncalibrated"])
+@pytest.mark.parametrize(
+    ("seconds", "rate_hz", "drift_ppm", "wrong_rate"),
+    [(240.0, 15, 1500.0, True), (900.0, 10, 330.0, False)],
+)
+def test_a_drift_is_not_taken_for_missing_frames(seconds, rate_hz, drift_ppm, wrong_rate, known):
+    """It moves the parts at the ends by more than 0.1 s."""
+    shown = views(0, seconds=seconds, rate_hz=rate_hz, drift_ppm=drift_ppm)
+    found = cameras.synchronise(shown, known)
+    assert found["c1"].drift_ppm == pytest.approx(drift_ppm, abs=50)
+    said = [clock.doubt for clock in found.values()]
+    assert not any("frames are probably missing" in line for line in said)
+    told = "expected a drift of at most 400 ppm, found"
+    assert [told in line for line in said] == [False, wrong_rate, False]
+    assert "or states a wrong rate" in said[1] or not wrong_rate

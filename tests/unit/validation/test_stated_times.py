@@ -76,6 +76,33 @@ def test_an_offset_in_milliseconds_is_told(hall):
     assert hall.said() == ([], [])
 
 
+def cut(hall, trim_s, **offsets_s):
+    take = hall.content["takes"]["serve"]
+    take.pop("synchronised", None)
+    take["trim_s"] = trim_s
+    take["clocks"] = {name: {"offset_s": offset_s} for name, offset_s in offsets_s.items()}
+    return hall
+
+
+def test_cameras_whose_parts_share_no_time_are_told(hall):
+    """The whole videos of 2 s overlap, the parts that `trim_s` cuts out of them do not."""
+    assert cut(hall, [0, 2], right=-0.5, back=0.5).said()[0] == []
+    faults, _ = cut(hall, [0.8, 1.2], right=-0.5, back=0.5).said()
+    assert ["clocks.right" in line for line in faults] == [True, False]
+    assert "overlaps that of another camera, found offset_s -0.5" in faults[0]
+    assert "or a longer trim_s: `trim_s` cuts each video at the times of its own" in faults[0]
+    faults, _ = cut(hall, [0.8, 1.2], right=-0.5).said()  # when `back` films is not known yet
+    assert not any("clocks.right" in line for line in faults)
+
+
+def test_cameras_whose_parts_share_little_are_a_remark_with_the_part_to_state(hall):
+    faults, (remark,) = cut(hall, [0.6, 1.2], right=-0.3, back=0.4).said()
+    assert faults == []
+    assert "trim_s: all cameras share 0.00 of 0.60 s" in remark
+    assert "[0.30, 1.60] lets all show what camera left shows from 0.60 to 1.20 s" in remark
+    assert cut(hall, [0.6, 1.2], right=-0.02, back=0.02).said() == ([], [])
+
+
 @pytest.mark.parametrize(
     ("one", "other", "is_told"),
     [(None, None, True), ([0, 1], [0.5, 2], True), ([1, 2], None, True), ([0, 1], [1, 2], False)],

@@ -9,6 +9,7 @@ import pytest
 from courtside.pages import page as pages
 from courtside.pages.report import facts as report_facts
 from courtside.pages.report import quality, warnings
+from courtside.records.devices.clocks import Clock
 from fixtures.study import report_made
 
 
@@ -73,6 +74,17 @@ def test_the_page_states_clocks_and_movement(tmp_path):
     assert cells(html, "c1")[:3] == ["found", "0.2000", "1.65"]
     assert cells(html, "c0") == ["0.10", "0.0010", "300"]
     assert "trembles by 0.01 px" in html
+
+
+def test_the_page_states_what_speaks_against_a_clock(tmp_path):
+    clocks = {"c1": Clock(0.2, status="found", note="offset adjusted", doubt="frames are missing")}
+    rows = [
+        {"source": "mocopi", "status": "found", "offset_s": 1.0, "uncertainty_s": 0.001} | more
+        for more in ({"doubt": "sides exchanged"}, {"source": "d415", "doubt": math.nan})
+    ]
+    html = page(tmp_path, clocks=clocks, devices=rows, movement=[])
+    assert cells(html, "c1")[-1] == "offset adjusted; frames are missing"
+    assert cells(html, "mocopi")[-1] == "sides exchanged" and cells(html, "d415")[-1] == ""
 
 
 def test_the_page_states_bumps_without_advice_that_was_followed(tmp_path):

@@ -8,6 +8,7 @@ import pytest
 
 from courtside.pages.report import warnings as warned
 from courtside.reconstruction import camera_shake
+from courtside.records.devices import clocks
 from courtside.records.devices.clocks import Clock
 from fixtures.cameras import scene, shaken
 
@@ -18,6 +19,8 @@ STILL = {
     "zoom_percent": 0.01,
     "n_matches": 300,
 }
+NOTHING = dict.fromkeys(("movement", "shake", "devices", "quality", "true_paths"), ())
+NOTHING |= {"persons": {}, "clocks": {}, "joints": {}, "left_out": {}}
 QUALITY = {"warnings": [], "left_out": {"p01": {"error_cm": 0.5}}, "expected_volume_rms_cm": 0.7}
 
 
@@ -79,6 +82,33 @@ def test_an_unknown_uncertainty_of_a_clock_is_called_unknown():
 def test_a_clock_that_was_not_checked_is_told_where_it_comes_from(clock, words):
     message = warned.clock("back", clock).text
     assert message == f"Camera back: its clock {words}; this was not checked."
+
+
+def test_a_stated_clock_is_judged_by_its_stated_uncertainty():
+    stated = clocks.stated({"back": {"offset_s": 1.2, "uncertainty_s": 0.05}})["back"]
+    assert warned.clock("back", stated).level == warned.FAILED
+    exact = clocks.stated({"back": {"offset_s": 1.2, "uncertainty_s": 0.001}})["back"]
+    said = warned.clock("back", exact)
+    assert said.level == warned.GOOD and "as the session states it" in said.text
+
+
+def test_what_speaks_against_a_clock_makes_a_take_doubtful():
+    doubt = "from 0 to 6 s of its video, it agrees better -133 ms beside this clock"
+    found = {
+        "left": Clock(status="reference", doubt=doubt),
+        "back": Clock(1.3, uncertainty_s=0.001, status="found"),
+    }
+    devices = [
+        {"source": "mocopi", "status": "found", "uncertainty_s": 0.001, "doubt": "sides exchanged"},
+        {"source": "d415", "status": "found", "uncertainty_s": 0.001, "doubt": math.nan},
+    ]
+    said = warned.of_take(
+        NOTHING | {"clocks": found, "devices": devices}, max_shift_px=1.0, max_zoom_percent=0.2
+    )
+    assert said == [
+        (warned.DOUBTFUL, f"Camera left: its clock is in doubt: {doubt}."),
+        (warned.DOUBTFUL, "mocopi: its clock is in doubt: sides exchanged."),
+    ]
 
 
 def test_a_clock_error_is_also_given_as_the_path_of_a_fast_wrist():

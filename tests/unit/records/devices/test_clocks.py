@@ -99,3 +99,12 @@ def test_clocks_that_somebody_states_are_used():
     assert found["left"].usable
     assert found["left"].to_reference(2.5) == pytest.approx(1.0)
     assert found["left"].uncertainty_s == 0.02
+
+
+def test_cameras_that_show_few_common_times_are_told_what_would_show_them():
+    found = {"a": clocks.Clock(status="reference"), "b": clocks.Clock(-6.0, status="found")}
+    used = {"a": (120.0, 130.0), "b": (120.0, 130.0)}
+    line = clocks.little_shared(used, found)
+    assert "all cameras share 4.00 of 10.00 s" in line
+    assert "[114.00, 130.00] lets all show what camera a shows from 120.00 to 130.00 s" in line
+    assert clocks.little_shared(used, found | {"b": clocks.Clock(-0.5)}) == ""

@@ -4,8 +4,10 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from courtside.records.devices.clocks import Clock
 from courtside.study import paths
 from courtside.study.configuration import sessions
 from courtside.study.configuration.sessions import Device
@@ -163,6 +165,29 @@ def test_clocks_belong_to_devices_and_a_corrected_source_has_that_of_its_own(job
         f"{FOLDER}/devices/mocopi-corrected.blazepose-full.events.json",
     ]
     assert devices.take_clocks(job(**CLAPS)) == f"{FOLDER}/sync/devices.blazepose-full.json"
+
+
+def test_stated_clocks_are_against_the_source_that_is_the_reference(job, study):
+    """They are stated against the first camera; here, no calibration lets it measure the take."""
+    session = study.sessions["single-view-tiny"]
+
+    def stated(videos, **clocks):
+        take = replace(session.takes["claps"], videos=videos, clocks=clocks)
+        other = replace(session, takes={"claps": take})
+        own = replace(study, sessions={**study.sessions, session.name: other})
+        return devices.stated_clocks(job(own, **CLAPS))
+
+    d415, mocopi = {"offset_s": -1.0, "drift_ppm": 40.0}, {"offset_s": 0.36, "uncertainty_s": 0.01}
+    filmed = {"left": "left.mp4", "right": "right.mp4"}
+    found = stated(filmed, d415=d415, mocopi=mocopi, left={"offset_s": 0.0})
+    assert list(found) == ["mocopi"]  # d415 is the reference
+    clock = Clock(**found["mocopi"])
+    assert clock.uncertainty_s == 0.01
+    at_s = np.array([0.0, 100.0])  # of the camera
+    own_s, other_s = (Clock(**one).from_reference(at_s) for one in (d415, mocopi))
+    np.testing.assert_allclose(clock.from_reference(own_s), other_s, atol=1e-9)
+    assert stated(filmed, mocopi=mocopi) == {}  # nothing tells the clock of the d415
+    assert stated({}, mocopi=mocopi) == {"mocopi": mocopi}
 
 
 def test_inertial_devices_are_corrected_by_a_depth_camera(job):

@@ -22,13 +22,19 @@ def common_times(views: Sequence[Keypoints2D], clocks: Sequence[Clock]) -> NDArr
     """Return uniform times (T,) of a take on the reference clock.
 
     They have the frame interval of the first camera and cover the span that at least two
-    cameras share.
+    cameras share; there are none if no two share any time.
     """
     on_reference = [c.to_reference(v.time_s) for c, v in zip(clocks, views, strict=True)]
-    first = sorted(time_s[0] for time_s in on_reference)
-    last = sorted((time_s[-1] for time_s in on_reference), reverse=True)
-    second = min(1, len(views) - 1)
-    start, stop = first[second], last[second]
+    spans = [(time_s[0], time_s[-1]) for time_s in on_reference]
+    enough = min(2, len(views))
+
+    def shared(time_s: float) -> bool:
+        return sum(first <= time_s <= last for first, last in spans) >= enough
+
+    if not any(shared(first) for first, _ in spans):
+        return np.empty(0)
+    start = min(first for first, _ in spans if shared(first))
+    stop = max(last for _, last in spans if shared(last))
     step_s = interpolation.frame_step_s(on_reference[0])
     return start + step_s * np.arange(int(np.floor((stop - start) / step_s + RATE_TOLERANCE)) + 1)
 

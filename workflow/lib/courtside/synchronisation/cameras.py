@@ -16,7 +16,7 @@ from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.statistics import autocorrelation
 from courtside.study.errors import InputError
-from courtside.synchronisation import clock_adjustment, lost_frames, smooth_tracks
+from courtside.synchronisation import clock_adjustment, clock_doubts, lost_frames, smooth_tracks
 from courtside.synchronisation.epipolar import Epipolar
 from courtside.synchronisation.speed import Speeds
 
@@ -38,13 +38,15 @@ def synchronise(
     *,
     max_offset_s: float = MAX_OFFSET_S,
     min_score: float = MIN_SCORE,
+    fixed: Mapping[str, Clock] | None = None,
 ) -> dict[str, Clock]:
     """Find the clock of every camera against the first one's.
 
     Tracklets of the views may differ in number, order and persons. `cameras` are in the order of
     the views; without them only the rhythm of the motion is compared. Offsets larger than
-    `max_offset_s` are not tried, keypoints below `min_score` not used. Whether the clocks may be
-    used tells `records.devices.clocks.fault_line`. An `InputError` if a camera has fewer than
+    `max_offset_s`, against a camera whose clock is known, are not tried, keypoints below
+    `min_score` not used. Clocks that are `fixed` stay. Whether the clocks may be used tells
+    `records.devices.clocks.fault_line`. An `InputError` if a camera has fewer than
     `clocks.FEWEST_FRAMES` frames.
 
     First every offset is tried on a coarse grid, camera after camera, the surest first. Then
@@ -60,27 +62,29 @@ def synchronise(
                 "`clocks` of all cameras but the first"
             )
     time_s = _times(views[0].time_s)
+    still = {at: fixed[v.camera] for at, v in enumerate(views) if fixed and v.camera in fixed}
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "All-NaN|Mean of empty|Degrees of freedom")
         evidence = _evidence(views, cameras, min_score)
-        placed = place(evidence.scan, len(views), max_offset_s, evidence.scan_step_s)
+        middle_s = float(time_s.mean())
+        known_s = {c: float(still[c].from_reference(middle_s)) - middle_s for c in still}
+        placed = place(evidence.scan, len(views), max_offset_s, evidence.scan_step_s, known_s)
         sure = _sure(placed)
         offset_s = [placed[c].offset_s if c in sure else 0.0 for c in range(len(views))]
         pairs = evidence.match(time_s + np.array(offset_s)[:, None], sure)
-        sure = sorted(_connected(pairs))
-        adjusted = _adjust(evidence, offset_s, sure, time_s)
-    rows = [_row(view) for view in views]
+        sure = sorted(_connected(pairs, {0, *still}))
+        adjusted = _adjust(evidence, offset_s, sure, time_s, still)
     found = {views[0].camera: REFERENCE}
+    stated_s = max((clock.uncertainty_s for clock in still.values()), default=0.0)
     for camera in range(1, len(views)):
-        if camera in sure:
-            own, known_s = adjusted.own(camera, time_s), views[camera].time_s
-            overlap = time_s[(own >= known_s[0]) & (own <= known_s[-1])]
-            overlap = overlap if len(overlap) else time_s
-            clock = _found(adjusted, camera, overlap, abs(rows[camera] - rows[0]))
+        if camera in still:
+            clock = still[camera]
+        elif camera in sure:
+            clock = _found(adjusted, camera, views, time_s, stated_s)
         else:
             clock = _not_found(placed.get(camera), max_offset_s)
         found[views[camera].camera] = clock
-    return _doubted(found, evidence, time_s)
+    return _doubted(found, evidence)
 
 
 def of_take(
@@ -94,14 +98,21 @@ def of_take(
     """Return the clocks of a take's cameras, by name.
 
     One clock where the session says that they are `synchronised`; else those found by
-    `synchronise`, with `options`, but for those `stated`. `cameras` by name where they are known.
+    `synchronise`, with `options`, but for those `stated`. Stated clocks are as good as their
+    source: they help to find only those that are not found without. `cameras` by name where they
+    are known.
     """
     if synchronised:
         return clocks.one_clock([view.camera for view in views])
     if clocks.are_stated([view.camera for view in views], stated):
         return {views[0].camera: REFERENCE} | clocks.stated(stated)
     known = [cameras[view.camera] for view in views] if cameras else None
-    return synchronise(views, known, **options) | clocks.stated(stated)
+    found, fixed = synchronise(views, known, **options), clocks.stated(stated)
+    missed = [name for name, clock in found.items() if not clock.usable and name not in fixed]
+    if fixed and missed:
+        again = synchronise(views, known, fixed=fixed, **options)
+        found |= {name: again[name] for name in missed}
+    return found | fixed
 
 
 def _evidence(views, cameras, min_score) -> Epipolar | Speeds:
@@ -123,20 +134,25 @@ def _times(time_s: NDArray) -> NDArray:
     return time_s[0] + step_s * np.arange(round((time_s[-1] - time_s[0]) / step_s) + 1)
 
 
-def _connected(pairs: list[tuple[int, int]]) -> set[int]:
-    """Return the cameras that pairs connect with camera 0, directly or through others."""
-    known = {0}
+def _connected(pairs: list[tuple[int, int]], known: set[int]) -> set[int]:
+    """Return the cameras that pairs connect with known ones, directly or through others."""
     for _ in pairs:
         known |= {camera for pair in pairs if known & set(pair) for camera in pair}
     return known
 
 
-def _adjust(evidence, offset_s, sure, time_s) -> clock_adjustment.Adjusted:
-    """Adjust the clocks of the sure cameras; offsets alone where a drift cannot be determined."""
+def _adjust(evidence, offset_s, sure, time_s, still) -> clock_adjustment.Adjusted:
+    """Adjust the clocks of the sure cameras; offsets alone where a drift cannot be determined.
+
+    Those of the cameras `still` stay.
+    """
     unknowns = np.array([2 * (camera in sure) for camera in range(len(offset_s))])
-    unknowns[0] = 0
+    unknowns[[0, *still]] = 0
+    drift = np.array(
+        [1e-6 * still[c].drift_ppm if c in still else 0.0 for c in range(len(unknowns))]
+    )
     while True:
-        adjusted = clock_adjustment.adjust(evidence.terms, offset_s, time_s, unknowns)
+        adjusted = clock_adjustment.adjust(evidence.terms, offset_s, time_s, unknowns, drift)
         spread = np.sqrt(np.diag(adjusted.covariance)[1::2])
         lost = (unknowns == 2) & ~(spread <= HOPELESS * PRIOR_DRIFT)
         if not lost.any():
@@ -165,8 +181,15 @@ def _row(view: Keypoints2D) -> float:
     return float(np.median(view.xy[..., 1][seen])) / view.size[1] if seen.any() else 0.5
 
 
-def _found(adjusted, camera, overlap, rows_apart) -> Clock:
-    """Return the clock, with its uncertainty at the ends of the times that the camera filmed."""
+def _found(adjusted, camera, views, time_s, stated_s) -> Clock:
+    """Return the clock, with its uncertainty at the ends of the times that the camera filmed.
+
+    `stated_s` is that of the clocks that others are found by.
+    """
+    own, filmed_s = adjusted.own(camera, time_s), views[camera].time_s
+    overlap = time_s[(own >= filmed_s[0]) & (own <= filmed_s[-1])]
+    overlap = overlap if len(overlap) else time_s
+    beside_s = np.hypot(READOUT_SPREAD_S * abs(_row(views[camera]) - _row(views[0])), stated_s)
     drift, at = adjusted.drift[camera], slice(2 * camera, 2 * camera + 2)
     covariance = adjusted.covariance[at, at]
     offset_s = adjusted.offset_s[camera] - drift * adjusted.centre_s
@@ -177,7 +200,7 @@ def _found(adjusted, camera, overlap, rows_apart) -> Clock:
     if not drift_spread > 0:
         drift_spread = PRIOR_DRIFT
         variance = variance + (PRIOR_DRIFT * (ends - overlap.mean())) ** 2
-    uncertainty_s = float(np.sqrt(variance.max() + (READOUT_SPREAD_S * rows_apart) ** 2))
+    uncertainty_s = float(np.sqrt(variance.max() + beside_s**2))
     sure = uncertainty_s <= MAX_UNCERTAINTY_S
     known = drift_spread < KNOWN_DRIFT * PRIOR_DRIFT
     note = "offset and drift adjusted"
@@ -196,17 +219,32 @@ def _found(adjusted, camera, overlap, rows_apart) -> Clock:
     )
 
 
-def _doubted(found, evidence, time_s) -> dict[str, Clock]:
-    """Return the clocks, with what speaks against one that is used: the others see it too."""
-    middle_s = float(time_s.mean())
-    own_s = np.array([clock.from_reference(middle_s) for clock in found.values()])
-    used = [at for at, clock in enumerate(found.values()) if clock.usable]
+def _doubted(found: dict[str, Clock], evidence: Epipolar | Speeds) -> dict[str, Clock]:
+    """Return the clocks, with what speaks against those that are used."""
+    lost = _lost_frames(evidence, list(found.values()))
+    doubted = {}
+    for at, (name, clock) in enumerate(found.items()):
+        drift = clock_doubts.drift(clock, PRIOR_DRIFT) if clock.usable else ""
+        doubted[name] = replace(clock, doubt="; ".join(filter(None, [drift, lost.get(at, "")])))
+    return doubted
+
+
+def _lost_frames(evidence: Epipolar | Speeds, own: Sequence[Clock]) -> dict[int, str]:
+    """Return what is said of cameras that lost frames, by their index.
+
+    The others see it of the worst, too: they are asked again without it.
+    """
+    used, doubts = [at for at, clock in enumerate(own) if clock.usable], {}
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "All-NaN|Mean of empty|Degrees of freedom")
-        said = {at: lost_frames.doubt(evidence, at, own_s, used) for at in used}
-    worst = max(used, key=lambda at: said[at][0])
-    name = list(found)[worst]
-    return found | {name: replace(found[name], doubt=said[worst][1])}
+        while used:
+            said = {at: lost_frames.doubt(evidence, at, own, used) for at in used}
+            worst = max(used, key=lambda at: said[at][0])
+            if not said[worst][1]:
+                break
+            doubts[worst] = said[worst][1]
+            used.remove(worst)
+    return doubts
 
 
 def _not_found(placed: "Placed | None", max_offset_s: float) -> Clock:
@@ -256,19 +294,27 @@ class Placed:
 
 
 def place(
-    scan: Callable[[int, int, NDArray], NDArray], n_cameras: int, max_offset_s: float, step_s: float
+    scan: Callable[[int, int, NDArray], NDArray],
+    n_cameras: int,
+    max_offset_s: float,
+    step_s: float,
+    known_s: Mapping[int, float] | None = None,
 ) -> dict[int, Placed]:
-    """Find coarse offsets of all cameras against camera 0.
+    """Find coarse offsets of all cameras against camera 0; some are known (`known_s`).
 
     `scan(a, b, lags_s)` returns the loss (N, L) of camera b against a, at N times of camera a and
     offsets of b's clock against a's; NaN where they have nothing in common. Offsets up to
-    `max_offset_s` are tried in steps of `step_s`. The result is in the order of placing, camera 0
-    first, without cameras that no other can be compared with.
+    `max_offset_s` against a known camera are tried in steps of `step_s`. The result is in the order
+    of placing, camera 0 first, without cameras that no other can be compared with.
     """
     count = int(np.ceil(max_offset_s / step_s))
-    offsets_s = step_s * np.arange(-count, count + 1)
-    placed = {0: Placed(0.0, (), np.inf)}
-    losses: dict[int, dict[int, NDArray]] = {camera: {} for camera in range(1, n_cameras)}
+    known_s = {0: 0.0} | dict(known_s or {})
+    about = [round(offset_s / step_s) for offset_s in known_s.values()]
+    tried = [at + np.arange(-count, count + 1) for at in about]
+    offsets_s = step_s * np.unique(np.concatenate(tried))
+    placed = {camera: Placed(offset_s, (), np.inf) for camera, offset_s in known_s.items()}
+    losses: dict[int, dict[int, NDArray]]
+    losses = {camera: {} for camera in range(n_cameras) if camera not in placed}
     while losses:
         for camera, known in losses.items():
             for other in _sure(placed):

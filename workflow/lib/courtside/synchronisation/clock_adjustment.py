@@ -40,15 +40,19 @@ class Adjusted:
 
 
 def adjust(
-    terms: Terms, offset_s: Sequence[float] | NDArray, time_s: NDArray, unknowns: NDArray
+    terms: Terms,
+    offset_s: Sequence[float] | NDArray,
+    time_s: NDArray,
+    unknowns: NDArray,
+    drift: Sequence[float] | NDArray | None = None,
 ) -> Adjusted:
     """Find the offsets and drifts that minimise the loss of all pairs.
 
     `terms(own)`, with `own` (C, T) what each clock shows, returns for pairs (a, b) `(slope,
     curvature, steepness)`, (T,) each: first derivative, second derivative and its never negative
-    part, of the pair's loss by the offset of b against a. `offset_s` (C,) are start values; camera
-    0 stays. `time_s` (T,) are of the reference clock. `unknowns` (C,) are 2 to estimate offset and
-    drift, 1 for the offset with zero drift, 0 for a fixed clock.
+    part, of the pair's loss by the offset of b against a. `offset_s` and `drift` (C,), by default
+    zero, are start values; camera 0 stays. `time_s` (T,) are of the reference clock. `unknowns`
+    (C,) are 2 to estimate offset and drift, 1 for the offset with zero drift, 0 for a fixed clock.
 
     Newton's method. The covariance is that of the jackknife over blocks of time (MacKinnon & White
     1985), valid for correlated noise of neighbouring frames and of pairs with a common camera. It
@@ -57,7 +61,8 @@ def adjust(
     centre_s = float(time_s.mean())
     # Indices of the free parameters among offset 0, drift 0, offset 1, ...
     free = np.array([2 * c + k for c, count in enumerate(unknowns) for k in range(count)], int)
-    state = np.column_stack([offset_s, np.zeros(len(offset_s))]).astype(float)
+    drift = np.zeros(len(offset_s)) if drift is None else drift
+    state = np.column_stack([offset_s, drift]).astype(float)
     lever = np.column_stack([np.ones_like(time_s), time_s - centre_s])
     for _ in range(STEPS):
         slope, curvature, steepness = _normal(terms(_own(state, lever, time_s)), lever, free)

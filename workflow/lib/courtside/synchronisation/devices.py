@@ -99,7 +99,7 @@ def checks(found: Mapping[str, Found]) -> pd.DataFrame:
         rest = {key: value for key, value in vars(one).items() if key not in ("clock", "claps")}
         about = {"source": source, "status": one.clock.status, **clock}
         about["drift_uncertainty_ppm"] = one.clock.drift_uncertainty_ppm
-        rows.append(about | {"n_claps": len(one.claps)} | rest)
+        rows.append(about | {"n_claps": len(one.claps)} | rest | {"doubt": one.clock.doubt})
     return pd.DataFrame(rows)
 
 

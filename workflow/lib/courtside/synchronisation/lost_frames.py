@@ -1,10 +1,11 @@
 """Whether a part of a camera's video has another offset than its clock: frames are missing."""
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.records.devices.clocks import Clock
 from courtside.statistics import autocorrelation
 from courtside.synchronisation import smooth_tracks
 from courtside.synchronisation.epipolar import Epipolar
@@ -21,12 +22,12 @@ LEAST_S = 0.1  # less is within what clocks and networks are wrong by
 
 
 def doubt(
-    evidence: Epipolar | Speeds, camera: int, own_s: NDArray, used: Collection[int]
+    evidence: Epipolar | Speeds, camera: int, own: Sequence[Clock], used: Collection[int]
 ) -> tuple[float, str]:
     """Return a clause if some part of a camera's video prefers another offset, and how clearly.
 
-    The clause is empty if none does; the number is in standard deviations. `own_s` (C,) is what
-    each clock shows in the middle of the take, `used` are the cameras to compare it with.
+    The clause is empty if none does; the number is in standard deviations. `own` are the clocks
+    that were found, of all cameras; `used` are the cameras to compare it with.
     """
     lags_s = STEP_S * np.arange(-round(REACH_S / STEP_S), round(REACH_S / STEP_S) + 1)
     track = evidence.tracks[camera]
@@ -34,8 +35,9 @@ def doubt(
     for other in sorted(set(used) - {camera}):
         at, swapped = smooth_tracks.compared(track, evidence.tracks[other], evidence.scan_times)
         if not swapped and len(at) >= PARTS:
-            losses.append(evidence.scan(camera, other, own_s[other] - own_s[camera] - lags_s))
             time_s = track.start_s + track.step_s * at
+            other_s = own[other].from_reference(own[camera].to_reference(time_s))
+            losses.append(evidence.scan(camera, other, (other_s - time_s)[:, None] - lags_s))
     if not losses or any(len(loss) != len(losses[0]) for loss in losses):
         return 0.0, ""
     loss = np.nanmean(losses, axis=0)

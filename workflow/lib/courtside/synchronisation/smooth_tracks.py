@@ -109,8 +109,8 @@ def counterparts(
 ) -> tuple[NDArray, NDArray]:
     """Return which values of a second track belong to values `at` (N,) of the first.
 
-    `lags_s` (L,) are offsets of the second clock against the first. The indices (N, L) are of the
-    nearest value; the second result (N, L) tells whether the track has it.
+    `lags_s`, (L,) or (N, L), are offsets of the second clock against the first. The indices (N, L)
+    are of the nearest value; the second result (N, L) tells whether the track has it.
     """
     own_s = first.start_s + first.step_s * at[:, None] + lags_s
     index = np.rint((own_s - second.start_s) / second.step_s).astype(int)

@@ -27,7 +27,10 @@ class Speeds:
         self.pairs: list[tuple[int, int]] = []
 
     def scan(self, a: int, b: int, lags_s: NDArray) -> NDArray:
-        """Return the loss (N, L) of camera b against a, at N times of one, by the offset of b."""
+        """Return the loss (N, L) of camera b against a, at N times of one, by the offset of b.
+
+        Offsets `lags_s` are (L,), or (N, L) if they differ from time to time.
+        """
         at, swapped = smooth_tracks.compared(self.tracks[a], self.tracks[b], SCAN_TIMES)
         a, b, lags_s = (b, a, -lags_s) if swapped else (a, b, lags_s)
         track_a, track_b = self.tracks[a], self.tracks[b]

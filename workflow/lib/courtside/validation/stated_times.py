@@ -5,6 +5,8 @@ from itertools import combinations
 from math import inf
 from pathlib import Path
 
+from courtside.records.devices import clocks
+from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import sightings
 from courtside.study.configuration.sessions import Session, Take
 from courtside.study.errors import InputError
@@ -59,7 +61,8 @@ def repeated(session: Session) -> Iterator[str]:
 
 
 def remarks(take: Take, looks: Looks) -> Iterator[str]:
-    """Yield what may be right, but is worth a look: a part that ends after all videos."""
+    """Yield what may be right, but is worth a look: parts that end after all videos, or differ."""
+    yield from _shared(take, looks)
     lengths = [look.duration_s for look in looks.values()]
     longest = max((length for length in lengths if length), default=0.0)
     frame_s = max((1 / look.rate_hz for look in looks.values() if look.rate_hz), default=0.0)
@@ -100,23 +103,41 @@ def _sighting(take: Take, entry: Mapping, look: Glance) -> Iterator[str]:
 
 
 def _clocks(take: Take, looks: Looks) -> Iterator[str]:
-    """Yield cameras whose stated clock puts their video outside of those of all others."""
-    stated = {name: clock for name, clock in take.clocks.items() if name in looks}
-    if not stated:
-        return
-    # The first camera is the reference; clocks that nobody states are found from the videos.
-    offsets = {next(iter(take.videos)): 0.0} | {n: c["offset_s"] for n, c in stated.items()}
-    spans = {
-        name: (-offset, length - offset)
-        for name, offset in offsets.items()
-        if name in looks and (length := looks[name].duration_s)
-    }
-    for name in (name for name in stated if name in spans and len(spans) > 1):
+    """Yield cameras whose stated clock puts what is used of their video outside of all others'."""
+    own = _stated(take)
+    # A part may overlap that of a camera whose clock is found later.
+    trim_s = take.trim_s if set(take.videos) <= set(own) else None
+    parts = _used(take, looks, trim_s)
+    spans = {name: own[name].to_reference(part).tolist() for name, part in parts.items()}
+    for name in (name for name in take.clocks if name in spans and len(spans) > 1):
         others = [span for other, span in spans.items() if other != name]
         start, stop = spans[name]
         if all(stop <= first or last <= start for first, last in others):
+            used = "the part by `trim_s` of its video" if trim_s else "its video"
+            remedy = f", or a longer trim_s: {clocks.ON_OWN_CLOCK}" if trim_s else ""
             yield (
-                f"clocks.{name}: expected an offset with which its video of {stop - start:.2f} s "
-                f"overlaps that of another camera, found offset_s {stated[name]['offset_s']:g}; "
-                "state the offset in seconds"
+                f"clocks.{name}: expected an offset with which {used} of {stop - start:.2f} s "
+                f"overlaps that of another camera, found offset_s "
+                f"{take.clocks[name]['offset_s']:g}; state the offset in seconds{remedy}"
             )
+
+
+def _shared(take: Take, looks: Looks) -> Iterator[str]:
+    """Yield whether `trim_s` cuts different times out of videos whose clocks are stated."""
+    used = _used(take, looks, take.trim_s)
+    if take.trim_s and len(used) > 1 and (line := clocks.little_shared(used, _stated(take))):
+        yield line
+
+
+def _used(
+    take: Take, looks: Looks, trim_s: tuple[float, ...] | None
+) -> dict[str, tuple[float, float]]:
+    """Return what is used of the videos whose clock is stated (start, stop), on their own clock."""
+    start_s, stop_s = trim_s or (0.0, inf)
+    ends_s = {n: min(stop_s, looks[n].duration_s or 0.0) for n in _stated(take) if n in looks}
+    return {name: (start_s, end_s) for name, end_s in ends_s.items() if start_s < end_s}
+
+
+def _stated(take: Take) -> dict[str, Clock]:
+    """Return the clocks that the take states, the reference's first."""
+    return {name: Clock() for name in list(take.videos)[:1]} | clocks.stated(take.clocks)

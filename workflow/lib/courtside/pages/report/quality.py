@@ -50,7 +50,10 @@ def session(
 
 def _take(take: dict, known: dict, found: Sequence[warned.Warned]) -> dict:
     """Return what the template says of a take besides its facts."""
-    devices = [(row["source"], {**row, "note": ""}) for row in known["devices"]]
+    devices = [
+        (row["source"], {**row, "note": "", "doubt": warned.doubt_of(row)})
+        for row in known["devices"]
+    ]
     reasons = [why for row in known["joints"].values() for why in row["reasons"]]
     still = {row["camera"] for row in known["movement"]}
     unknown = [{"camera": name, **UNMEASURED} for name in known["cameras"] if name not in still]

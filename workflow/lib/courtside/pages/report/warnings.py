@@ -61,7 +61,9 @@ def of_take(facts: dict, *, max_shift_px: float, max_zoom_percent: float) -> lis
     found = [moved(row, max_shift_px, max_zoom_percent) for row in facts["movement"]]
     found += [shaken(line) for line in facts["shake"]]
     found += [clock(camera, each) for camera, each in facts["clocks"].items()]
+    found += [doubted(f"Camera {camera}", each.doubt) for camera, each in facts["clocks"].items()]
     found += [device(row) for row in facts["devices"]]
+    found += [doubted(row["source"], doubt_of(row)) for row in facts["devices"]]
     found += [no_tpose(row) for row in facts["devices"]]
     found += judged(facts["quality"])
     found += joints(facts["joints"])
@@ -123,10 +125,13 @@ def shaken(line: str) -> Warned:
 
 
 def clock(camera: str, found: Clock) -> Warned | None:
-    """Return a warning if a camera's clock is uncertain."""
+    """Return a warning if a camera's clock is uncertain.
+
+    One that the session states is judged by the uncertainty that it states.
+    """
     if found.status == "reference":
         return None
-    if found.status == "assumed":
+    if found.status == "assumed" and not _level_of("clock_ms", MS_90 * found.uncertainty_s):
         stated = bool(found.offset_s or found.drift_ppm)
         said = "as the session states it" if stated else "assumed to be that of the first camera"
         text = f"its clock is {said}; this was not checked"
@@ -154,6 +159,20 @@ def device(row: dict) -> Warned | None:
     level = _level_of("clock_ms", ms)
     text = VAGUE_CLOCK if math.isnan(ms) else f"its clock is known only to {ms:.0f} ms (90 %)"
     return Warned(min(level, DOUBTFUL), f"{source}: {text}.") if level else None
+
+
+def doubted(whose: str, doubt: str) -> Warned | None:
+    """Return a warning of what speaks against a clock that is used, if anything does."""
+    return Warned(DOUBTFUL, f"{whose}: its clock is in doubt: {doubt}.") if doubt else None
+
+
+def doubt_of(row: dict) -> str:
+    """Return what speaks against a device's clock; `row` is of the table of checks.
+
+    Empty cells are NaN, and older tables have no such column.
+    """
+    doubt = row.get("doubt")
+    return doubt if isinstance(doubt, str) else ""
 
 
 def no_tpose(row: dict) -> Warned | None:

@@ -72,7 +72,8 @@ def _check_common(views: Sequence[Keypoints2D], time_s: NDArray) -> None:
     if not len(time_s):
         raise InputError(
             f"{', '.join(view.camera for view in views)}: expected cameras that film at one time, "
-            "found none by their clocks; correct `clocks` of the take (t_ref = t_own - offset_s)"
+            "found none by their clocks; correct `clocks` (t_ref = t_own - offset_s) or `trim_s` "
+            "of the take"
         )
 
 

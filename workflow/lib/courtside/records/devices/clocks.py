@@ -18,6 +18,8 @@ NUMBERS = ("offset_s", "drift_ppm", "uncertainty_s", "drift_uncertainty_ppm")
 # ASSUME: speed of the wrist in a fast stroke, to turn an error of a clock into one of position.
 WRIST_M_S = 12.0
 FEWEST_FRAMES = 30  # ASSUME: a second of motion; with fewer, a camera's clock is not found
+LEAST_SHARED = 0.9  # ASSUME: of a part: cameras that share less of it were not meant to
+ON_OWN_CLOCK = "`trim_s` cuts each video at the times of its own camera's clock"
 NEEDED = {  # to find a clock, by what it is of
     "camera": "film a clap that all cameras see",
     "device": "record a T-pose and a clap of the suit's wearer in view of the cameras",
@@ -80,6 +82,27 @@ def stated(numbers: Mapping[str, Mapping[str, Any]]) -> dict[str, Clock]:
     `numbers` holds for each camera or device `offset_s`, perhaps `drift_ppm` and `uncertainty_s`.
     """
     return {name: Clock(**clock, note="stated by the session") for name, clock in numbers.items()}
+
+
+def little_shared(used: Mapping[str, Sequence[float]], clocks: Mapping[str, Clock]) -> str:
+    """Return a line if `trim_s`, on the clock of each camera, leaves all of them few common times.
+
+    `used` (start, stop) is what is used of each video, on its own clock, the reference first. The
+    line is empty if enough is common.
+    """
+    spans = [clocks[name].to_reference(span).tolist() for name, span in used.items()]
+    shared_s = min(stop for _, stop in spans) - max(start for start, _ in spans)
+    shortest_s = min(stop - start for start, stop in spans)
+    if shared_s >= LEAST_SHARED * shortest_s:
+        return ""
+    first, wanted = next(iter(used.items()))
+    own = [clocks[name].from_reference(spans[0]) for name in used]
+    start_s, stop_s = max(0.0, min(one[0] for one in own)), max(one[1] for one in own)
+    return (
+        f"trim_s: all cameras share {max(0.0, shared_s):.2f} of {shortest_s:.2f} s, because "
+        f"{ON_OWN_CLOCK}; if that is too little, [{start_s:.2f}, {stop_s:.2f}] lets all show what "
+        f"camera {first} shows from {wanted[0]:.2f} to {wanted[1]:.2f} s"
+    )
 
 
 def fault_line(where: StrPath, clocks: Mapping[str, Clock], what: str = "camera") -> str:

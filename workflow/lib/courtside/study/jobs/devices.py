@@ -4,6 +4,7 @@ A source is a skeleton over time: of a device, of one picture of it by depth or 
 fixed cameras, or corrected.
 """
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -110,6 +111,32 @@ def fused(job: Job, stage: str = "") -> str:
 def clocks(job: Job, corrected: bool = True) -> dict[str, str]:
     """Return for each source of a take the device whose clock it has."""
     return {name: source.device for name, source in sources(job, corrected).items()}
+
+
+def stated_clocks(job: Job) -> dict[str, dict[str, float]]:
+    """Return the clocks that a take states of its devices, against that of the first source.
+
+    They are stated against the first fixed camera. Where cameras do not measure the take (their
+    points are not clicked yet), its clock is known only if that of the first device is stated.
+    """
+    take = job.take
+    stated = {name: clock for name, clock in take.clocks.items() if name in take.devices}
+    reference = next(iter(sources(job, corrected=False).values())).device
+    if reference == CAMERAS or not take.cameras:
+        return stated
+    own = stated.pop(reference, None)
+    return {name: _against(clock, own) for name, clock in stated.items()} if own else {}
+
+
+def _against(clock: dict[str, float], other: dict[str, float]) -> dict[str, float]:
+    """Return the numbers of a clock against another one; both are against a third."""
+    rate, other_rate = (1 + 1e-6 * one.get("drift_ppm", 0.0) for one in (clock, other))
+    uncertain_s = math.hypot(*(one.get("uncertainty_s", 0.0) for one in (clock, other)))
+    return {
+        "offset_s": clock["offset_s"] - other["offset_s"] * rate / other_rate,
+        "drift_ppm": 1e6 * (rate / other_rate - 1),
+        "uncertainty_s": uncertain_s,
+    }
 
 
 def event_files(job: Job) -> list[str]:
