@@ -52,6 +52,12 @@ DENSITY = 1050.0  # ASSUME: kg/m3 of every segment; Winter 2009, table 4.1 has 1
 BODY_MASS_INDEX = 22.0  # ASSUME: kg/m2 of a subject whose mass is not stated
 UNFITTED = "No frame was fitted: no length is known"
 LEG = 0.491  # length of thigh and shank, share of the height (Winter 2009, fig. 4.1)
+# ASSUME: up to which an angle goes on beyond 180 degrees: an arm that points up, or its turn about
+# itself, swings round 180 by less; beyond, the arm came round by the back and is lowered.
+FAR_DEG = 240.0
+# Ranges of coordinates: metres; turns of the pelvis, which are counted (ASSUME: never so many);
+# turns of others
+WIDE_M, COUNTED, OTHERS = 100.0, 1000, 1
 
 
 def body(segment: str) -> str:
@@ -75,7 +81,8 @@ def turns(segment: str) -> list[tuple[int, str, int]]:
 def coordinates(motion: SkeletalMotion, person: int) -> dict[str, NDArray]:
     """Return the coordinates of one person's fitted frames by name, degrees and metres, (T,) each.
 
-    The ground's axes are those of the TRC files. Angles go on beyond 180 degrees without a jump.
+    The ground's axes are those of the TRC files. The rotation of the pelvis goes on beyond 180
+    degrees over the whole take.
     """
     fitted = np.isfinite(motion.root[person]).all(axis=1)
     found: dict[str, NDArray] = {}
@@ -87,6 +94,8 @@ def coordinates(motion: SkeletalMotion, person: int) -> dict[str, NDArray]:
             found |= {f"pelvis_t{axis}": place[:, k] for k, axis in enumerate("xyz")}
         own = turns(segment)
         split = euler_deg(turned) if len(own) == 3 else _hinges_deg(turned, own[0][0], own[1][0])
+        if motion.parents[at] < 0:
+            split[:, 2] = np.unwrap(split[:, 2], period=360)
         found |= {name: sign * split[:, k] for k, (_, name, sign) in enumerate(own)}
     return found
 
@@ -94,14 +103,15 @@ def coordinates(motion: SkeletalMotion, person: int) -> dict[str, NDArray]:
 def euler_deg(turned: NDArray) -> NDArray:
     """Return the angles (T, 3) degrees of rotations (T, 3, 3) about Z, then X, then Y.
 
-    Of the two sets that make a rotation, each frame has the one nearer to the frame before.
+    Of the two sets that make a rotation it is that whose second angle is within 90 degrees. The
+    others go on beyond 180 degrees up to `FAR_DEG` without a jump, and never further: near gimbal
+    lock noise moves them anyhow, and a turn that they gained there would last to the end.
     """
     first = scipy.spatial.transform.Rotation.from_matrix(turned).as_euler("ZXY", degrees=True)
-    both = np.stack([first, first * [1, -1, 1] + 180])
     for at in range(1, len(first)):
         last = first[at - 1]
-        near = last + (both[:, at] - last + 180) % 360 - 180
-        first[at] = near[np.argmin(np.abs(near - last).sum(axis=1))]
+        near = last + (first[at] - last + 180) % 360 - 180
+        first[at] = np.where(np.abs(near) <= FAR_DEG, near, first[at])
     return np.asarray(first)
 
 
@@ -110,7 +120,7 @@ def _hinges_deg(turned: NDArray, one: int, other: int) -> NDArray:
     third, sign = 3 - one - other, 1 if (other - one) % 3 == 1 else -1
     first = np.arctan2(sign * turned[:, third, other], turned[:, other, other])
     second = np.arctan2(sign * turned[:, one, third], turned[:, one, one])
-    return np.unwrap(np.degrees(np.stack([first, second], axis=1)), axis=0, period=360)
+    return np.degrees(np.stack([first, second], axis=1))
 
 
 def write(
@@ -266,7 +276,9 @@ def _add_joint(parent: Element, segment: str, above: str, place: NDArray) -> Non
     listed = SubElement(joint, "coordinates")
     for name in [*(name for _, name, _ in own), *moves]:
         entry = SubElement(listed, "Coordinate", name=name)
-        _text(entry, "range", (-100, 100) if name in moves else (-2 * np.pi, 2 * np.pi))
+        turned = 2 * np.pi * (COUNTED if name == "pelvis_rotation" else OTHERS)
+        most = WIDE_M if name in moves else turned
+        _text(entry, "range", (-most, most))
         _text(entry, "clamped", "false")
     frames = SubElement(joint, "frames")
     child = (0, 0, 0)
