@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from courtside.body_model import segments, take
 from courtside.exports import opensim, opensim_model
+from courtside.kinematics import centre_of_mass
 from courtside.records.devices import hierarchy
 from fixtures.people import moving_model
 
@@ -58,6 +59,21 @@ def columns(path):
 
 def played(osim, mot):
     """Return the markers (T, 3) in the ground by name: OpenSim's CustomJoint, frame by frame."""
+    return located(osim, posed(osim, mot), "MarkerSet/objects/Marker", "location")
+
+
+def located(osim, poses, kind, tag):
+    """Return the places (T, 3) in the ground of what is fixed to bodies, by name."""
+    found = {}
+    for one in ElementTree.parse(osim).getroot().find("Model").iterfind(kind):
+        on = one.findtext("socket_parent_frame") or f"/bodyset/{one.get('name')}"
+        turned, place = poses[on]
+        found[one.get("name")] = place + turned.apply(numbers(one, tag))
+    return found
+
+
+def posed(osim, mot):
+    """Return rotation and place of each body, frame by frame."""
     model, values = ElementTree.parse(osim).getroot().find("Model"), columns(mot)
     n_frames = len(values["time"])
     poses = {"/ground": (Rotation.identity(n_frames), np.zeros((n_frames, 3)))}
@@ -83,11 +99,7 @@ def played(osim, mot):
             else:
                 moved = moved + values[by][:, None] * along
         poses[below.findtext("socket_parent")] = own, place + turned.apply(moved)
-    found = {}
-    for marker in model.iterfind("MarkerSet/objects/Marker"):
-        turned, place = poses[marker.findtext("socket_parent_frame")]
-        found[marker.get("name")] = place + turned.apply(numbers(marker, "location"))
-    return found
+    return poses
 
 
 @pytest.mark.parametrize("poses", ["walking", "anyhow"])
@@ -206,6 +218,35 @@ def degrees_of(angles):
     again = Rotation.from_euler("ZXY", found, degrees=True).as_matrix()
     np.testing.assert_allclose(again, turned, atol=1e-9)
     return found
+
+
+@pytest.mark.parametrize("sex", ["m", "f", None])
+def test_the_bodys_centre_is_that_of_the_kinematics(tmp_path, walking, sex):
+    head = {"left_ear": (0.01, 0.15, -0.07), "right_ear": (0.01, 0.15, 0.07), "nose": (0.1, 0.1, 0)}
+    straight = walking.parent_from_segment.copy()
+    straight[:, :, np.isin(walking.segments, ["thorax", "left_clavicle", "right_clavicle"])] = (
+        np.eye(3)
+    )
+    motion = replace(
+        walking,
+        parent_from_segment=straight,
+        joints=np.array([*walking.joints, *head]),
+        segment_of=np.append(walking.segment_of, [walking.segments.tolist().index("head")] * 3),
+        places=np.concatenate([walking.places, np.array(list(head.values()))[None]], axis=1),
+    )
+    osim, mot = tmp_path / "a.osim", tmp_path / "a.mot"
+    opensim_model.write(osim, motion, 0, mass_kg=70, sex=sex)
+    opensim.write_motion(mot, motion, 0)
+    centres = located(osim, posed(osim, mot), "BodySet/objects/Body", "mass_center")
+    whole = sum(
+        float(one.findtext("mass")) / 70 * centres[name] for name, one in weights(osim).items()
+    )
+    at = played(osim, mot)
+    for name, ends in (("mid_hip", "hip"), ("mid_shoulder", "shoulder"), ("head_mass", "ear")):
+        at[name] = (at[f"left_{ends}"] + at[f"right_{ends}"]) / 2
+    stated = sum(share * at[point] for point, share in centre_of_mass.shares(sex).items())
+    # Of each foot's 1.4 % of the mass, the kinematics have the centre at the ankle, 9 cm away.
+    assert np.linalg.norm(whole - stated, axis=1).max() < 2 * 0.014 * 0.09
 
 
 def test_angles_go_on_beyond_half_a_turn():

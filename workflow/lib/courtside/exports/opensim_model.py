@@ -46,6 +46,8 @@ PARTS = {  # names of segments in the table of masses
     "femur": "thigh", "tibia": "shank", "humerus": "upper_arm", "forearm": "forearm",
     "head": "head", "hand": "hand", "foot": "foot",
 }  # fmt: skip
+TRUNK = ("pelvis", "thorax", "clavicle")
+EARS = ("left_ear", "right_ear")
 LOWER_TRUNK = {"m": 11.17, "f": 12.47}  # percent of the body's mass: the pelvis (de Leva 1996)
 CLAVICLE = 0.5  # ASSUME: percent of the body's mass on each, which the thorax has less
 DENSITY = 1050.0  # ASSUME: kg/m3 of every segment; Winter 2009, table 4.1 has 1040 to 1190
@@ -134,9 +136,10 @@ def write(
     """Write one person's model (`.osim`): bodies, joints, and the network's joints as markers.
 
     Markers are named as in the TRC files, coordinates as in `coordinates`; all lengths are those of
-    the fit, their standard deviations are in the credits. Shares of mass are those of de Leva
-    (1996); each body is a cylinder along Y, from joint to joint where the segment has a next one,
-    else as wide as long. Without a fitted frame no length is known, and the model has no bodies.
+    the fit, their standard deviations are in the credits. Masses and their centres are those of de
+    Leva (1996); inertia about them is that of a cylinder along Y, as long as from joint to joint
+    where the segment has a next one, else as wide as long. Without a fitted frame no length is
+    known, and the model has no bodies.
     """
     fitted = bool(np.isfinite(motion.root[person]).all(axis=1).any())
     root = Element("OpenSimDocument", Version=VERSION)
@@ -151,7 +154,7 @@ def write(
         for kind in ("BodySet", "JointSet", "MarkerSet")
     )
     if fitted:
-        _add_bodies(bodies, joints, motion, person, _masses(motion, person, mass_kg, sex))
+        _add_bodies(bodies, joints, motion, person, mass_kg, sex)
         _add_markers(markers, motion, person)
     ElementTree.indent(root)
     with atomic(path) as temporary:
@@ -159,10 +162,18 @@ def write(
 
 
 def _add_bodies(
-    bodies: Element, joints: Element, motion: SkeletalMotion, person: int, masses: NDArray
+    bodies: Element,
+    joints: Element,
+    motion: SkeletalMotion,
+    person: int,
+    mass_kg: float | None,
+    sex: str | None,
 ) -> None:
+    masses = _masses(motion, person, mass_kg, sex)
+    centres = _centres(motion, person, masses, sex)
     for at, segment in enumerate(motion.segments.tolist()):
-        _add_body(bodies, body(segment), masses[at], *_cylinder(motion, person, at, masses[at]))
+        size = _cylinder(motion, person, at, masses[at])
+        _add_body(bodies, body(segment), masses[at], centres[at] + _origin(at), *size)
         parent = motion.parents[at]
         above = "/ground" if parent < 0 else f"/bodyset/{body(motion.segments[parent])}"
         _add_joint(joints, segment, above, motion.offsets[person, at] + _origin(parent))
@@ -207,23 +218,56 @@ def _shares(motion: SkeletalMotion, sex: str) -> NDArray:
     return np.array([found[without_side(name)] for name in motion.segments.tolist()])
 
 
-def _cylinder(
-    motion: SkeletalMotion, person: int, at: int, mass_kg: float
-) -> tuple[NDArray, float, float]:
-    """Return centre (3,) in its body, half height and radius, metres, of a segment."""
+def _centres(motion: SkeletalMotion, person: int, masses: NDArray, sex: str | None) -> NDArray:
+    """Return the centre of mass (S, 3) m of each segment from its origin, in its axes.
+
+    As `centre_of_mass` has them: of limbs on the bone, of the hand on the forearm's line, of the
+    trunk on the line from mid-shoulder to mid-hip of a straight back, of the head between the ears.
+    Of feet, and of heads without ears, it is the mean of their points.
+    """
+    names, offsets = motion.segments.tolist(), motion.offsets[person]
+    centres = np.zeros_like(offsets)
+    for at, name in enumerate(names):
+        part, below = without_side(name), np.flatnonzero(motion.parents == at)
+        if len(below):
+            place = centre_of_mass.place(PARTS[part], sex) if part in PARTS else 0.5
+            centres[at] = place * offsets[below[0]]
+        elif part == "hand":
+            centres[at] = (centre_of_mass.place("hand", sex) - 1) * offsets[at]
+        else:
+            points = motion.places[person]
+            own = (motion.segment_of == at) & points.any(axis=1)
+            ears = own & np.isin(motion.joints, EARS)
+            own = ears if ears.any() else own
+            centres[at] = points[own].mean(axis=0) if own.any() else 0
+    return _with_trunk(motion, person, masses, centres, centre_of_mass.place("trunk", sex))
+
+
+def _with_trunk(
+    motion: SkeletalMotion, person: int, masses: NDArray, centres: NDArray, place: float
+) -> NDArray:
+    """Return the centres with that of the thorax such that the trunk's lies at its place."""
+    names = motion.segments.tolist()
+    origins = np.zeros_like(centres)  # in the pelvis, of a body with all joints at zero
+    for at, above in enumerate(motion.parents.tolist()):
+        origins[at] = motion.offsets[person, at] + (origins[above] if above >= 0 else 0)
+    shoulders, hips = (
+        origins[[names.index(f"{side}_{bone}") for side in LETTERS]].mean(axis=0)
+        for bone in ("humerus", "femur")
+    )
+    trunk = [at for at, name in enumerate(names) if without_side(name) in TRUNK]
+    thorax = names.index("thorax")
+    lacking = (1 - place) * shoulders + place * hips - origins[trunk] - centres[trunk]
+    centres[thorax] += masses[trunk] @ lacking / masses[thorax]
+    return centres
+
+
+def _cylinder(motion: SkeletalMotion, person: int, at: int, mass_kg: float) -> tuple[float, float]:
+    """Return half height and radius, metres, of a segment."""
     below = np.flatnonzero(motion.parents == at)
-    next_one = motion.offsets[person, below[0]] if len(below) else np.zeros(3)
-    if len(below):
-        part = PARTS.get(motion.segments[at].split("_")[-1])
-        shares = list(centre_of_mass.SEGMENTS[part].place.values()) if part else [50]
-        centre = np.mean(shares) / 100 * next_one
-    else:
-        points = motion.places[person, motion.segment_of == at]
-        points = points[points.any(axis=1)]
-        centre = points.mean(axis=0) if len(points) else np.zeros(3)
-    half = abs(next_one[1]) / 2 or (mass_kg / (2 * np.pi * DENSITY)) ** (1 / 3)
-    radius = np.sqrt(mass_kg / (2 * np.pi * DENSITY * half))
-    return centre + _origin(at), float(half), float(radius)
+    height = abs(motion.offsets[person, below[0], 1]) if len(below) else 0.0
+    half = height / 2 or (mass_kg / (2 * np.pi * DENSITY)) ** (1 / 3)
+    return float(half), float(np.sqrt(mass_kg / (2 * np.pi * DENSITY * half)))
 
 
 def _credits(motion: SkeletalMotion, person: int) -> str:
