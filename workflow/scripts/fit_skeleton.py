@@ -24,7 +24,7 @@ def main(paths, joints_npz, motion_npz, angles_csv, *, max_gap_s, sex_of, height
     contacts = footwork.read_contacts(paths.contacts)
     fits = take.people(points, cutoff_hz, height_m_of, contacts)
     keypoints.write_3d(joints_npz, take.joints(keypoints.read_3d(paths.corrected), fits))
-    motion = take.motion(points, fits)
+    motion = take.motion(points, fits, max_gap_s)
     skeletal_motion.write(motion_npz, motion)
     tables.write(angles_csv, measures.angles(motion))
 

@@ -22,7 +22,7 @@ def main(
     by_joint = dict(zip(shape.joints, shape.by_group(by_group), strict=True))
     fits = take.people(points, by_joint, {person: height_m})
     keypoints.write_3d(joints_npz, take.joints(points, fits))
-    found = take.motion(points, fits)
+    found = take.motion(points, fits, max_gap_s)
     skeletal_motion.write(motion_npz, found)
     tables.write(angles_csv, measures.angles(found))
 

@@ -129,6 +129,24 @@ def test_the_motion_has_the_joints_by_forward_kinematics():
     np.testing.assert_allclose(knee, found.xyz[0, frames][:, names.index("right_knee")], atol=1e-9)
 
 
+def test_a_person_who_leaves_and_comes_back_has_no_motion_while_away(caplog):
+    caplog.set_level("INFO", logger="courtside")
+    points = moving_model.points(moving_model.moving(), noise_m=0.002)
+    xyz = points.xyz.copy()
+    xyz[0, 20:32] = np.nan  # 0.4 s
+    xyz[0, 31, points.joints.tolist().index("left_heel")] = 1.0
+    xyz[0, 40:44] = np.nan  # 0.13 s
+    points = replace(points, xyz=xyz)
+    motion = take.motion(points, fitted(points), max_gap_s=0.2)
+    away = np.zeros(60, dtype=bool)
+    away[20:32] = True
+    for values in (motion.root, motion.angle_deg, motion.angle_sigma_deg):
+        np.testing.assert_array_equal(np.isnan(values[0]).any(axis=1), away)
+    np.testing.assert_array_equal(motion.posed(0)[1], ~away)  # what exports write
+    (line,) = (line for line in caplog.messages if "no motion" in line)
+    assert line == "a: no limb joint is seen from 0.67 to 1.03 s: no motion there"
+
+
 def test_a_person_who_is_never_seen_has_no_motion():
     points = moving_model.points(moving_model.moving(4))
     points = replace(points, xyz=np.full_like(points.xyz, np.nan))

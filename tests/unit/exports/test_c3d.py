@@ -45,6 +45,23 @@ def test_the_header_counts_from_one(written):
     assert (header[1], n_points, first, last) == (0x50, 33, 1, 20)
 
 
+@pytest.mark.parametrize(
+    ("start_s", "first"),
+    [(60.0, 3001), (0.031, 3), (0.0, 1), (-0.412, 1), (1310.2, 65511), (1310.4, 1)],
+)
+def test_frames_have_the_numbers_of_their_times(tmp_path, start_s, first):
+    record = walker.points(n_frames=25)
+    record = replace(record, time_s=record.time_s - record.time_s[0] + start_s)
+    c3d.write(tmp_path / "walk.c3d", record, 0)
+    numbers = struct.unpack_from("<HH", (tmp_path / "walk.c3d").read_bytes(), 6)
+    assert numbers == (first, first + 24)
+    found = ezc3d.c3d(str(tmp_path / "walk.c3d"))
+    header = found["header"]["points"]
+    assert (header["first_frame"], header["last_frame"]) == (first - 1, first + 23)
+    assert found["parameters"]["POINT"]["START_S"]["value"] == pytest.approx([start_s])
+    assert found["data"]["points"].shape == (4, 33, 25)
+
+
 def test_the_same_record_gives_the_same_bytes(written, tmp_path):
     record, path = written
     c3d.write(tmp_path / "again.c3d", record, 0)

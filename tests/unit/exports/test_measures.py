@@ -132,12 +132,17 @@ def test_what_the_cameras_add_stands_beside_what_the_keypoints_add():
     np.testing.assert_allclose(wide.neck_speed_sd_m_s, both, atol=2e-4)
 
 
-@pytest.mark.parametrize(("rate_hz", "n"), [(12, 3), (30, 3), (60, 6)])
-def test_a_largest_speed_is_a_mean_over_a_tenth_of_a_second_away_from_gaps(people, rate_hz, n):
+@pytest.mark.parametrize(
+    ("rate_hz", "n", "edge"), [(12, 3, 1), (30, 3, 1), (60, 6, 2), (240, 24, 8)]
+)
+def test_a_largest_speed_is_a_mean_over_a_tenth_of_a_second_away_from_gaps(
+    people, rate_hz, n, edge
+):
     """A bad derivative beside a gap does not count, one in the middle by its share alone."""
     point, steady = people[0].points["neck"], np.full(len(people[0].time_s), 2.0)
     steady[40] = np.nan
-    steady[[0, 39, 41, -1]] = 50.0
+    for beside in (slice(edge), slice(40 - edge, 40), slice(41, 41 + edge), slice(-edge, None)):
+        steady[beside] = 50.0
     steady[100] = 5.0
     vectors = steady[:, None] * [1.0, 0, 0]
     spread = (np.eye(3) * 0.1**2)[None].repeat(len(steady), axis=0)
@@ -146,11 +151,55 @@ def test_a_largest_speed_is_a_mean_over_a_tenth_of_a_second_away_from_gaps(peopl
         people[0], time_s=np.arange(len(steady)) / rate_hz, points={"neck": point}, angles={}
     )
     rows = measures.summary([person], "filtered").set_index("measure")
-    speed, change = rows.loc["neck_speed_max"], rows.loc["neck_acceleration_max"]
+    speed = rows.loc["neck_speed_max"]
     assert (speed.value, speed.sigma) == (pytest.approx(2 + 3 / n), pytest.approx(0.1))
-    assert speed.n == len(steady) - 5
-    assert change.value == speed.value and np.isnan(change.sigma)
+    assert speed.n == len(steady) - 1 - 4 * edge
     assert "largest mean over 0.1 s" in speed.definition
+
+
+@pytest.mark.parametrize("rate_hz", [10, 30, 60])
+def test_a_largest_acceleration_is_a_change_of_velocity_over_three_tenths_of_a_second(
+    people, rate_hz
+):
+    """A wrong joint throws the point out and back at once: that is no change of its velocity."""
+    time_s = np.arange(4 * rate_hz) / rate_hz
+    push = np.clip(time_s - 1, 0, 0.6)  # 5 m/s2 for 0.6 s
+    velocity = push[:, None] * [3.0, -4.0, 0]
+    velocity[3 * rate_hz] = np.nan
+    edge = max(1, round(rate_hz / 30))
+    velocity[3 * rate_hz - edge : 3 * rate_hz + edge + 1] += 9.0  # beside a gap
+    acceleration = np.gradient(velocity, 1 / rate_hz, axis=0)
+    acceleration[rate_hz // 2] += [200.0, 0, 0]
+    spread = (np.eye(3) * 0.1**2)[None].repeat(len(velocity), axis=0)
+    point = replace(
+        people[0].points["neck"],
+        velocity=velocity,
+        acceleration=acceleration,
+        covariance=(spread,) * 3,
+        camera_covariance=(0 * spread,) * 3,
+    )
+    person = replace(people[0], time_s=time_s, points={"neck": point}, angles={})
+    row = measures.summary([person], "filtered").set_index("measure").loc["neck_acceleration_max"]
+    assert row.value == pytest.approx(5)
+    assert row.sigma == pytest.approx(np.hypot(np.sqrt(2) * 0.1 / 0.3, 0.1 * 5))
+    assert np.isnan(row.sigma_camera)
+    assert row.n == len(time_s) - 1 - 4 * edge
+    assert "largest change of velocity over 0.3 s" in row.definition
+
+
+@pytest.mark.parametrize("n", [5, 8])
+def test_a_take_shorter_than_a_change_of_velocity_has_no_largest_acceleration(people, n):
+    point = people[0].points["neck"]
+    short = replace(
+        point,
+        velocity=point.velocity[:n],
+        covariance=tuple(one[:n] for one in point.covariance),
+        camera_covariance=tuple(one[:n] for one in point.camera_covariance),
+    )
+    person = replace(people[0], time_s=people[0].time_s[:n], points={"neck": short}, angles={})
+    rows = measures.summary([person], "filtered").set_index("measure")
+    assert np.isnan(rows.loc["neck_acceleration_max", "value"])
+    assert np.isfinite(rows.loc["neck_speed_max", "value"])
 
 
 def test_nobody_seen_is_a_table_of_missing_values():

@@ -1,6 +1,7 @@
 """The `.osim` model: its motion file plays on it, by forward kinematics of the format itself."""
 
 from dataclasses import replace
+from itertools import pairwise
 from xml.etree import ElementTree
 
 import numpy as np
@@ -9,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from courtside.body_model import segments, take
 from courtside.exports import opensim, opensim_model
+from courtside.kinematics import centre_of_mass
 from courtside.records.devices import hierarchy
 from fixtures.people import moving_model
 
@@ -57,6 +59,21 @@ def columns(path):
 
 def played(osim, mot):
     """Return the markers (T, 3) in the ground by name: OpenSim's CustomJoint, frame by frame."""
+    return located(osim, posed(osim, mot), "MarkerSet/objects/Marker", "location")
+
+
+def located(osim, poses, kind, tag):
+    """Return the places (T, 3) in the ground of what is fixed to bodies, by name."""
+    found = {}
+    for one in ElementTree.parse(osim).getroot().find("Model").iterfind(kind):
+        on = one.findtext("socket_parent_frame") or f"/bodyset/{one.get('name')}"
+        turned, place = poses[on]
+        found[one.get("name")] = place + turned.apply(numbers(one, tag))
+    return found
+
+
+def posed(osim, mot):
+    """Return rotation and place of each body, frame by frame."""
     model, values = ElementTree.parse(osim).getroot().find("Model"), columns(mot)
     n_frames = len(values["time"])
     poses = {"/ground": (Rotation.identity(n_frames), np.zeros((n_frames, 3)))}
@@ -82,11 +99,7 @@ def played(osim, mot):
             else:
                 moved = moved + values[by][:, None] * along
         poses[below.findtext("socket_parent")] = own, place + turned.apply(moved)
-    found = {}
-    for marker in model.iterfind("MarkerSet/objects/Marker"):
-        turned, place = poses[marker.findtext("socket_parent_frame")]
-        found[marker.get("name")] = place + turned.apply(numbers(marker, "location"))
-    return found
+    return poses
 
 
 @pytest.mark.parametrize("poses", ["walking", "anyhow"])
@@ -198,9 +211,87 @@ def test_a_thighs_centre_and_inertia_are_near_those_of_anatomy(tmp_path, walking
     assert gyration == pytest.approx(0.329, abs=0.04)  # the same table
 
 
-def test_angles_go_on_over_the_pole_and_beyond_half_a_turn():
-    flexion = np.linspace(0, 400, 82)
-    adduction = np.linspace(0, -150, 82)  # an arm raised sideways
-    angles = np.stack([flexion, adduction, np.linspace(10, 60, 82)], axis=1)
+def degrees_of(angles):
+    """Return what `euler_deg` finds for angles (T, 3), which must make the same rotations."""
     turned = Rotation.from_euler("ZXY", angles, degrees=True).as_matrix()
-    np.testing.assert_allclose(opensim_model.euler_deg(turned), angles, atol=1e-6)
+    found = opensim_model.euler_deg(turned)
+    again = Rotation.from_euler("ZXY", found, degrees=True).as_matrix()
+    np.testing.assert_allclose(again, turned, atol=1e-9)
+    return found
+
+
+@pytest.mark.parametrize("sex", ["m", "f", None])
+def test_the_bodys_centre_is_that_of_the_kinematics(tmp_path, walking, sex):
+    head = {"left_ear": (0.01, 0.15, -0.07), "right_ear": (0.01, 0.15, 0.07), "nose": (0.1, 0.1, 0)}
+    straight = walking.parent_from_segment.copy()
+    straight[:, :, np.isin(walking.segments, ["thorax", "left_clavicle", "right_clavicle"])] = (
+        np.eye(3)
+    )
+    motion = replace(
+        walking,
+        parent_from_segment=straight,
+        joints=np.array([*walking.joints, *head]),
+        segment_of=np.append(walking.segment_of, [walking.segments.tolist().index("head")] * 3),
+        places=np.concatenate([walking.places, np.array(list(head.values()))[None]], axis=1),
+    )
+    osim, mot = tmp_path / "a.osim", tmp_path / "a.mot"
+    opensim_model.write(osim, motion, 0, mass_kg=70, sex=sex)
+    opensim.write_motion(mot, motion, 0)
+    centres = located(osim, posed(osim, mot), "BodySet/objects/Body", "mass_center")
+    whole = sum(
+        float(one.findtext("mass")) / 70 * centres[name] for name, one in weights(osim).items()
+    )
+    at = played(osim, mot)
+    for name, ends in (("mid_hip", "hip"), ("mid_shoulder", "shoulder"), ("head_mass", "ear")):
+        at[name] = (at[f"left_{ends}"] + at[f"right_{ends}"]) / 2
+    stated = sum(share * at[point] for point, share in centre_of_mass.shares(sex).items())
+    # Of each foot's 1.4 % of the mass, the kinematics have the centre at the ankle, 9 cm away.
+    assert np.linalg.norm(whole - stated, axis=1).max() < 2 * 0.014 * 0.09
+
+
+def test_angles_go_on_beyond_half_a_turn():
+    angles = np.linspace([60, -30, 10], [230, 40, -190], 82)
+    np.testing.assert_allclose(degrees_of(angles), angles, atol=1e-6)
+
+
+PATHS = {
+    # Raised to the side until it points up, lowered in front
+    "over the pole": [[0, 0, 0], [0, -88, 0], [180, -88, 180], [180, -10, 180], [0, 0, 0]],
+    # Swung round by the back as a racket arm is, once more each time
+    "by the back": [
+        [0, 0, 0],
+        [-90, -45, -60],
+        [-180, -50, -180],
+        [-300, -45, -300],
+        [-360, 0, -360],
+    ],
+}
+
+
+@pytest.mark.parametrize("path", PATHS)
+@pytest.mark.parametrize("n_frames", [3, 30])
+@pytest.mark.parametrize("repeats", [1, 3])
+def test_an_arm_that_hangs_again_has_angles_near_zero(path, n_frames, repeats):
+    corners = PATHS[path]
+    parts = [np.linspace(*ends, n_frames) for ends in pairwise(corners)]
+    angles = np.concatenate(parts * repeats)
+    found = degrees_of(angles)
+    down = np.abs((angles + 180) % 360 - 180).max(axis=1) < 60
+    assert down[-1]
+    assert np.abs(found[down]).max() < 60
+    assert np.abs(found[:, 1]).max() <= 90
+
+
+def test_coordinates_lie_in_the_ranges_of_the_model(tmp_path, walking):
+    motion = anyhow(walking, 400)
+    turning = Rotation.from_rotvec(np.linspace([0, 0, 0], [0, 0, 3.5 * 360], 400), degrees=True)
+    motion.parent_from_segment[0, :, 0] = turning.as_matrix() @ walking.parent_from_segment[0, 0, 0]
+    opensim.write_motion(tmp_path / "a.mot", motion, 0)
+    opensim_model.write(tmp_path / "a.osim", motion, 0)
+    values = columns(tmp_path / "a.mot")
+    assert np.ptp(values["pelvis_rotation"]) == pytest.approx(3.5 * 360, abs=1e-3)
+    for one in ElementTree.parse(tmp_path / "a.osim").getroot().iter("Coordinate"):
+        low, high = numbers(one, "range")
+        found = values[one.get("name")]
+        found = found if one.get("name")[:-1] == "pelvis_t" else np.radians(found)
+        assert low <= found.min() <= found.max() <= high, one.get("name")

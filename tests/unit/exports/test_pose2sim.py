@@ -137,6 +137,23 @@ def test_a_person_of_no_person_s_size_is_refused(project, tmp_path, unit, found)
         pose2sim.read_takes({"p1": path}, walker.SKELETON, model="m")
 
 
+@pytest.mark.parametrize(("order", "axis"), [([2, 0, 1], "Z"), ([1, 2, 0], "X")])
+def test_a_file_with_another_axis_up_than_y_is_refused(tmp_path, order, axis):
+    points = walker.points()
+    trc.write(tmp_path / "p1.trc", replace(points, xyz=points.xyz[..., order]), 0)
+    message = rf"p1.trc: expected Y up, found the trunk along {axis}; export it with Y up"
+    with pytest.raises(InputError, match=message):
+        pose2sim.read_takes({"p1": tmp_path / "p1.trc"}, walker.SKELETON, model="m")
+
+
+def test_a_person_who_lies_is_read(tmp_path):
+    points = walker.points()
+    lying = points.xyz[..., [2, 0, 1]] + [3.0, 0, 0]
+    trc.write(tmp_path / "p1.trc", replace(points, xyz=lying), 0)
+    found = pose2sim.read_takes({"p1": tmp_path / "p1.trc"}, walker.SKELETON, model="m")
+    np.testing.assert_allclose(found.xyz, lying, atol=1e-6)
+
+
 def test_a_joint_at_zero_is_missing(project, tmp_path):
     """Programs without blanks write 0 0 0; no joint is there to a micrometre."""
     lines = (project[0] / "pose-3d" / "take_p1.trc").read_text().splitlines()

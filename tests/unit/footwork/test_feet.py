@@ -32,6 +32,14 @@ def test_a_heel_that_is_hidden_for_a_while_makes_no_lunges():
     assert sorted(set(cut.seen_until_s)) == pytest.approx([2.4, 12.0], abs=0.06)
 
 
+@pytest.mark.parametrize(("rate_hz", "lines"), [(15, 1), (25, 0)])
+def test_a_low_frame_rate_is_told_once(caplog, rate_hz, lines):
+    points, _ = walking_feet.record(walking_feet.gait(), 5.0, rate_hz=rate_hz)
+    feet.find(points, walking_feet.CUTOFFS)
+    assert len(caplog.messages) == lines
+    assert all("15 frames per second are few for footwork" in line for line in caplog.messages)
+
+
 def test_a_skeleton_without_heels_gives_no_contacts():
     points, _ = walking_feet.record(walking_feet.hop(), 3.0)
     joints = np.array([name.replace("heel", "sole") for name in points.joints.tolist()])

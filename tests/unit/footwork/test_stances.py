@@ -36,6 +36,26 @@ def test_onsets_and_ends_are_near_and_their_sigma_holds(errors, what):
     assert np.median(sigma) < 0.03
 
 
+@pytest.mark.parametrize("rate_hz", [10, 12, 15])
+def test_sigma_holds_at_low_frame_rates(rate_hz):
+    found = []
+    for seed in range(6):
+        plan = walking_feet.gait(stride_m=0.4 + 0.2 * (seed % 4), swing_s=0.5, stance_s=0.5)
+        points, feet = walking_feet.record(plan, SECONDS, seed=seed, rate_hz=rate_hz)
+        for side, foot in feet.items():
+            own, _ = tracks.tracks(points, 0, side, walking_feet.CUTOFFS)
+            stood, _ = stances.of_tracks(own, len(points.time_s))
+            steps = walking_feet.true_steps(foot, SECONDS - 0.5)
+            for what, true in zip(("onset", "end"), steps, strict=True):
+                at = np.array([getattr(one, f"{what}_s") for one in stood])
+                sigma = np.array([getattr(one, f"{what}_sigma_s") for one in stood])
+                apart = np.abs(at - true[:, None])
+                near = np.nanargmin(apart, axis=1)
+                found += list(np.take_along_axis(apart, near[:, None], axis=1)[:, 0] / sigma[near])
+    assert np.sqrt(np.mean(np.square(found))) < 1.3
+    assert np.mean(np.array(found) <= 2) >= 0.95
+
+
 def test_stances_that_the_take_cuts_have_no_onset_or_end_and_a_place():
     points, feet = walking_feet.record(walking_feet.gait(), SECONDS)
     own, _ = tracks.tracks(points, 0, "left", walking_feet.CUTOFFS)

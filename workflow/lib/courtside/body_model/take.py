@@ -10,6 +10,7 @@ from courtside.body_model import angles, fit, held, pose, segments, shape, start
 from courtside.body_model.fit import Spread
 from courtside.body_model.pose import Pose
 from courtside.body_model.shape import Shape
+from courtside.kinematics import filtering
 from courtside.records.footwork import Contacts
 from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
@@ -185,26 +186,57 @@ def _shifts(points: Keypoints3D, person: int) -> NDArray:
     return np.where(erring, np.square([SHIFT_M.get(part, 0.0) for part in parts]), 0.0)
 
 
-def motion(points: Keypoints3D, fits: Mapping[int, Fitted]) -> SkeletalMotion:
-    """Return the motion of the fits; persons without one have no joints."""
-    model, n_people, n_frames = segments.model(), len(points.person_id), len(points.time_s)
-    first = next(iter(fits.values()), None)
+def _away(points: Keypoints3D, at: int, frames: slice, max_gap_s: float) -> NDArray:
+    """Return the fitted frames (T,) in runs longer than `max_gap_s` without a limb joint; log."""
+    limbs = np.isin(points.joints, skeleton.JOINTS)
+    unseen = ~np.isfinite(points.xyz[at][:, limbs]).all(axis=2).any(axis=1)
+    unseen[: frames.start], unseen[frames.stop :] = False, False
+    away = np.zeros_like(unseen)
+    for begin, end in filtering.runs(unseen):
+        if (end - begin) / points.rate_hz > max_gap_s:
+            away[begin:end] = True
+            log.logger.info(
+                "%s: no limb joint is seen from %.2f to %.2f s: no motion there",
+                *(points.person_id[at], points.time_s[begin], points.time_s[end - 1]),
+            )
+    return away
+
+
+def _any_shape(points: Keypoints3D, fits: Mapping[int, Fitted]) -> Shape:
+    """Return the shape of one of the fits: all have the same joints; without a fit, of no size."""
+    if fits:
+        return next(iter(fits.values())).shape
     unknown = dict.fromkeys(shape.OF_HEIGHT, (np.nan, np.nan))
-    on = first.shape if first else shape.of_lengths(model, unknown, points.joints.tolist())
+    return shape.of_lengths(segments.model(), unknown, points.joints.tolist())
+
+
+def motion(
+    points: Keypoints3D, fits: Mapping[int, Fitted], max_gap_s: float = np.inf
+) -> SkeletalMotion:
+    """Return the motion of the fits; persons without one have no joints.
+
+    Frames of a person of whom no limb joint is seen for longer than `max_gap_s` count as not
+    fitted, and the log says so: the fit glides through them.
+    """
+    model, n_people, n_frames = segments.model(), len(points.person_id), len(points.time_s)
+    on = _any_shape(points, fits)
     n_segments, n_points = len(model.names), len(on.joints)
     offsets, sigma = np.zeros((n_people, n_segments, 3)), np.full((n_people, n_segments), np.nan)
     places = np.zeros((n_people, n_points, 3))
     root = np.full((n_people, n_frames, 3), np.nan)
     turns = np.full((n_people, n_frames, n_segments, 3, 3), np.nan)
-    measured = {at: angles.of_fit(model, one.pose, one.spread) for at, one in fits.items()}
     names = angles.names()
     degrees, spread = np.full((2, n_people, n_frames, len(names)), np.nan)
     for at, one in fits.items():
         offsets[at], sigma[at], places[at] = one.shape.offsets, one.shape.sigma_m, one.shape.places
         root[at, one.frames] = one.pose.root
         turns[at, one.frames] = np.moveaxis(one.pose.local, 0, 1)
+        measured = angles.of_fit(model, one.pose, one.spread)
         for k, name in enumerate(names):
-            degrees[at, one.frames, k], spread[at, one.frames, k] = measured[at][name]
+            degrees[at, one.frames, k], spread[at, one.frames, k] = measured[name]
+        away = _away(points, at, one.frames, max_gap_s)
+        for values in (root, turns, degrees, spread):
+            values[at, away] = np.nan
     return SkeletalMotion(
         model=points.model,
         person_id=points.person_id,

@@ -10,6 +10,10 @@ therefore see 0 for every point that is there.
 
 The header and POINT:FRAMES count at most 65,535 frames. The number of more is in POINT:LONG_FRAMES
 (c3d.org, "LONG_FRAMES"), which ezc3d does not read: to programs that use it, the file ends there.
+
+The format has no times: frame 1 is at 0 s, and the first frame's number follows from its time, to
+half a frame. Before 0 s, or where the last number would be too large, it is 1. POINT:START_S is
+the time itself.
 """
 
 import struct
@@ -48,13 +52,14 @@ def write(path: StrPath, keypoints: Keypoints3D, person: int) -> None:
             "of the take"
         )
     file = ezc3d.c3d()
-    file["header"]["points"]["first_frame"] = 0
+    file["header"]["points"]["first_frame"] = _first_frame(keypoints)
     point = file["parameters"]["POINT"]
     point["UNITS"]["value"] = ["mm"]
     point["RATE"]["value"] = [keypoints.rate_hz]
     point["LABELS"]["value"] = [str(joint) for joint in keypoints.joints]
     file.add_parameter("POINT", "X_SCREEN", ["+X"])
     file.add_parameter("POINT", "Y_SCREEN", ["+Z"])
+    file.add_parameter("POINT", "START_S", [float(keypoints.time_s[0])])
     if n_frames > MOST_COUNTED:
         file.add_parameter("POINT", "LONG_FRAMES", [float(n_frames)])
         log.logger.warning(
@@ -75,6 +80,12 @@ def write(path: StrPath, keypoints: Keypoints3D, person: int) -> None:
         stored = np.frombuffer(content, "<f4", points.size, start).reshape(n_frames, n_joints, 4)
         stored[..., 3] = residuals
         temporary.write_bytes(content)
+
+
+def _first_frame(keypoints: Keypoints3D) -> int:
+    """Return the number of the first frame, from 0, on the clock of the take."""
+    first = round(float(keypoints.time_s[0]) * keypoints.rate_hz)
+    return first if 0 <= first <= MOST_COUNTED - len(keypoints.time_s) else 0
 
 
 def _warn_of_rounding(path: StrPath, xyz: NDArray) -> None:

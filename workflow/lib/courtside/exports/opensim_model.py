@@ -46,12 +46,20 @@ PARTS = {  # names of segments in the table of masses
     "femur": "thigh", "tibia": "shank", "humerus": "upper_arm", "forearm": "forearm",
     "head": "head", "hand": "hand", "foot": "foot",
 }  # fmt: skip
+TRUNK = ("pelvis", "thorax", "clavicle")
+EARS = ("left_ear", "right_ear")
 LOWER_TRUNK = {"m": 11.17, "f": 12.47}  # percent of the body's mass: the pelvis (de Leva 1996)
 CLAVICLE = 0.5  # ASSUME: percent of the body's mass on each, which the thorax has less
 DENSITY = 1050.0  # ASSUME: kg/m3 of every segment; Winter 2009, table 4.1 has 1040 to 1190
 BODY_MASS_INDEX = 22.0  # ASSUME: kg/m2 of a subject whose mass is not stated
 UNFITTED = "No frame was fitted: no length is known"
 LEG = 0.491  # length of thigh and shank, share of the height (Winter 2009, fig. 4.1)
+# ASSUME: up to which an angle goes on beyond 180 degrees: an arm that points up, or its turn about
+# itself, swings round 180 by less; beyond, the arm came round by the back and is lowered.
+FAR_DEG = 240.0
+# Ranges of coordinates: metres; turns of the pelvis, which are counted (ASSUME: never so many);
+# turns of others
+WIDE_M, COUNTED, OTHERS = 100.0, 1000, 1
 
 
 def body(segment: str) -> str:
@@ -75,7 +83,8 @@ def turns(segment: str) -> list[tuple[int, str, int]]:
 def coordinates(motion: SkeletalMotion, person: int) -> dict[str, NDArray]:
     """Return the coordinates of one person's fitted frames by name, degrees and metres, (T,) each.
 
-    The ground's axes are those of the TRC files. Angles go on beyond 180 degrees without a jump.
+    The ground's axes are those of the TRC files. The rotation of the pelvis goes on beyond 180
+    degrees over the whole take.
     """
     fitted = np.isfinite(motion.root[person]).all(axis=1)
     found: dict[str, NDArray] = {}
@@ -87,6 +96,8 @@ def coordinates(motion: SkeletalMotion, person: int) -> dict[str, NDArray]:
             found |= {f"pelvis_t{axis}": place[:, k] for k, axis in enumerate("xyz")}
         own = turns(segment)
         split = euler_deg(turned) if len(own) == 3 else _hinges_deg(turned, own[0][0], own[1][0])
+        if motion.parents[at] < 0:
+            split[:, 2] = np.unwrap(split[:, 2], period=360)
         found |= {name: sign * split[:, k] for k, (_, name, sign) in enumerate(own)}
     return found
 
@@ -94,14 +105,15 @@ def coordinates(motion: SkeletalMotion, person: int) -> dict[str, NDArray]:
 def euler_deg(turned: NDArray) -> NDArray:
     """Return the angles (T, 3) degrees of rotations (T, 3, 3) about Z, then X, then Y.
 
-    Of the two sets that make a rotation, each frame has the one nearer to the frame before.
+    Of the two sets that make a rotation it is that whose second angle is within 90 degrees. The
+    others go on beyond 180 degrees up to `FAR_DEG` without a jump, and never further: near gimbal
+    lock noise moves them anyhow, and a turn that they gained there would last to the end.
     """
     first = scipy.spatial.transform.Rotation.from_matrix(turned).as_euler("ZXY", degrees=True)
-    both = np.stack([first, first * [1, -1, 1] + 180])
     for at in range(1, len(first)):
         last = first[at - 1]
-        near = last + (both[:, at] - last + 180) % 360 - 180
-        first[at] = near[np.argmin(np.abs(near - last).sum(axis=1))]
+        near = last + (first[at] - last + 180) % 360 - 180
+        first[at] = np.where(np.abs(near) <= FAR_DEG, near, first[at])
     return np.asarray(first)
 
 
@@ -110,7 +122,7 @@ def _hinges_deg(turned: NDArray, one: int, other: int) -> NDArray:
     third, sign = 3 - one - other, 1 if (other - one) % 3 == 1 else -1
     first = np.arctan2(sign * turned[:, third, other], turned[:, other, other])
     second = np.arctan2(sign * turned[:, one, third], turned[:, one, one])
-    return np.unwrap(np.degrees(np.stack([first, second], axis=1)), axis=0, period=360)
+    return np.degrees(np.stack([first, second], axis=1))
 
 
 def write(
@@ -124,9 +136,10 @@ def write(
     """Write one person's model (`.osim`): bodies, joints, and the network's joints as markers.
 
     Markers are named as in the TRC files, coordinates as in `coordinates`; all lengths are those of
-    the fit, their standard deviations are in the credits. Shares of mass are those of de Leva
-    (1996); each body is a cylinder along Y, from joint to joint where the segment has a next one,
-    else as wide as long. Without a fitted frame no length is known, and the model has no bodies.
+    the fit, their standard deviations are in the credits. Masses and their centres are those of de
+    Leva (1996); inertia about them is that of a cylinder along Y, as long as from joint to joint
+    where the segment has a next one, else as wide as long. Without a fitted frame no length is
+    known, and the model has no bodies.
     """
     fitted = bool(np.isfinite(motion.root[person]).all(axis=1).any())
     root = Element("OpenSimDocument", Version=VERSION)
@@ -141,7 +154,7 @@ def write(
         for kind in ("BodySet", "JointSet", "MarkerSet")
     )
     if fitted:
-        _add_bodies(bodies, joints, motion, person, _masses(motion, person, mass_kg, sex))
+        _add_bodies(bodies, joints, motion, person, mass_kg, sex)
         _add_markers(markers, motion, person)
     ElementTree.indent(root)
     with atomic(path) as temporary:
@@ -149,10 +162,18 @@ def write(
 
 
 def _add_bodies(
-    bodies: Element, joints: Element, motion: SkeletalMotion, person: int, masses: NDArray
+    bodies: Element,
+    joints: Element,
+    motion: SkeletalMotion,
+    person: int,
+    mass_kg: float | None,
+    sex: str | None,
 ) -> None:
+    masses = _masses(motion, person, mass_kg, sex)
+    centres = _centres(motion, person, masses, sex)
     for at, segment in enumerate(motion.segments.tolist()):
-        _add_body(bodies, body(segment), masses[at], *_cylinder(motion, person, at, masses[at]))
+        size = _cylinder(motion, person, at, masses[at])
+        _add_body(bodies, body(segment), masses[at], centres[at] + _origin(at), *size)
         parent = motion.parents[at]
         above = "/ground" if parent < 0 else f"/bodyset/{body(motion.segments[parent])}"
         _add_joint(joints, segment, above, motion.offsets[person, at] + _origin(parent))
@@ -197,23 +218,56 @@ def _shares(motion: SkeletalMotion, sex: str) -> NDArray:
     return np.array([found[without_side(name)] for name in motion.segments.tolist()])
 
 
-def _cylinder(
-    motion: SkeletalMotion, person: int, at: int, mass_kg: float
-) -> tuple[NDArray, float, float]:
-    """Return centre (3,) in its body, half height and radius, metres, of a segment."""
+def _centres(motion: SkeletalMotion, person: int, masses: NDArray, sex: str | None) -> NDArray:
+    """Return the centre of mass (S, 3) m of each segment from its origin, in its axes.
+
+    As `centre_of_mass` has them: of limbs on the bone, of the hand on the forearm's line, of the
+    trunk on the line from mid-shoulder to mid-hip of a straight back, of the head between the ears.
+    Of feet, and of heads without ears, it is the mean of their points.
+    """
+    names, offsets = motion.segments.tolist(), motion.offsets[person]
+    centres = np.zeros_like(offsets)
+    for at, name in enumerate(names):
+        part, below = without_side(name), np.flatnonzero(motion.parents == at)
+        if len(below):
+            place = centre_of_mass.place(PARTS[part], sex) if part in PARTS else 0.5
+            centres[at] = place * offsets[below[0]]
+        elif part == "hand":
+            centres[at] = (centre_of_mass.place("hand", sex) - 1) * offsets[at]
+        else:
+            points = motion.places[person]
+            own = (motion.segment_of == at) & points.any(axis=1)
+            ears = own & np.isin(motion.joints, EARS)
+            own = ears if ears.any() else own
+            centres[at] = points[own].mean(axis=0) if own.any() else 0
+    return _with_trunk(motion, person, masses, centres, centre_of_mass.place("trunk", sex))
+
+
+def _with_trunk(
+    motion: SkeletalMotion, person: int, masses: NDArray, centres: NDArray, place: float
+) -> NDArray:
+    """Return the centres with that of the thorax such that the trunk's lies at its place."""
+    names = motion.segments.tolist()
+    origins = np.zeros_like(centres)  # in the pelvis, of a body with all joints at zero
+    for at, above in enumerate(motion.parents.tolist()):
+        origins[at] = motion.offsets[person, at] + (origins[above] if above >= 0 else 0)
+    shoulders, hips = (
+        origins[[names.index(f"{side}_{bone}") for side in LETTERS]].mean(axis=0)
+        for bone in ("humerus", "femur")
+    )
+    trunk = [at for at, name in enumerate(names) if without_side(name) in TRUNK]
+    thorax = names.index("thorax")
+    lacking = (1 - place) * shoulders + place * hips - origins[trunk] - centres[trunk]
+    centres[thorax] += masses[trunk] @ lacking / masses[thorax]
+    return centres
+
+
+def _cylinder(motion: SkeletalMotion, person: int, at: int, mass_kg: float) -> tuple[float, float]:
+    """Return half height and radius, metres, of a segment."""
     below = np.flatnonzero(motion.parents == at)
-    next_one = motion.offsets[person, below[0]] if len(below) else np.zeros(3)
-    if len(below):
-        part = PARTS.get(motion.segments[at].split("_")[-1])
-        shares = list(centre_of_mass.SEGMENTS[part].place.values()) if part else [50]
-        centre = np.mean(shares) / 100 * next_one
-    else:
-        points = motion.places[person, motion.segment_of == at]
-        points = points[points.any(axis=1)]
-        centre = points.mean(axis=0) if len(points) else np.zeros(3)
-    half = abs(next_one[1]) / 2 or (mass_kg / (2 * np.pi * DENSITY)) ** (1 / 3)
-    radius = np.sqrt(mass_kg / (2 * np.pi * DENSITY * half))
-    return centre + _origin(at), float(half), float(radius)
+    height = abs(motion.offsets[person, below[0], 1]) if len(below) else 0.0
+    half = height / 2 or (mass_kg / (2 * np.pi * DENSITY)) ** (1 / 3)
+    return float(half), float(np.sqrt(mass_kg / (2 * np.pi * DENSITY * half)))
 
 
 def _credits(motion: SkeletalMotion, person: int) -> str:
@@ -266,7 +320,9 @@ def _add_joint(parent: Element, segment: str, above: str, place: NDArray) -> Non
     listed = SubElement(joint, "coordinates")
     for name in [*(name for _, name, _ in own), *moves]:
         entry = SubElement(listed, "Coordinate", name=name)
-        _text(entry, "range", (-100, 100) if name in moves else (-2 * np.pi, 2 * np.pi))
+        turned = 2 * np.pi * (COUNTED if name == "pelvis_rotation" else OTHERS)
+        most = WIDE_M if name in moves else turned
+        _text(entry, "range", (-most, most))
         _text(entry, "clamped", "false")
     frames = SubElement(joint, "frames")
     child = (0, 0, 0)

@@ -36,6 +36,10 @@ OWN = "COURTSIDE"
 SOURCE = "Courtside"
 # ASSUME: diagonal of the box around all joints of a person, median of a take.
 LARGE_M = (0.1, 4.0)
+# ASSUME: of trunks of persons who do not lie, median of a take: share of their length along another
+# axis than the vertical, and along the vertical. Laboratories have the floor at zero.
+SIDEWAYS, UPRIGHT, FLOOR_M = 0.8, 0.5, 0.5
+TRUNK = [("left_hip", "right_hip"), ("left_shoulder", "right_shoulder")]
 LEAST_VIEWS = 2  # of a point in a file that does not say: triangulation needs two
 
 
@@ -124,7 +128,7 @@ def read_takes(files: Mapping[str, StrPath], skeleton: Skeleton, *, model: str) 
     They stay in the file's frame with z up, without views or known covariances, and get the name
     `model`. The skeleton's joints are looked for among the markers, under Pose2Sim's names or their
     own. Raises `InputError` if a file is no TRC file, has none of the joints, lengths of no person,
-    or other times than the first one.
+    another axis up than Y, or other times than the first one.
     """
     found: list[list[NDArray]] = []
     for path in files.values():
@@ -142,6 +146,7 @@ def read_takes(files: Mapping[str, StrPath], skeleton: Skeleton, *, model: str) 
             raise InputError(f"{path}: expected the times of {first}, found others; cut both alike")
         _check_size(path, xyz[:, [k for k in places if k is not None]])
         found.append([np.full((len(xyz), 3), np.nan) if k is None else xyz[:, k] for k in places])
+        _check_axes(path, skeleton.joints, np.array(found[-1]))
     xyz = np.array(found).swapaxes(1, 2)
     there = np.isfinite(xyz).all(axis=-1)
     return Keypoints3D(
@@ -168,4 +173,27 @@ def _check_size(path: StrPath, xyz: NDArray) -> None:
         raise InputError(
             f"{path}: expected joints of a person over {LARGE_M[0]:g} to {LARGE_M[1]:g} m, found "
             f"them over {np.median(seen):.3g} m; correct `Units` in its header, or export it again"
+        )
+
+
+def _check_axes(path: StrPath, joints: Sequence[str], xyz: NDArray) -> None:
+    """Raise `InputError` if a person (J, T, 3) stands on the floor along the file's X or Z.
+
+    A person who lies is told from that by the feet, which are rarely near zero along the trunk.
+    """
+    if not all(joint in joints for pair in TRUNK for joint in pair):
+        return
+    hips, shoulders = (xyz[[joints.index(one) for one in pair]].mean(axis=0) for pair in TRUNK)
+    trunk = shoulders - hips
+    known = np.isfinite(trunk).all(axis=1)
+    if not known.any():
+        return
+    trunk = trunk[known] / np.linalg.norm(trunk[known], axis=1, keepdims=True)
+    along = np.abs(np.median(trunk, axis=0))
+    axis = int(np.argmax(along))
+    lowest = np.median(np.fmin.reduce(xyz[:, known, axis], axis=0))
+    if along[2] < UPRIGHT and along[axis] > SIDEWAYS and abs(lowest) < FLOOR_M:
+        name = "XYZ"[trc.WORLD_AXES.index(axis)]
+        raise InputError(
+            f"{path}: expected Y up, found the trunk along {name}; export it with Y up"
         )

@@ -36,6 +36,11 @@ class Track:
     cutoff_hz: float  # of the filter that the skeletons went through
 
     @property
+    def frame_s(self) -> float:
+        """Time from one frame to the next."""
+        return float(self.time_s[self.step] - self.time_s[0])
+
+    @property
     def velocity_variance(self) -> NDArray:
         """Variance of the velocity (N, 2, 3), m2/s2; errors have a flat spectrum to the cut-off."""
         return self.variance * (2 * np.pi * self.cutoff_hz) ** 2 / 3

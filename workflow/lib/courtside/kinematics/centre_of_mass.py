@@ -43,6 +43,18 @@ SEGMENTS = {
 }
 
 
+def place(segment: str, sex: str | None) -> float:
+    """Return where a segment's centre of mass lies from its start (0) to its end (1).
+
+    Without a sex it is that of the mean of men's and women's shares of mass (`shares`).
+    """
+    own = SEGMENTS[segment]
+    of = (sex,) if sex else ("m", "f")
+    return (
+        sum(own.mass[one] * own.place[one] for one in of) / sum(own.mass[one] for one in of) / 100
+    )
+
+
 def shares(sex: str | None) -> dict[str, float]:
     """Return the share of the body's mass at each point.
 
