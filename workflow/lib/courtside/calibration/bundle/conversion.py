@@ -7,6 +7,7 @@ import numpy as np
 from courtside.calibration.bundle import problem, selection
 from courtside.calibration.bundle.problem import Network
 from courtside.geometry.camera import Camera
+from courtside.study.errors import InputError
 
 
 def network_of(known: Sequence[Camera]) -> Network:
@@ -25,10 +26,19 @@ def network_of(known: Sequence[Camera]) -> Network:
 def cameras_of(
     network: Network, names: Sequence[str], sizes: Sequence[tuple[int, int]]
 ) -> list[Camera]:
-    """Return the first images of a network as cameras; `sizes` are (width, height), px."""
+    """Return the first images of a network as cameras; `sizes` are (width, height), px.
+
+    Raises `InputError` if the adjustment of a camera has diverged, so that it has no focal length.
+    """
     found = []
     for v, (name, size) in enumerate(zip(names, sizes, strict=True)):
         f_px, aspect, cx_px, cy_px, *dist = network.lens[network.lens_of_image[v]]
+        if not 0 < f_px < np.inf or not 0 < aspect < np.inf:
+            raise InputError(
+                f"camera {name}: expected an adjustment that converges, found a focal length of "
+                f"{f_px:.0f} px; what its pictures show contradicts itself: check its clicked "
+                "points, or add some, or take more bridging images"
+            )
         K = np.array([[f_px * aspect, 0, cx_px], [0, f_px, cy_px], [0, 0, 1]])
         found.append(Camera(name, size, K, np.array([*dist, 0.0]), network.cam_from_world[v]))
     return found
