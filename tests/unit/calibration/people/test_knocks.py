@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from courtside.calibration.people import knocks, prior
+from courtside.calibration.people import held_out, knocks, prior
 from courtside.calibration.people.views import Limits
 from courtside.geometry import camera as cameras
 from courtside.records.devices.clocks import Clock
@@ -72,7 +72,7 @@ def test_a_knock_is_told_in_the_clock_of_its_camera(found):
 
 
 def test_a_camera_that_sees_nobody_of_the_others_hinders_no_search(knocked, monkeypatch):
-    monkeypatch.setattr(knocks, "_judged", lambda *_: (0.0, {"joints": "not better"}))
+    monkeypatch.setattr(knocks, "_judged", lambda *_: knocks._Judged(0.0, knocks.NOT_BETTER, 0.0))
     blind = knocked.xy.copy()
     blind[3] = np.nan
     found = knocks.find(TRUE, KNOWN, replace(knocked, xy=blind), LIMITS)
@@ -93,3 +93,32 @@ def test_a_camera_turned_between_takes_has_a_pose_in_each(knocked, monkeypatch):
     assert np.median(np.abs(seen.xy - SEEN.xy)) < 0.5 < np.abs(knocked.xy - SEEN.xy).max()
     one, none = knocks.between(TRUE, KNOWN, {"a": SEEN}, LIMITS)
     assert none == [] and len(one.track) == len(SEEN.track)
+
+
+def test_a_camera_turned_before_the_last_of_several_takes_is_found(monkeypatch):
+    """Most of the time no camera is turned: the median over all of it does not tell."""
+    monkeypatch.setattr(knocks, "MOST", 1)
+    takes = {
+        name: walkers.seen(TRUE, walkers.joints(64), share=0.008, seed=seed)
+        for seed, name in enumerate("abcd")
+    }
+    turned = cameras.turned_back(TRUE[1], takes["d"].xy[1], -4 * TURN)
+    xy = np.concatenate([takes["d"].xy[:1], turned[None], takes["d"].xy[2:]])
+    _, rows = knocks.between(TRUE, KNOWN, takes | {"d": replace(takes["d"], xy=xy)}, LIMITS)
+    (row,) = rows
+    assert (row["camera"], row["take"], row["after"], row["taken"]) == ("c1", "d", "c", 1)
+    turn = [row[f"turn_{axis}_deg"] for axis in "xyz"]
+    assert (np.abs(turn - 4 * np.degrees(TURN)) < [0.04, 0.04, 0.15]).all()
+    assert row["joints_percent"] < -30
+
+
+def test_a_side_of_one_block_does_not_tell_of_a_knock():
+    before = held_out.Score(dict(enumerate([0.02] * 8)))
+    seen = replace(SEEN, time_s=np.arange(80.0))
+    for first, taken in ((70.0, False), (60.0, True)):
+        shares = [0.005 if 10 * block >= first else 0.02 for block in range(8)]
+        ((kept, _), (gone, said)) = knocks._by_side(
+            before, held_out.Score(dict(enumerate(shares))), seen, knocks._Step(2, first, TURN, 99)
+        )
+        assert kept == 0 and gone == pytest.approx(-0.75)
+        assert held_out.better(said) is taken
