@@ -13,9 +13,14 @@ from fixtures.cameras import corner_cameras, walkers
 
 TRUE = corner_cameras.four_cameras()
 LIMITS = Limits(score=0.05, limit=0.05, fade=0.067)
-KNOWN = prior.stated(
-    TRUE, rotation_deg=0.3, position_m=0.03, focal_percent=0.5, principal_point_percent=0.3, k1=0.01
-)
+STATED = {
+    "rotation_deg": 0.3,
+    "position_m": 0.03,
+    "focal_percent": 0.5,
+    "principal_point_percent": 0.3,
+    "k1": 0.01,
+}
+KNOWN = prior.stated(TRUE, **STATED)
 WALK = walkers.joints(80)
 SEEN = walkers.seen(TRUE, WALK)
 TURN = np.radians([0.25, -0.3, 0.1])
@@ -110,6 +115,44 @@ def test_a_camera_turned_before_the_last_of_several_takes_is_found(monkeypatch):
     turn = [row[f"turn_{axis}_deg"] for axis in "xyz"]
     assert (np.abs(turn - 4 * np.degrees(TURN)) < [0.04, 0.04, 0.15]).all()
     assert row["joints_percent"] < -30
+
+
+def test_every_camera_turned_between_takes_is_found_and_measured_with_the_others(monkeypatch):
+    """`MOST` is of a take; alone, the first would be measured with the other still in it."""
+    monkeypatch.setattr(knocks, "MOST", 1)
+    monkeypatch.setattr(knocks, "MOST_TRIED", 2)
+    five = [*TRUE, corner_cameras.camera("c4", np.array([0, -5.5, 3]), (960, 540))]
+    first, second = (
+        walkers.seen(five, walkers.joints(64), share=0.008, seed=seed) for seed in (0, 1)
+    )
+    turns = {"c0": 4 * TURN, "c3": 4 * TURN[[1, 2, 0]]}
+    for at, turn in ((0, turns["c0"]), (3, turns["c3"])):
+        second.xy[at] = cameras.turned_back(five[at], second.xy[at], -turn)
+    takes = {"a": first, "b": second}
+    _, rows = knocks.between(five, prior.stated(five, **STATED), takes, LIMITS)
+    taken = {row["camera"]: row for row in rows if row["taken"]}
+    assert sorted(taken) == sorted(turns)
+    for camera, row in taken.items():
+        turn, sigma = ([row[f"{what}_{axis}_deg"] for axis in "xyz"] for what in ("turn", "sigma"))
+        assert (np.abs(turn - np.degrees(turns[camera])) < 3 * np.array(sigma)).all()
+
+
+def test_two_turns_of_one_camera_are_measured_in_a_row():
+    """Each from the pose before it, and what is found again at one time is part of it."""
+    xy = SEEN.xy.copy()
+    for first, turn in ((3.0, TURN), (5.0, -2 * TURN)):
+        after = SEEN.time_s >= first
+        xy[2, after] = cameras.turned_back(TRUE[2], xy[2, after], -turn)
+    seen, better = replace(SEEN, xy=xy), {"joints": "better"}
+    rough = ((5.0, -1.5 * TURN), (3.0, 0.8 * TURN), (5.0, -0.4 * TURN))
+    found = [knocks.Knock(2, at_s, turn, 0 * TURN, -0.5, better) for at_s, turn in rough]
+    first, second = knocks._together(TRUE, KNOWN, seen, LIMITS, found)
+    assert (first.time_s, second.time_s) == (3.0, 5.0)
+    for one, turn in ((first, TURN), (second, -2 * TURN)):
+        assert (np.abs(one.turn - turn) < 3 * one.sigma).all()
+        assert np.degrees(np.abs(one.turn - turn)[:2]).max() < 0.03
+    off = np.linalg.norm(knocks.undone(TRUE, seen, [first, second]).xy - SEEN.xy, axis=-1)
+    assert np.median(off) < 1
 
 
 def test_a_side_of_one_block_does_not_tell_of_a_knock():
