@@ -380,6 +380,20 @@ def test_a_camera_without_shake_moves_by_its_knock_alone():
     np.testing.assert_allclose(back.xy, expected, atol=0.01)
 
 
+@pytest.mark.parametrize("frames", [(10, 20), (20, 10), (0, 0)])
+def test_a_knock_found_in_keypoints_without_another_is_taken_out_after_it(frames):
+    """The camera is turned by the product of both: the one found first is the outer one."""
+    knocks = [np.radians([3.0, 0, 0]), np.radians([0, 3.0, 0])]
+    rows = [np.arange(30) >= frame for frame in frames]
+    outer, inner = (Rotation.from_rotvec(np.outer(*one)) for one in zip(rows, knocks, strict=True))
+    made, expected, _ = view((outer * inner).as_rotvec())
+    times = [frame / RATE_HZ for frame in frames]
+    table = camera_shake.still(made.time_s)
+    table = camera_shake.knocked(CAMERA, table, list(zip(times, knocks, strict=True)))
+    off = np.linalg.norm(camera_shake.steady(made, CAMERA, table).xy - expected, axis=-1)
+    assert np.nanmax(off) < 0.01
+
+
 def test_knocks_of_many_frames_need_little_memory():
     """The windows of a minute at 240 Hz at once are 83 MB, and medians copy them."""
     level = np.random.default_rng(0).normal(size=(240 * 60, 3))

@@ -9,7 +9,7 @@ from courtside.calibration import point_covariance
 from courtside.calibration.bundle import conversion
 from courtside.calibration.people import from_nothing, metric_scale
 from courtside.calibration.people.held_out import Score
-from courtside.calibration.people.views import Limits, Seen
+from courtside.calibration.people.views import Limits, Seen, joined
 from courtside.geometry import camera as cameras
 from courtside.geometry import similarity
 from courtside.geometry.triangulation import triangulate_all
@@ -77,6 +77,20 @@ def test_cameras_with_unknown_lenses_are_found_from_two_persons_and_their_height
         [metric_scale.ONE_HEIGHT],
         ["floor: it differs"],
     )
+
+
+def test_every_track_of_many_takes_has_enough_frames_to_be_measured():
+    """30 tracks share what the adjustment takes: 16 frames each, fewer than a body needs."""
+    take = tracks_made.take(TRUE, WALK)
+    start = guessed(take, lenses=LENSES)
+    everything, n_takes = seen(take, start.tracks), 15
+    every = joined([everything] * n_takes), lambda _, limbs: limbs
+    tracks = [(number, rows) for number in range(n_takes) for _, rows in start.tracks]
+    heights = {f"walk {number}": HEIGHTS["walk"] for number in range(n_takes)}
+    found = from_nothing.adjust(start.cameras, LENSES, *every, tracks, heights, LIMITS)
+    xyz = WALK[:, ::4].reshape(-1, 3)
+    placed = triangulate_all(found.cameras, np.stack([cameras.project(c, xyz) for c in TRUE]))
+    assert similarity.umeyama(placed, xyz).scale == pytest.approx(1, abs=0.01)
 
 
 def test_a_lens_of_a_board_is_not_guessed():

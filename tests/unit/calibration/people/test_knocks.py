@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from courtside.calibration.people import knocks, prior
+from courtside.calibration.people import held_out, knocks, prior
 from courtside.calibration.people.views import Limits
 from courtside.geometry import camera as cameras
 from courtside.records.devices.clocks import Clock
@@ -13,9 +13,14 @@ from fixtures.cameras import corner_cameras, walkers
 
 TRUE = corner_cameras.four_cameras()
 LIMITS = Limits(score=0.05, limit=0.05, fade=0.067)
-KNOWN = prior.stated(
-    TRUE, rotation_deg=0.3, position_m=0.03, focal_percent=0.5, principal_point_percent=0.3, k1=0.01
-)
+STATED = {
+    "rotation_deg": 0.3,
+    "position_m": 0.03,
+    "focal_percent": 0.5,
+    "principal_point_percent": 0.3,
+    "k1": 0.01,
+}
+KNOWN = prior.stated(TRUE, **STATED)
 WALK = walkers.joints(80)
 SEEN = walkers.seen(TRUE, WALK)
 TURN = np.radians([0.25, -0.3, 0.1])
@@ -72,7 +77,7 @@ def test_a_knock_is_told_in_the_clock_of_its_camera(found):
 
 
 def test_a_camera_that_sees_nobody_of_the_others_hinders_no_search(knocked, monkeypatch):
-    monkeypatch.setattr(knocks, "_judged", lambda *_: (0.0, {"joints": "not better"}))
+    monkeypatch.setattr(knocks, "_judged", lambda *_: knocks._Judged(0.0, knocks.NOT_BETTER, 0.0))
     blind = knocked.xy.copy()
     blind[3] = np.nan
     found = knocks.find(TRUE, KNOWN, replace(knocked, xy=blind), LIMITS)
@@ -93,3 +98,70 @@ def test_a_camera_turned_between_takes_has_a_pose_in_each(knocked, monkeypatch):
     assert np.median(np.abs(seen.xy - SEEN.xy)) < 0.5 < np.abs(knocked.xy - SEEN.xy).max()
     one, none = knocks.between(TRUE, KNOWN, {"a": SEEN}, LIMITS)
     assert none == [] and len(one.track) == len(SEEN.track)
+
+
+def test_a_camera_turned_before_the_last_of_several_takes_is_found(monkeypatch):
+    """Most of the time no camera is turned: the median over all of it does not tell."""
+    monkeypatch.setattr(knocks, "MOST", 1)
+    takes = {
+        name: walkers.seen(TRUE, walkers.joints(64), share=0.008, seed=seed)
+        for seed, name in enumerate("abcd")
+    }
+    turned = cameras.turned_back(TRUE[1], takes["d"].xy[1], -4 * TURN)
+    xy = np.concatenate([takes["d"].xy[:1], turned[None], takes["d"].xy[2:]])
+    _, rows = knocks.between(TRUE, KNOWN, takes | {"d": replace(takes["d"], xy=xy)}, LIMITS)
+    (row,) = rows
+    assert (row["camera"], row["take"], row["after"], row["taken"]) == ("c1", "d", "c", 1)
+    turn = [row[f"turn_{axis}_deg"] for axis in "xyz"]
+    assert (np.abs(turn - 4 * np.degrees(TURN)) < [0.04, 0.04, 0.15]).all()
+    assert row["joints_percent"] < -30
+
+
+def test_every_camera_turned_between_takes_is_found_and_measured_with_the_others(monkeypatch):
+    """`MOST` is of a take; alone, the first would be measured with the other still in it."""
+    monkeypatch.setattr(knocks, "MOST", 1)
+    monkeypatch.setattr(knocks, "MOST_TRIED", 2)
+    five = [*TRUE, corner_cameras.camera("c4", np.array([0, -5.5, 3]), (960, 540))]
+    first, second = (
+        walkers.seen(five, walkers.joints(64), share=0.008, seed=seed) for seed in (0, 1)
+    )
+    turns = {"c0": 4 * TURN, "c3": 4 * TURN[[1, 2, 0]]}
+    for at, turn in ((0, turns["c0"]), (3, turns["c3"])):
+        second.xy[at] = cameras.turned_back(five[at], second.xy[at], -turn)
+    takes = {"a": first, "b": second}
+    _, rows = knocks.between(five, prior.stated(five, **STATED), takes, LIMITS)
+    taken = {row["camera"]: row for row in rows if row["taken"]}
+    assert sorted(taken) == sorted(turns)
+    for camera, row in taken.items():
+        turn, sigma = ([row[f"{what}_{axis}_deg"] for axis in "xyz"] for what in ("turn", "sigma"))
+        assert (np.abs(turn - np.degrees(turns[camera])) < 3 * np.array(sigma)).all()
+
+
+def test_two_turns_of_one_camera_are_measured_in_a_row():
+    """Each from the pose before it, and what is found again at one time is part of it."""
+    xy = SEEN.xy.copy()
+    for first, turn in ((3.0, TURN), (5.0, -2 * TURN)):
+        after = SEEN.time_s >= first
+        xy[2, after] = cameras.turned_back(TRUE[2], xy[2, after], -turn)
+    seen, better = replace(SEEN, xy=xy), {"joints": "better"}
+    rough = ((5.0, -1.5 * TURN), (3.0, 0.8 * TURN), (5.0, -0.4 * TURN))
+    found = [knocks.Knock(2, at_s, turn, 0 * TURN, -0.5, better) for at_s, turn in rough]
+    first, second = knocks._together(TRUE, KNOWN, seen, LIMITS, found)
+    assert (first.time_s, second.time_s) == (3.0, 5.0)
+    for one, turn in ((first, TURN), (second, -2 * TURN)):
+        assert (np.abs(one.turn - turn) < 3 * one.sigma).all()
+        assert np.degrees(np.abs(one.turn - turn)[:2]).max() < 0.03
+    off = np.linalg.norm(knocks.undone(TRUE, seen, [first, second]).xy - SEEN.xy, axis=-1)
+    assert np.median(off) < 1
+
+
+def test_a_side_of_one_block_does_not_tell_of_a_knock():
+    before = held_out.Score(dict(enumerate([0.02] * 8)))
+    seen = replace(SEEN, time_s=np.arange(80.0))
+    for first, taken in ((70.0, False), (60.0, True)):
+        shares = [0.005 if 10 * block >= first else 0.02 for block in range(8)]
+        ((kept, _), (gone, said)) = knocks._by_side(
+            before, held_out.Score(dict(enumerate(shares))), seen, knocks._Step(2, first, TURN, 99)
+        )
+        assert kept == 0 and gone == pytest.approx(-0.75)
+        assert held_out.better(said) is taken

@@ -132,3 +132,47 @@ def test_a_wall_s_slope_along_x_is_a_turn_about_y():
     line = np.concatenate(WALK) * [0.01, 1, 1]  # feet on a line along y say nothing along x
     about_x, about_y = np.diag(world_frame.frame_error(line, np.zeros(3), NO_POINTS))[:2]
     assert about_y > 4 * about_x
+
+
+BESIDE = [[0.0, -7, 0], [6, -7, 0], [0, -6, 0], [6, -6, 0]]
+
+
+def all_over():
+    """Return joints of people whose feet are all over a court of 6 m by 12 m."""
+    joints = np.concatenate(WALK)
+    places = np.random.default_rng(0).uniform([0, -6], [6, 6], (len(joints), 2))
+    joints = joints - joints.mean(axis=1, keepdims=True) * [1, 1, 0]
+    return joints + np.pad(places, ((0, 0), (0, 1)))[:, None]
+
+
+def test_short_lengths_on_the_floor_do_not_tilt_it_where_feet_are_all_over_it():
+    """The base line and a racket before it, whose ends are seen 1 cm too high."""
+    points = np.array([[0, -6, 0], [6, -6, 0], [2.7, -5.3, 0.01], [3.3, -5.3, 0.01]])
+    far = np.array([[0.0, 6, 0], [6, 6, 0]])
+    alone, with_points = (
+        world_frame.floor(all_over(), TRUE, on_floor).points(far)[:, 2]
+        for on_floor in (NO_POINTS, points)
+    )
+    assert np.abs(with_points).max() < np.abs(alone).max() + 0.03
+
+
+@pytest.mark.parametrize(("points", "depth"), [(BESIDE, 0.1), (BESIDE[:2], 1)])
+def test_the_error_of_a_floor_by_points_is_small_at_them_and_larger_under_people(points, depth):
+    """Of two points, or where feet tell less than four points, on a strip (`depth`)."""
+    rng, points = np.random.default_rng(0), np.array(points)
+    joints, sigma = all_over() * [1, depth, 1], world_frame.POINT_M
+    exact = world_frame.floor(joints, TRUE, points)
+    places = np.array([np.mean(points, axis=0), [3.0, 0, 0], [6.0, 3, 0]])
+    heights = [
+        world_frame.floor(joints, TRUE, points + rise[:, None] * [0, 0, 1]).points(places)[:, 2]
+        for rise in rng.normal(0, sigma, (150, len(points)))
+    ]
+    true = np.std(heights, axis=0)
+    x, y, _ = exact.points(places).T
+    rises = np.stack([y, -x, np.ones(len(places))], axis=1)
+    frame = world_frame.frame_error(exact.points(joints), np.zeros(3), exact.points(points))
+    stated = np.sqrt(np.einsum("ni,ij,nj->n", rises, frame, rises))
+    assert stated[0] == pytest.approx(sigma / np.sqrt(len(points)), rel=0.01)
+    assert (stated[1:] > 1.5 * stated[0]).all() and (stated > 0.8 * true).all()
+    if len(points) > 2:  # the tilt by feet errs more than these draws, which have one set of feet
+        np.testing.assert_allclose(stated, true, rtol=0.25)

@@ -87,14 +87,16 @@ def still(time_s: NDArray) -> DataFrame:
 
 
 def knocked(camera: Camera, table: DataFrame, knocks: Sequence[tuple[float, NDArray]]) -> DataFrame:
-    """Return a table with knocks added to its shake: times, s, and rotations (3,), radians."""
+    """Return a table with knocks added to its shake: times, s, and rotations (3,), radians.
+
+    Knocks are in the order in which they were found: each was measured without those before it.
+    """
     if not knocks:
         return table
     vectors, time_s = camera_turns(camera, table), table.time_s.to_numpy(float)
     turned = np.broadcast_to(np.eye(3), (len(time_s), 3, 3))
-    for at_s, turn in sorted(knocks, key=lambda knock: knock[0]):
-        after = rotations.rotation_from_rodrigues(np.outer(time_s >= at_s, turn))
-        turned = after @ turned
+    for at_s, turn in knocks:
+        turned = turned @ rotations.rotation_from_rodrigues(np.outer(time_s >= at_s, turn))
     known = np.isfinite(vectors).all(axis=1)
     whole = rotations.rotation_from_rodrigues(vectors[known]) @ turned[known]
     moved = _moved(camera, rotations.rodrigues_from_rotation(whole))

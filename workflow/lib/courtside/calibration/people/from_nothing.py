@@ -44,6 +44,8 @@ GUESSED = {"focal_percent": 20.0, "principal_point_percent": 1.0, "k1": 0.05}  #
 KNOWN = {"focal_percent": 0.5, "principal_point_percent": 0.3, "k1": 0.01}  # of a board's lens
 PASSES = 2  # ASSUME: number of adjustments; a third one hardly moves a joint
 MOST_ROWS = 480  # frames of all persons together; more frames add little
+# To measure a body: its legs and trunk are not seen in every frame.
+ROWS_OF_TRACK = 2 * metric_scale.LEAST_FRAMES
 MOST_FRAMES = 200  # of one take in the comparison of initial cameras
 MOST_PLACES = 200  # joints that define the world frame of the covariance
 STILL = 0.15  # ASSUME: a person with a shorter path over the own extent does not move
@@ -206,15 +208,15 @@ def adjust(
     there are too few people, if they stay in one place, or if a camera disagrees with the others on
     held-out joints.
     """
-    everything, cameras = everything.thinned(MOST_ROWS), list(start)
+    cameras, rows = list(start), max(MOST_ROWS, ROWS_OF_TRACK * len(tracks))
     for number in range(PASSES):
-        seen = limbs(cameras, everything)
+        seen = limbs(cameras, everything.thinned(MOST_ROWS))
         if not number:
             views.check(start, seen, limits.score)
         fitted = _refined(cameras, lenses, seen, limits)
         joints = _joints(fitted.cameras, seen, limits)
         shape = world_frame.of_shape(fitted.cameras, fitted.covariance, _places(joints), 0.0)
-        bodies = _bodies(joints, seen, tracks)
+        bodies = _bodies(fitted.cameras, limbs(cameras, everything.thinned(rows)), tracks, limits)
         scale = metric_scale.find(fitted.cameras, bodies, heights_m, known, shape, share)
         cameras = [_scaled(camera, scale.metres) for camera in fitted.cameras]
     joints = _joints(cameras, seen, limits)
@@ -301,8 +303,11 @@ def _places(joints: NDArray) -> NDArray:
     return places[np.linspace(0, len(places) - 1, MOST_PLACES).astype(int)]
 
 
-def _bodies(joints: NDArray, seen: Seen, tracks: Sequence[Track]) -> list[metric_scale.Body]:
+def _bodies(
+    cameras, seen: Seen, tracks: Sequence[Track], limits: Limits
+) -> list[metric_scale.Body]:
     """Return the bodies of tracks."""
+    joints = _joints(cameras, seen, limits)
     each = [(track, seen.track == track) for track in np.unique(seen.track)]
     return [_body(tracks[track], joints[own], seen.time_s[own]) for track, own in each]
 

@@ -4,7 +4,7 @@ People count by blocks of time, points (clicked court points, points at rest) by
 square. Cameras are better only where both say so.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -46,6 +46,10 @@ class Score:
         Blocks in which no joint is shared do not count.
         """
         return float(np.nanmedian(list(self.share.values())))
+
+    def of(self, blocks: Collection[int]) -> "Score":
+        """Return the joints of some blocks."""
+        return Score({block: share for block, share in self.share.items() if block in blocks})
 
     def rms_px(self, kind: str) -> float:
         """Return the root mean square of points of a kind, px per axis; NaN of too few."""

@@ -9,7 +9,7 @@ one take in which knocks can only be where two takes meet.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
+from itertools import combinations, permutations
 from typing import Any
 
 import numpy as np
@@ -33,12 +33,14 @@ LEAST_S = 1.0  # of people seen on either side of a knock
 LEAST_GAIN = 15.0  # of a step, chi-squared of 3, to be tried: errors of cameras make 20 to 200
 LEAST_RAD = np.radians(0.1)  # smaller steps are how a network errs in different postures
 LEAST_CHANGE = 0.05  # of how far held-out joints disagree: what errors of cameras make is 1 to 2 %
+LEAST_OF_SIDE = 0.3  # on one side of a knock: 0.4 degrees make 0.4 to 0.8, cameras' errors 0.1
 USUAL_RAD = np.radians(0.5)  # about each axis: keeps a turn small that is badly seen
 SAME_M, SAME_LENS = 0.002, 0.03  # a knocked camera keeps its place, and its lens: share of sigma
 BLOCK_S = 1.0  # residuals err alike within it
 MOST_TRIED = 4  # candidates, each of another camera
 ROWS_TO_JUDGE = 40  # of each half that fits: enough for a turn, and a quarter of the time
 MOST = 3  # knocks per take
+NOT_BETTER = {"joints": "not better"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +70,20 @@ class _Step:
     gain: float
 
 
+@dataclass(frozen=True, eq=False)
+class _Judged:
+    """What held-out joints say of a step: the first two as of `Knock`."""
+
+    change: float
+    verdicts: dict[str, str]
+    clearest: float  # the change of all, or of the side of the step that changes more
+
+    def order(self) -> tuple[bool, float]:
+        """Return what sorts steps: those taken first, by how clear they are."""
+        taken = held_out.better(self.verdicts)
+        return not taken, self.clearest if taken else self.change
+
+
 # Normal equations of each camera's turn in each row, (C, T, 3, 3) and (C, T, 3).
 Equations = tuple[NDArray, NDArray]
 
@@ -79,9 +95,9 @@ def find(
     limits: Limits,
     at_s: Sequence[float] | None = None,
 ) -> list[Knock]:
-    """Find the knocks of a take, the clearest first, each in keypoints without those before it.
+    """Find the knocks of a take, each in keypoints without those before it.
 
-    They can be at any time, or at the times `at_s`.
+    They can be at any time, or at the times `at_s`, of every camera at each.
 
     Steps are looked for with the cameras as they are and as people refine them: errors of cameras
     change with the place of people. Those that stand out are adjusted with all cameras, and taken
@@ -93,21 +109,21 @@ def find(
         check(cameras, seen, limits.score)
     except InputError:  # told where all takes are checked together
         return found
-    while len(found) < MOST:
-        tried = _candidates(cameras, known, seen, limits, at_s)
+    left, most = seen, len(cameras) * len(at_s) if at_s else MOST
+    while len(found) < most:
+        tried = _candidates(cameras, known, left, limits, at_s)
         if not tried:
             break
-        one_pose = _halves(cameras, known, seen, limits, None)
-        judged = [_judged(cameras, known, seen, limits, step, one_pose) for step in tried]
-        at = min(
-            range(len(tried)), key=lambda one: (not held_out.better(judged[one][1]), judged[one][0])
-        )
-        best = _measured(cameras, known, seen, limits, tried[at], judged[at])
-        found.append(best)
-        if not best.taken:
+        one_pose = _halves(cameras, known, left, limits, ())
+        judged = [_judged(cameras, known, left, limits, step, one_pose) for step in tried]
+        at = min(range(len(tried)), key=lambda one: judged[one].order())
+        ((turn, sigma),) = _measured(cameras, known, left, limits, [tried[at]])
+        place = tried[at].camera, tried[at].time_s
+        found.append(Knock(*place, turn, sigma, judged[at].change, judged[at].verdicts))
+        if not found[-1].taken:
             break
-        seen = undone(cameras, seen, [best])
-    return found
+        left = undone(cameras, left, found[-1:])
+    return _together(cameras, known, seen, limits, found)
 
 
 def in_all(
@@ -209,7 +225,7 @@ def undone(cameras: Sequence[Camera], seen: Seen, knocks: Sequence[Knock]) -> Se
 
 def _candidates(cameras, known, seen: Seen, limits: Limits, at_s) -> list[_Step]:
     """Return the clearest steps, each of another camera."""
-    refined = _adjusted(cameras, known, seen.thinned(2 * ROWS_TO_JUDGE), limits, None).cameras
+    refined = _adjusted(cameras, known, seen.thinned(2 * ROWS_TO_JUDGE), limits, ()).cameras
     steps = [step for some in (cameras, refined) for step in _steps(some, seen, limits.score, at_s)]
     best: dict[int, _Step] = {}
     for step in sorted(steps, key=lambda one: one.gain):
@@ -238,42 +254,103 @@ def _steps(
     return found
 
 
+def _together(cameras, known, seen: Seen, limits: Limits, found: Sequence[Knock]) -> list[Knock]:
+    """Return knocks of which those taken are measured together, each camera's in order of time.
+
+    Each was measured while those found after it were still in the keypoints. Those of one camera at
+    one time are one.
+    """
+    taken = [one for one in found if one.taken]
+    if len(taken) < 2:
+        return list(found)
+    first = {(one.camera, one.time_s): one for one in reversed(taken)}
+    steps = []
+    for camera, time_s in sorted(first):
+        whole = np.eye(3)
+        for one in taken:
+            if one.camera == camera and one.time_s <= time_s:
+                whole = whole @ rotations.rotation_from_rodrigues(one.turn)
+        steps.append(_Step(camera, time_s, rotations.rodrigues_from_rotation(whole), 0.0))
+    turns = _measured(cameras, known, seen, limits, steps)
+    again = [
+        replace(first[step.camera, step.time_s], turn=turn, sigma=sigma)
+        for step, (turn, sigma) in zip(steps, turns, strict=True)
+    ]
+    return again + [one for one in found if not one.taken]
+
+
 def _measured(
-    cameras, known, seen: Seen, limits: Limits, step: _Step, judged: tuple[float, dict[str, str]]
-) -> Knock:
-    """Return a step as the adjustment of all cameras measures it."""
-    found = _adjusted(cameras, known, seen, limits, step)
-    old, new = found.cameras[step.camera], found.cameras[-1]
-    turn = rotations.rodrigues_from_rotation(
-        new.cam_from_world[:, :3] @ old.cam_from_world[:, :3].T
-    )
+    cameras, known, seen: Seen, limits: Limits, steps: Sequence[_Step]
+) -> list[tuple[NDArray, NDArray]]:
+    """Return turns (3,) rad, and their sigma, as the adjustment of all cameras measures steps.
+
+    Each turn is without those before it of its camera. Steps as for `_adjusted`.
+    """
+    found, measured = _adjusted(cameras, known, seen, limits, steps), []
     count = len(found.cameras)
     spread = camera_covariance.of_network([str(at) for at in range(count)], found.covariance)
     both = spread.covariance.reshape(count, len(PARAMETERS), count, len(PARAMETERS))
-    ends = both[[step.camera, -1]][:, :3][:, :, [step.camera, -1]][..., :3]
-    variance = ends[0, :, 0] + ends[1, :, 1] - ends[0, :, 1] - ends[1, :, 0]
-    return Knock(step.camera, step.time_s, turn, np.sqrt(np.diag(variance)), *judged)
+    pose = [camera.cam_from_world[:, :3] for camera in found.cameras]
+    for new, old in enumerate(_poses_before(len(cameras), steps), start=len(cameras)):
+        still = pose[steps[new - len(cameras)].camera]
+        turn = rotations.rodrigues_from_rotation(still @ pose[old].T @ pose[new] @ still.T)
+        ends = both[[old, new]][:, :3][:, :, [old, new]][..., :3]
+        variance = ends[0, :, 0] + ends[1, :, 1] - ends[0, :, 1] - ends[1, :, 0]
+        measured.append((turn, np.sqrt(np.diag(variance))))
+    return measured
+
+
+def _poses_before(n_cameras: int, steps: Sequence[_Step]) -> list[int]:
+    """Return which pose each step's camera has before it: poses are cameras, then steps."""
+    last, found = list(range(n_cameras)), []
+    for number, step in enumerate(steps, start=n_cameras):
+        found.append(last[step.camera])
+        last[step.camera] = number
+    return found
 
 
 def _judged(
     cameras, known, seen: Seen, limits: Limits, step: _Step, one_pose: list[list[Camera]]
-) -> tuple[float, dict[str, str]]:
-    """Return the change of held-out joints by a step, as a share, and the verdict.
+) -> _Judged:
+    """Return what held-out joints say of a step.
 
-    Judged is the step's camera alone, against joints that the others place.
+    Judged is the step's camera alone, against joints that the others place: by all of the time, or
+    by one side of the step, which may be too short to tell in all. The other must not be worse.
     """
-    two_poses = _halves(cameras, known, seen, limits, step)
+    two_poses = _halves(cameras, known, seen, limits, [step])
     before, after = (_score(halves, seen, step) for halves in (one_pose, two_poses))
-    change = after.typical() / before.typical() - 1
-    verdicts = held_out.verdicts(before, after)
-    return change, verdicts if change < -LEAST_CHANGE else {"joints": "not better"}
+    whole, verdicts = after.typical() / before.typical() - 1, held_out.verdicts(before, after)
+    sides = _by_side(before, after, seen, step)
+    clearest = min([whole, *(side for side, _ in sides)])
+    if whole < -LEAST_CHANGE and held_out.better(verdicts):
+        return _Judged(whole, verdicts, clearest)
+    for (side, said), (other, _) in permutations(sides, 2):
+        if side < -LEAST_OF_SIDE and held_out.better(said) and other < LEAST_CHANGE:
+            return _Judged(side, said, clearest)
+    return _Judged(whole, verdicts if whole < -LEAST_CHANGE else NOT_BETTER, clearest)
 
 
-def _halves(cameras, known, seen: Seen, limits: Limits, step: _Step | None) -> list[list[Camera]]:
+def _by_side(
+    before: held_out.Score, after: held_out.Score, seen: Seen, step: _Step
+) -> list[tuple[float, dict[str, str]]]:
+    """Return the change and the verdicts of each side of a step, where it has a block."""
+    block, behind, found = seen.blocks(held_out.BLOCKS), seen.time_s >= step.time_s, []
+    for side in (~behind, behind):
+        own = np.setdiff1d(block[side], block[~side])
+        one, two = (score.of(own) for score in (before, after))
+        if one.share and two.share:
+            change = two.typical() / one.typical() - 1
+            found.append((change, held_out.verdicts(one, two)))
+    return found
+
+
+def _halves(
+    cameras, known, seen: Seen, limits: Limits, steps: Sequence[_Step]
+) -> list[list[Camera]]:
     """Return cameras with one pose, or two with a step, fitted to either half of the blocks."""
     block = seen.blocks(held_out.BLOCKS)
     halves = [seen.of(block % 2 == odd).thinned(ROWS_TO_JUDGE) for odd in (0, 1)]
-    return [_adjusted(cameras, known, half, limits, step).cameras for half in halves]
+    return [_adjusted(cameras, known, half, limits, steps).cameras for half in halves]
 
 
 def _score(halves: list[list[Camera]], seen: Seen, step: _Step) -> held_out.Score:
@@ -294,36 +371,44 @@ def _score(halves: list[list[Camera]], seen: Seen, step: _Step) -> held_out.Scor
     return score
 
 
-def _adjusted(cameras, known, seen: Seen, limits: Limits, step: _Step | None):
-    """Return cameras adjusted with people; with a step, the pose after it is one more camera."""
-    if step is None:
+def _adjusted(cameras, known, seen: Seen, limits: Limits, steps: Sequence[_Step]):
+    """Return cameras adjusted with people; the pose after each step is one more camera.
+
+    Steps of one camera are in order of time, and their turns from the camera's first pose.
+    """
+    if not steps:
         return adjustment.refine(cameras, seen, prior.knowledge(cameras, known), limits)
-    camera = cameras[step.camera]
-    before = [*cameras, replace(camera, name=f"{camera.name}, after")]
-    names = [one.name for one in cameras]
     size = len(PARAMETERS)
-    again = np.r_[: size * len(names), size * step.camera : size * (step.camera + 1)]
-    covariance = known.of(names).covariance[np.ix_(again, again)]
-    own = np.sqrt(np.diag(covariance)[-size:])
-    more = np.r_[[USUAL_RAD] * 3, [SAME_M] * 3, SAME_LENS * own[6:]]
-    covariance[-size:, -size:] += np.diag(more**2)
-    two = CameraCovariance([one.name for one in before], covariance)
-    start = [*cameras, camera_models.turned(before[-1], step.turn)]
-    return adjustment.refine(start, _split(seen, step), prior.knowledge(before, two), limits)
+    covariance = known.of([one.name for one in cameras]).covariance
+    for step, before in zip(steps, _poses_before(len(cameras), steps), strict=True):
+        again = np.r_[: len(covariance), size * before : size * (before + 1)]
+        own = np.sqrt(np.diag(covariance)[size * step.camera : size * (step.camera + 1)])
+        covariance = covariance[np.ix_(again, again)]
+        more = np.r_[[USUAL_RAD] * 3, [SAME_M] * 3, SAME_LENS * own[6:]]
+        covariance[-size:, -size:] += np.diag(more**2)
+    after = [
+        replace(cameras[step.camera], name=f"{cameras[step.camera].name}, after {step.time_s}")
+        for step in steps
+    ]
+    poses = [*cameras, *after]
+    all_known = CameraCovariance([one.name for one in poses], covariance)
+    turned = [camera_models.turned(one, step.turn) for one, step in zip(after, steps, strict=True)]
+    parts, stated = _split(seen, steps), prior.knowledge(poses, all_known)
+    return adjustment.refine([*cameras, *turned], parts, stated, limits)
 
 
-def _split(seen: Seen, step: _Step) -> Seen:
-    """Return what was seen after a step by its camera as seen by one more camera."""
-    after = seen.time_s >= step.time_s
-
-    def parted(values: NDArray) -> NDArray:
-        both = np.concatenate([values, values[step.camera : step.camera + 1]]).copy()
-        both[step.camera, after], both[-1, ~after] = np.nan, np.nan
-        return both
-
-    height_px = np.concatenate([seen.height_px, seen.height_px[step.camera : step.camera + 1]])
-    parts = {"xy": parted(seen.xy), "score": parted(seen.score), "height_px": height_px}
-    return replace(seen, **parts, offset_px=None)
+def _split(seen: Seen, steps: Sequence[_Step]) -> Seen:
+    """Return what was seen after each step by its camera as seen by one more camera."""
+    n_cameras = len(seen.xy)
+    which = np.r_[:n_cameras, [step.camera for step in steps]]
+    gone = np.zeros((len(which), len(seen.time_s)), dtype=bool)
+    for new, old in enumerate(_poses_before(n_cameras, steps), start=n_cameras):
+        after = seen.time_s >= steps[new - n_cameras].time_s
+        gone[old] |= after
+        gone[new] |= ~after
+    xy, score = seen.xy[which], seen.score[which]
+    xy[gone], score[gone] = np.nan, np.nan
+    return replace(seen, xy=xy, score=score, height_px=seen.height_px[which], offset_px=None)
 
 
 def _equations(cameras: Sequence[Camera], seen: Seen, min_score: float) -> Equations:

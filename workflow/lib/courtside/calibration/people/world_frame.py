@@ -40,7 +40,7 @@ def floor(xyz: NDArray, cameras: Sequence[Camera], on_floor: NDArray | None = No
 
     The floor is the plane of the lowest ankles. If people stay in one place, it is perpendicular to
     the mean line from ankles to shoulders. Points `on_floor` (P, 3) replace its height, and its
-    tilt if three or more are not on one line.
+    tilt if they tell it better: `_tilt_of_points`.
     """
     place = {name: xyz[:, at] for at, name in enumerate(skeleton.JOINTS)}
     ankles = np.concatenate([place["left_ankle"], place["right_ankle"]])
@@ -66,13 +66,34 @@ def floor(xyz: NDArray, cameras: Sequence[Camera], on_floor: NDArray | None = No
         - ANKLE * metric_scale.length(xyz) / metric_scale.SEEN.mean
     )
     if on_floor is not None and len(on_floor):
-        about = on_floor - on_floor.mean(axis=0)
-        _, extent, directions = np.linalg.svd(about, full_matrices=False)
-        if len(on_floor) >= 3 and extent[1] > TILT_M:
-            up = directions[2] * np.sign(directions[2] @ up)
+        if _tilt_of_points((ankles @ turn.T)[:, :2], (on_floor @ turn.T)[:, :2]) is not None:
+            normal = np.linalg.svd(on_floor - on_floor.mean(axis=0), full_matrices=False)[2][2]
+            up = normal * np.sign(normal @ up)
         sole = float((on_floor.mean(axis=0) - middle) @ up)
     turn = vertical.axes(up, centres[1] - centres[0])
     return Sim3(1.0, turn, -turn @ middle - [0, 0, sole])
+
+
+def _tilt_of_points(feet: NDArray, on_floor: NDArray) -> NDArray | None:
+    """Return the covariance of the floor's slopes by points (P, 2); None where feet tell more.
+
+    Compared is what both say of the floor's height under the feet (N, 2), as seen from the points,
+    which define the height. Three points or more that are not on one line tell slopes.
+    """
+    middle = on_floor.mean(axis=0)
+    about = on_floor - middle
+    if len(on_floor) < 3 or np.linalg.svd(about, compute_uv=False)[1] <= TILT_M:
+        return None
+    by_points = POINT_M**2 * np.linalg.inv(about.T @ about)
+    share = _share_of_bodies(feet)
+    by_feet = UPRIGHT**2 * (share @ share.T) + ANKLE_M**2 * share / TILT_M**2
+    places = (feet - middle).T @ (feet - middle)
+    return by_points if np.sum(by_points * places) < np.sum(by_feet * places) else None
+
+
+def _share_of_bodies(feet: NDArray) -> NDArray:
+    """Return how much of an error of the vertical by bodies is in slopes by feet (N, 2), (2, 2)."""
+    return TILT_M**2 * np.linalg.inv(np.cov(feet.T) + TILT_M**2 * np.eye(2))
 
 
 def _lowest_plane(xyz: NDArray) -> tuple[NDArray, float]:
@@ -113,26 +134,27 @@ def frame_error(joints: NDArray, apart: NDArray | None, on_floor: NDArray) -> ND
 
     `joints` (T, J, 3) and `on_floor` (P, 3) are m, in the world frame; `apart` is that of
     `halves_apart`. What bodies tell of the vertical counts as in `floor`: by the extent of the
-    feet.
+    feet. The origin is under the people: from points, its height is as uncertain as the tilt, too.
     """
     at = [skeleton.JOINTS.index(f"{side}_ankle") for side in ("left", "right")]
     feet = joints[:, at].reshape(-1, 3)
     feet = feet[np.isfinite(feet).all(axis=1), :2]
-    by_bodies = TILT_M**2 * np.linalg.inv(np.cov(feet.T) + TILT_M**2 * np.eye(2))
-    slopes = UPRIGHT**2 * (by_bodies @ by_bodies.T)
-    height = ANKLE_M**2
+    by_bodies = _share_of_bodies(feet)
+    slopes, height = UPRIGHT**2 * (by_bodies @ by_bodies.T), ANKLE_M**2
+    middle = np.zeros(2)  # where the floor's height is known
     if apart is None:
         slopes = slopes + UPRIGHT**2 * np.eye(2)
     else:
         slopes = slopes + OF_TILT * np.sum(apart[:2] ** 2) / 8 * np.eye(2)
         height = height + OF_HEIGHT * apart[2] ** 2 / 4
     if len(on_floor):
-        height = POINT_M**2 / len(on_floor)
-        about = on_floor[:, :2] - on_floor[:, :2].mean(axis=0)
-        if len(on_floor) >= 3 and np.linalg.svd(about, compute_uv=False)[1] > TILT_M:
-            slopes = POINT_M**2 * np.linalg.inv(about.T @ about)
-    found = np.diag([0.0, 0.0, height])
-    found[:2, :2] = vertical.TURNED @ slopes @ vertical.TURNED.T
+        height, middle = POINT_M**2 / len(on_floor), on_floor[:, :2].mean(axis=0)
+        by_points = _tilt_of_points(feet, on_floor[:, :2])
+        slopes = slopes if by_points is None else by_points
+    # A point at x and y rises by turn_x y - turn_y x + height.
+    of_slopes = np.vstack([vertical.TURNED, middle])
+    found = of_slopes @ slopes @ of_slopes.T
+    found[2, 2] += height
     return found
 
 
