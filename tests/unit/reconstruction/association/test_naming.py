@@ -144,6 +144,42 @@ def test_gaps_and_doubts_are_said():
     assert sure.confidence.tolist() == [1.0]
 
 
+def met_twice(doubts):
+    """Return two people who meet at 2 s, and closer at 4 s, with these doubts."""
+    apart = np.interp(named_takes.TIMES, [0, 2, 3, 4, 6], [3, 0.6, 3, 0.5, 3])
+    paths = np.stack([np.stack([k * apart, 0 * apart], axis=1) for k in (0, 1)])
+    take = named_takes.take(paths=paths)
+    take.found = replace(take.found, doubts=np.array(doubts))
+    return take
+
+
+EXCHANGED = [sighting("a", 0), sighting("b", 1), sighting("b", 0, 5.0), sighting("a", 1, 5.0)]
+
+
+def test_an_exchange_at_one_of_two_meetings_is_told_with_its_probability():
+    """The truth is the first meeting or the second one, as likely; the closer one is taken."""
+    take = met_twice([[k, t - 0.2, t + 0.2, 1 - k, 0.6] for k in (0, 1) for t in (2, 4)])
+    named = name(take, EXCHANGED, ("a", "b"))
+    first, second = named.index["c0"]
+    assert (first[:41] == 0).all() and (first[41:] == 1).all() and (second == 1 - first).all()
+    assert named.confidence == pytest.approx([0.5, 0.5])
+    for line, other in zip(naming.lines(named), "ba", strict=True):
+        assert f"may be {other} from 1.8 to 4.2 s (0.50 that not): look at the page" in line
+
+
+def test_an_exchange_at_the_only_meeting_is_settled():
+    """Somebody who also was not placed meanwhile makes it no second occasion."""
+    take = met_twice([[0, 3.8, 4.2, 1, 0.6], [0, 3.9, 4.6, -1, 0.95], [1, 3.8, 4.2, 0, 0.6]])
+    named = name(take, EXCHANGED, ("a", "b"))
+    assert not len(named.doubts) and named.confidence.tolist() == [1, 1]
+
+
+def test_two_sightings_that_agree_settle_both_meetings():
+    take = met_twice([[k, t - 0.2, t + 0.2, 1 - k, 0.6] for k in (0, 1) for t in (2, 4)])
+    sure = [sighting("a", 0), sighting("b", 1), sighting("a", 0, 5.0), sighting("b", 1, 5.0)]
+    assert name(take, sure, ("a", "b")).confidence.tolist() == [1, 1]
+
+
 def test_a_joined_subject_gets_the_rows_of_both_parts():
     gone = [(0, slice(20, None)), (2, slice(0, 25))]
     named = name(named_takes.take(3, gone=gone), [sighting("p1", 0), sighting("p1", 2, 5.0)])

@@ -1,5 +1,6 @@
 """Assign the subjects to the persons found, from the user's sightings and never by a guess."""
 
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -83,10 +84,10 @@ def _line(named: People, at: int) -> str:
     parts = [f"placed from two views or more in {named.placed[at]:.0%} of the take"]
     parts += [f"one person throughout with probability {named.confidence[at]:.2f}"]
     parts += [f"not placed from {', '.join(gaps)}"] if gaps else []
-    parts += [
-        f"may be somebody else after {stop:.1f} s ({kept:.2f} that not): look at the page"
-        for _, _, stop, _, kept in exchanges
-    ]
+    for _, start, stop, other, kept in exchanges:
+        span = f"{named.person_id[int(other)]} from {start:.1f} to"
+        who = span if other >= 0 else "somebody else after"
+        parts += [f"may be {who} {stop:.1f} s ({kept:.2f} that not): look at the page"]
     return f"{named.person_id[at]}: {'; '.join(parts)}"
 
 
@@ -185,16 +186,56 @@ def _rows(found: People, one: Footage, owner: NDArray, used: NDArray) -> NDArray
 
 
 def _doubts(found: People, owner: NDArray, used: NDArray, marks: Sequence[Mark]) -> NDArray:
-    """Return the doubts about subjects; two sightings agree on what lies between them."""
-    kept = []
+    """Return the doubts about subjects; two sightings that agree settle what lies between them."""
+    kept, contradicted = [], defaultdict(list)
     for row in found.doubts:
         person, start_s, stop_s = int(row[0]), row[1], row[2]
+        own = sorted((m for m in marks if m.person == person), key=lambda m: m.time_s)
+        before = [m for m in own if m.time_s <= start_s][-1:]
+        after = [m for m in own if m.time_s >= stop_s][:1]
+        if before and after:
+            contradicted[before[0], after[0]].append(row)
+            continue
         at = np.abs(found.time_s - stop_s).argmin()
         subject = int(owner[person, at])
-        if subject < 0 or used[subject, at] != person:
-            continue
-        sighted_s = [m.time_s for m in marks if m.person == person]
-        if any(t <= start_s for t in sighted_s) and any(t >= stop_s for t in sighted_s):
-            continue
-        kept.append([subject, start_s, stop_s, -1.0, row[4]])
+        if subject >= 0 and used[subject, at] == person:
+            kept.append([subject, start_s, stop_s, -1.0, row[4]])
+    for (first, second), rows in contradicted.items():
+        if first.subject != second.subject and not (first.bounded or second.bounded):
+            kept += _exchanged(found.time_s, owner, used, (first, second), np.array(rows))
     return np.array(kept, float).reshape(-1, 5)
+
+
+def _exchanged(
+    time_s: NDArray, owner: NDArray, used: NDArray, between: tuple[Mark, Mark], rows: NDArray
+) -> list[list[float]]:
+    """Return the doubts (subject, start, stop, other, probability) about when an exchange was.
+
+    Two sightings say that one person is two subjects; it became the other in one of the doubts
+    `rows` between them. The times from the first one to that where the person changes the subject,
+    and from there to the last one, may be the other subject's.
+    """
+    before, after = between
+    inside = (time_s >= before.time_s) & (time_s <= after.time_s)
+    own_s = time_s[inside & (owner[before.person] == before.subject)]
+    start_s, stop_s, odds = _apart(rows)
+    at = int(np.abs((start_s + stop_s) / 2 - own_s.max(initial=before.time_s)).argmin())
+    share, found = odds / odds.sum(), []
+    for one, other, part, chance in (
+        (before, after, slice(at + 1), share[:at].sum()),
+        (after, before, slice(at, None), share[at + 1 :].sum()),
+    ):
+        span_s = start_s[part][0], stop_s[part][-1]
+        there = (time_s >= span_s[0]) & (time_s <= span_s[1])
+        if chance and (used[one.subject, there] == one.person).any():
+            found.append([one.subject, *span_s, other.subject, 1 - chance])
+    return found
+
+
+def _apart(rows: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+    """Return start, stop and odds of exchanges by doubts (D, 5); of those that overlap, of all."""
+    rows = rows[np.argsort(rows[:, 1])]
+    later = rows[1:, 1] > np.maximum.accumulate(rows[:-1, 2])
+    first = np.flatnonzero(np.concatenate([[True], later]))
+    odds = np.add.reduceat((1 - rows[:, 4]) / rows[:, 4], first)
+    return rows[first, 1], np.maximum.reduceat(rows[:, 2], first), odds
