@@ -107,7 +107,39 @@ def test_stated_bounds_split_where_nothing_else_does():
     marked = [mark(0, 0, 1.0, to_s=2.0), mark(1, 0, 5.0, from_s=4.0)]
     owner, used = marks.timelines(named_takes.take().found, marked, 2)
     assert changes(owner[0]) == ([0, -1, 1], [pytest.approx(2.0), pytest.approx(3.9)])
-    assert (used == 0).all()
+    assert changes(used[0]) == ([0, -1], [pytest.approx(2.0)])
+    assert changes(used[1]) == ([-1, 0], [pytest.approx(3.9)])
+
+
+def test_bounds_exchange_two_people_for_a_while_only():
+    marked = [
+        mark(0, 0, 1.0),
+        mark(1, 1, 1.0),
+        mark(1, 0, 3.0, 2.0, 4.0),
+        mark(0, 1, 3.0, 2.0, 4.0),
+    ]
+    for later in ([], [mark(0, 0, 5.0), mark(1, 1, 5.0)]):
+        owner, used = marks.timelines(named_takes.take().found, marked + later, 2)
+        for rows in (owner, used):
+            for row, values in zip(rows, ([0, 1, 0], [1, 0, 1]), strict=True):
+                assert changes(row) == (values, [pytest.approx(1.9), pytest.approx(4.0)])
+
+
+def test_one_subject_ends_and_the_next_begins_at_a_bound():
+    found = named_takes.take().found
+    for first, second in (
+        ({"to_s": 3.0}, {}),
+        ({}, {"from_s": 3.05}),
+        ({"to_s": 3.0}, {"from_s": 3.0}),
+    ):
+        owner, _ = marks.timelines(found, [mark(0, 0, 1.0, **first), mark(1, 0, 5.0, **second)], 2)
+        assert changes(owner[0]) == ([0, 1], [pytest.approx(3.0, abs=0.11)])
+
+
+def test_somebody_between_two_others_needs_bounds_alone():
+    marked = [mark(0, 0, 1.0), mark(1, 0, 3.0, 2.0, 4.0), mark(2, 0, 5.0)]
+    owner, _ = marks.timelines(named_takes.take().found, marked, 3)
+    assert changes(owner[0]) == ([0, 1, 2], [pytest.approx(1.9), pytest.approx(4.0)])
 
 
 def test_a_gap_may_have_exchanged_somebody():
