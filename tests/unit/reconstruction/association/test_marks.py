@@ -1,5 +1,7 @@
 """Sightings by pixel and time, and who is who over time by them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -94,6 +96,20 @@ def test_two_who_were_exchanged_are_put_right_where_they_met():
     for rows in (owner, used):
         for row, values in zip(rows, ([0, 1], [1, 0]), strict=True):
             assert changes(row) == (values, [pytest.approx(3.0)])
+
+
+def test_two_who_were_exchanged_met_each_other_not_a_third_who_came_nearer():
+    found = crossing(0.6)
+    third = found.path[:1] + [0.0, 0.2, 0.0] + 3 * np.abs(named_takes.TIMES - 4)[None, :, None]
+    found = replace(
+        found, path=np.concatenate([found.path, third]), person_id=np.array(["a", "b", "c"])
+    )
+    marked = [mark(0, 0, 1.0), mark(1, 1, 1.0), mark(1, 0, 5.0), mark(0, 1, 5.0), mark(2, 2, 1.0)]
+    owner, used = marks.timelines(found, marked, 3)
+    for rows in (owner, used):
+        assert [changes(row) for row in rows[:2]] == [
+            (values, [pytest.approx(3.0)]) for values in ([0, 1], [1, 0])
+        ]
 
 
 def test_pieces_of_one_person_are_joined():

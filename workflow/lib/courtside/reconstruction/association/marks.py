@@ -144,14 +144,15 @@ def timelines(found: People, marks: Sequence[Mark], n_subjects: int) -> tuple[ND
 
     Several marks of one subject on different persons join these persons: the subject changes from
     one to the next when the two are nearest. Marks of different subjects on one person split the
-    person where somebody came near or the person has no position. Raises `InputError` if neither
-    happened. Marks with `from_s` or `to_s` hold within these; there, other marks do not.
+    person where somebody came near, best one whom these subjects were marked on, or the person has
+    no position. Raises `InputError` if neither happened. Marks with `from_s` or `to_s` hold within
+    these; there, other marks do not.
     """
     count, n = found.path.shape[:2]
     owner, used = np.full((count, n), -1), np.full((n_subjects, n), -1)
     for person in sorted({mark.person for mark in marks}):
         own = sorted((m for m in marks if m.person == person), key=lambda m: m.time_s)
-        owner[person] = _runs(found.time_s, own, lambda m: m.subject, _split_of(found, person))
+        owner[person] = _runs(found.time_s, own, lambda m: m.subject, _split_of(found, marks))
     for subject in sorted({mark.subject for mark in marks}):
         own = sorted((m for m in marks if m.subject == subject), key=lambda m: m.time_s)
         for before, after in pairwise(own):
@@ -187,13 +188,20 @@ def _bound_s(mark: Mark) -> float:
     return float(next(at for at in (mark.from_s, mark.to_s) if at is not None))
 
 
-def _split_of(found: People, person: int) -> Change:
+def _split_of(found: People, marks: Sequence[Mark]) -> Change:
     """Return when a person who has marks of two subjects may have been exchanged."""
-    return lambda before, after: _exchange_s(found, person, before, after)
+
+    def change(before: Mark, after: Mark) -> float:
+        pair = {before.subject, after.subject}
+        theirs = {m.person for m in marks if m.subject in pair} - {before.person}
+        return _exchange_s(found, before, after, sorted(theirs))
+
+    return change
 
 
-def _exchange_s(found: People, person: int, before: Mark, after: Mark) -> float:
-    """Return when a person may have become another between two marks."""
+def _exchange_s(found: People, before: Mark, after: Mark, theirs: Sequence[int]) -> float:
+    """Return when a person may have become another between two marks, best one of `theirs`."""
+    person = before.person
     between = (found.time_s >= before.time_s) & (found.time_s <= after.time_s)
     at, path = found.time_s[between], found.path[:, between, :2]
     known = at[np.isfinite(path[person, :, 0])]
@@ -211,7 +219,10 @@ def _exchange_s(found: People, person: int, before: Mark, after: Mark) -> float:
             "with nobody near in between; correct one of them, or state from_s and to_s in "
             "people.csv"
         )
-    return float(at[int(np.argmin(apart.min(axis=0)))])
+    near = apart[theirs].min(axis=0, initial=np.inf)
+    if near.min() > MEET_M:
+        near = apart.min(axis=0)
+    return float(at[int(np.argmin(near))])
 
 
 def _one_place(found: People, before: Mark, after: Mark) -> None:
