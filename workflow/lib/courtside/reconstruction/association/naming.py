@@ -11,7 +11,7 @@ from courtside.calibration.court.court import Court
 from courtside.geometry import interpolation
 from courtside.reconstruction.association import marks as marks_of
 from courtside.reconstruction.association.associate import COUNTS, nowhere
-from courtside.reconstruction.association.identity import GAP_S, confidence
+from courtside.reconstruction.association.identity import GAP_S, MEET_M, confidence
 from courtside.reconstruction.association.marks import Mark
 from courtside.records.cameras.footage import Footage
 from courtside.records.keypoints.people import People
@@ -61,34 +61,67 @@ def name(
 
 
 def others(found: People, named: People) -> list[str]:
-    """Return the persons found in a tenth of the take who are no subject."""
-    taken = np.zeros(len(found.person_id), bool)
-    for camera, rows in found.index.items():
-        own = named.index[camera]
-        same = (rows[:, None] == own[None]) & (own[None] >= 0)
-        taken |= same.any(axis=(1, 2))
-    at = np.flatnonzero(~taken & (found.placed >= COUNTS))
-    return [f"{found.person_id[k]} (placed in {found.placed[k]:.0%} of the take)" for k in at]
+    """Return the persons found who are no subject: in a tenth of the take, or for some time."""
+    free = _nameless(found, named)
+    lines = []
+    for at, (name, placed) in enumerate(zip(found.person_id, found.placed, strict=True)):
+        if at in free:
+            lines += [f"{name} (from {_spans(free[at])})"] if free[at] else []
+        elif placed >= COUNTS:
+            lines.append(f"{name} (placed in {placed:.0%} of the take)")
+    return lines
 
 
-def lines(named: People) -> list[str]:
+def _nameless(found: People, named: People) -> dict[int, list[tuple[float, float]]]:
+    """Return by person the times, longer than 0.5 s, in which it is placed but no subject.
+
+    Whoever is no subject at any time is left out.
+    """
+    used = (found.path[:, None] == named.path).all(axis=-1).any(axis=1)
+    free = np.where(np.isfinite(found.path[..., 0]) & ~used, np.nan, 0.0)
+    return {
+        int(at): gaps_s(found.time_s, free[at, :, None]) for at in np.flatnonzero(used.any(axis=1))
+    }
+
+
+def lines(found: People, named: People) -> list[str]:
     """Return a log line for each subject: share of frames, probability, gaps and doubts."""
-    return [_line(named, at) for at in range(len(named.person_id))]
+    return [_line(found, named, at) for at in range(len(named.person_id))]
 
 
-def _line(named: People, at: int) -> str:
+def _line(found: People, named: People, at: int) -> str:
     if not named.placed[at]:
         return f"{named.person_id[at]}: not found"
-    gaps = [f"{a:.1f} to {b:.1f} s" for a, b in gaps_s(named.time_s, named.path[at])]
+    gaps: dict[str, list[tuple[float, float]]] = defaultdict(list)
+    for gap in gaps_s(named.time_s, named.path[at]):
+        gaps[_who_may_be(found, named, at, gap)].append(gap)
     exchanges = [row for row in named.doubts if row[0] == at and row[4] < 0.9]
     parts = [f"placed from two views or more in {named.placed[at]:.0%} of the take"]
     parts += [f"one person throughout with probability {named.confidence[at]:.2f}"]
-    parts += [f"not placed from {', '.join(gaps)}"] if gaps else []
+    parts += [f"not placed from {_spans(gaps.pop(''))}"] if "" in gaps else []
+    parts += [
+        f"not named from {_spans(spans)}: say who {who} is then" for who, spans in gaps.items()
+    ]
     for _, start, stop, other, kept in exchanges:
         span = f"{named.person_id[int(other)]} from {start:.1f} to"
         who = span if other >= 0 else "somebody else after"
         parts += [f"may be {who} {stop:.1f} s ({kept:.2f} that not): look at the page"]
     return f"{named.person_id[at]}: {'; '.join(parts)}"
+
+
+def _who_may_be(found: People, named: People, at: int, gap: tuple[float, float]) -> str:
+    """Return the person who has no name in a subject's gap and was near it before or after."""
+    near = np.linalg.norm(found.path - named.path[at], axis=-1) <= MEET_M
+    ends = [np.abs(found.time_s - end) <= GAP_S for end in gap]
+    for person, spans in _nameless(found, named).items():
+        overlap_s = sum(max(min(b, gap[1]) - max(a, gap[0]), 0) for a, b in spans)
+        if overlap_s > GAP_S and near[person, ends[0] | ends[1]].any():
+            return str(found.person_id[person])
+    return ""
+
+
+def _spans(spans: Sequence[tuple[float, float]]) -> str:
+    return ", ".join(f"{a:.1f} to {b:.1f} s" for a, b in spans)
 
 
 def gaps_s(time_s: NDArray, path: NDArray) -> list[tuple[float, float]]:
