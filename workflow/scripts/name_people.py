@@ -20,7 +20,7 @@ def main(paths, people_npz, *, persons, stated, take, page, file):
         sighted += sightings.read(paths.people_csv, take.split("/")[-1], persons, cameras)
     lines = court.read(paths.court) if paths.court else None
     named = naming.name(found, seen, sighted, persons, wording, lines)
-    for line in naming.lines(named):
+    for line in naming.lines(found, named):
         log.logger.info("%s", line)
     if left := naming.others(found, named):
         log.logger.info("no subject: %s", ", ".join(left))

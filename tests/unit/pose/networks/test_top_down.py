@@ -1,10 +1,12 @@
 """Networks made for tests find blobs: crop, decoding and the way back place them to 0.1 px."""
 
 import json
+from pathlib import Path
 
 import cv2
 import numpy as np
 import pytest
+import yaml
 
 from courtside.pose import detector, open_network
 from courtside.pose.conversion import tflite_onnx
@@ -15,6 +17,7 @@ from courtside.study.errors import InputError
 from fixtures.recordings import onnx_files
 from fixtures.recordings.real_data import REAL, needs_real
 
+CONFIG = Path(__file__).parents[4] / "config"
 JOINTS = ("nose", "left_shoulder", "left_hip")  # blue, green, red
 POINTS = [(0, (171.3, 88.7)), (1, (140.6, 150.2)), (2, (188.45, 190.9))]
 TRUTH = np.array([xy for _, xy in POINTS])
@@ -155,20 +158,39 @@ def test_maps_without_cells_are_one_line(tmp_path):
         open_network.try_out(network)
 
 
-@needs_real
-def test_cpm_places_the_joints_of_a_photo(tmp_path):
+def cpm(tmp_path):
+    """Return the network as `models.yaml` declares it, its joints, a photo and who is on it."""
     tflite_onnx.convert(REAL / "models" / "cpm-mobile-14.tflite", tmp_path / "cpm.onnx")
-    folder = __import__("pathlib").Path(__file__).parents[4] / "config" / "skeletons"
-    joints = skeleton.read(folder / "cpm14.yaml").joints
-    how = {"size": [192, 192], "layout": "nhwc", "channels": "bgr"}
-    network = open_network.landmark_network(
-        tmp_path / "cpm.onnx", joints, decoder="heatmaps", input=how, cells="centre"
-    )
-    image = cv2.imread(str(REAL / "people" / "000000000785.jpg"))
+    joints = skeleton.read(CONFIG / "skeletons" / "cpm14.yaml").joints
+    declared = yaml.safe_load((CONFIG / "models.yaml").read_text())["cpm-mobile-14"]
+    how = {key: declared[key] for key in ("decoder", "input", "cells")}
+    network = open_network.landmark_network(tmp_path / "cpm.onnx", joints, **how)
+    photo = cv2.imread(str(REAL / "people" / "000000000785.jpg"))
     truth = json.loads((REAL / "people" / "coco_785.json").read_text())
     coco = truth if isinstance(truth, dict) else truth[0]
     coco = coco["annotations"][0] if "annotations" in coco else coco
-    keypoints = np.array(coco["keypoints"], float).reshape(17, 3)
+    return network, joints, photo, np.array(coco["keypoints"], float).reshape(17, 3)
+
+
+@needs_real
+def test_cpm_places_joints_of_a_mirrored_photo_at_the_mirrored_places(tmp_path):
+    """Where cells lie otherwise than declared, joints are off to one side in both pictures."""
+    network, joints, photo, keypoints = cpm(tmp_path)
+    region = top_down.around(keypoints[keypoints[:, 2] > 0, :2])
+    width = photo.shape[1]
+    turned = detector.Region(width - 1 - region.x, region.y, region.side)
+    one = network.estimate(photo, region)
+    other = network.estimate(np.ascontiguousarray(photo[:, ::-1]), turned)
+    pairs = skeleton.mirror(joints)
+    sure = (one.score > 0.4) & (other.score[pairs] > 0.4)
+    off_px = (one.xy[:, 0] - (width - 1 - other.xy[pairs, 0])) / 2
+    assert sure.sum() >= 8
+    assert abs(np.median(off_px[sure])) < 0.6 * region.side / 192
+
+
+@needs_real
+def test_cpm_places_the_joints_of_a_photo(tmp_path):
+    network, joints, image, keypoints = cpm(tmp_path)
     visible = keypoints[keypoints[:, 2] > 0, :2]
     pose = network.estimate(image, top_down.around(visible))
     pairs = {

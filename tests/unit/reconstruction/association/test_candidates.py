@@ -1,5 +1,7 @@
 """Places where rows of several views meet, against exact scenes and OpenCV's epipolar lines."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -47,6 +49,29 @@ def test_two_people_are_found_at_their_places_in_all_views():
             # A mean of joints is not quite projected to the mean of their projections.
             assert np.linalg.norm(found.xyz[here[0]] - middle[t]) < 0.02
             assert cost[here[0]] == pytest.approx(-4 * candidates.VIEW_GAIN, abs=0.1)
+
+
+@pytest.mark.parametrize("elevation_deg", [30, 60, 80])
+def test_a_camera_above_agrees_with_a_level_one(elevation_deg):
+    """From above, a person who stands is much shorter in the picture."""
+    level, _ = scene.ring(2, radius_m=8, height_m=1.0)
+    up = np.radians(elevation_deg)
+    centre = [0.0, 8 * np.cos(up), 1 + 8 * np.sin(up)]
+    above = replace(level, name="above", cam_from_world=scene.look_at(centre, (0, 0, 1.0)))
+    found = find([level, above], seen([level, above], bodies([0.0, 0.0])))
+    assert found.instant.tolist() == list(range(len(TIMES)))
+    # The place is worth more than a row that no other view confirms.
+    assert (found.view_cost.sum(axis=1) < -candidates.RAY_GAIN).all()
+
+
+@pytest.mark.parametrize("height_m", [0.3, 1.0, 2.5])
+def test_who_lies_on_the_floor_is_found(height_m):
+    x, y, z = np.moveaxis(bodies([0.0, 0.0]), -1, 0)
+    lying = np.stack([z - 0.8, y, 0.2 + 0.3 * x], axis=-1)
+    cameras = scene.ring(3, radius_m=6, height_m=height_m)
+    found = find(cameras, seen(cameras, lying))
+    every = (found.row == 0).all(axis=1)
+    assert found.instant[every].tolist() == list(range(len(TIMES)))
 
 
 def test_ghosts_cost_more_than_people():

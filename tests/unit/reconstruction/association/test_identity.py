@@ -85,6 +85,41 @@ def test_a_gap_is_a_doubt_with_who_could_be_there():
     assert far[0, 3] == -1
 
 
+def found_again(gap_s, away_m, size=1.0, beside=()):
+    """Return the probability that who is found again at a distance is the same person."""
+    last = 20 + round(gap_s * 10)
+    x = np.where(np.arange(60) < last, 0.0, away_m)
+    paths = np.stack([np.stack([x, 0 * x], axis=1), *beside])
+    after = np.where(np.arange(60) < last, 1.0, size)[:, None] * [0.25, 0.28, 0.4, 0.42]
+    lengths_m = np.stack([after, *(np.full_like(after, 0.35) for _ in beside)])
+    pieces = np.arange(len(paths))[:, None] * 10 + np.where(np.arange(60) < last, 0, 1)
+    people = followed(paths, pieces, [(0, np.arange(21, last))])
+    return identity.doubts(people, TIMES, lengths_m)[0, 4]
+
+
+def test_a_stranger_may_come_after_a_long_gap_or_far_away():
+    assert found_again(0.6, 0.5) > 0.95
+    assert found_again(1.0, 1.0) > 0.9
+    assert found_again(1.5, 6.0) < 0.9 and found_again(3.5, 1.0) < 0.9
+    near, far = ([found_again(gap, away) for gap in (0.6, 1.0, 1.5, 2.0)] for away in (0.5, 3.0))
+    assert near == sorted(near, reverse=True)
+    assert (np.array(far) < near).all()
+
+
+def test_the_own_bones_say_whether_a_stranger_came():
+    """Found again after a gap with bones a quarter shorter, as a child instead of an adult."""
+    assert found_again(1.0, 1.0, 0.75) < 0.5 and found_again(3.5, 3.0, 0.75) < 0.2
+    assert found_again(3.5, 3.0, 0.95) > 0.8
+    assert found_again(1.0, 1.0, np.nan) < found_again(1.0, 1.0)
+
+
+def test_a_stranger_may_come_while_somebody_else_is_there():
+    beside = [np.tile([3.0, 3.0], (60, 1))]
+    assert found_again(3.5, 3.0, beside=beside) < 0.9
+    assert found_again(3.5, 3.0, 0.75, beside) < 0.2
+    assert found_again(0.6, 0.5, beside=beside) > 0.9
+
+
 def test_confidence_is_the_product_over_doubts():
     rows = np.array([[0, 1, 2, 1, 0.9], [0, 3, 4, 1, 0.8], [1, 1, 2, 0, 0.5]])
     assert identity.confidence(rows, 3) == pytest.approx([0.72, 0.5, 1.0])

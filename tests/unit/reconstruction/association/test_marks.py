@@ -1,5 +1,7 @@
 """Sightings by pixel and time, and who is who over time by them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -96,6 +98,20 @@ def test_two_who_were_exchanged_are_put_right_where_they_met():
             assert changes(row) == (values, [pytest.approx(3.0)])
 
 
+def test_two_who_were_exchanged_met_each_other_not_a_third_who_came_nearer():
+    found = crossing(0.6)
+    third = found.path[:1] + [0.0, 0.2, 0.0] + 3 * np.abs(named_takes.TIMES - 4)[None, :, None]
+    found = replace(
+        found, path=np.concatenate([found.path, third]), person_id=np.array(["a", "b", "c"])
+    )
+    marked = [mark(0, 0, 1.0), mark(1, 1, 1.0), mark(1, 0, 5.0), mark(0, 1, 5.0), mark(2, 2, 1.0)]
+    owner, used = marks.timelines(found, marked, 3)
+    for rows in (owner, used):
+        assert [changes(row) for row in rows[:2]] == [
+            (values, [pytest.approx(3.0)]) for values in ([0, 1], [1, 0])
+        ]
+
+
 def test_pieces_of_one_person_are_joined():
     found = named_takes.take(3, gone=[(0, slice(20, None)), (2, slice(0, 25))]).found
     owner, used = marks.timelines(found, [mark(0, 0, 1.0), mark(0, 2, 5.0)], 1)
@@ -107,7 +123,39 @@ def test_stated_bounds_split_where_nothing_else_does():
     marked = [mark(0, 0, 1.0, to_s=2.0), mark(1, 0, 5.0, from_s=4.0)]
     owner, used = marks.timelines(named_takes.take().found, marked, 2)
     assert changes(owner[0]) == ([0, -1, 1], [pytest.approx(2.0), pytest.approx(3.9)])
-    assert (used == 0).all()
+    assert changes(used[0]) == ([0, -1], [pytest.approx(2.0)])
+    assert changes(used[1]) == ([-1, 0], [pytest.approx(3.9)])
+
+
+def test_bounds_exchange_two_people_for_a_while_only():
+    marked = [
+        mark(0, 0, 1.0),
+        mark(1, 1, 1.0),
+        mark(1, 0, 3.0, 2.0, 4.0),
+        mark(0, 1, 3.0, 2.0, 4.0),
+    ]
+    for later in ([], [mark(0, 0, 5.0), mark(1, 1, 5.0)]):
+        owner, used = marks.timelines(named_takes.take().found, marked + later, 2)
+        for rows in (owner, used):
+            for row, values in zip(rows, ([0, 1, 0], [1, 0, 1]), strict=True):
+                assert changes(row) == (values, [pytest.approx(1.9), pytest.approx(4.0)])
+
+
+def test_one_subject_ends_and_the_next_begins_at_a_bound():
+    found = named_takes.take().found
+    for first, second in (
+        ({"to_s": 3.0}, {}),
+        ({}, {"from_s": 3.05}),
+        ({"to_s": 3.0}, {"from_s": 3.0}),
+    ):
+        owner, _ = marks.timelines(found, [mark(0, 0, 1.0, **first), mark(1, 0, 5.0, **second)], 2)
+        assert changes(owner[0]) == ([0, 1], [pytest.approx(3.0, abs=0.11)])
+
+
+def test_somebody_between_two_others_needs_bounds_alone():
+    marked = [mark(0, 0, 1.0), mark(1, 0, 3.0, 2.0, 4.0), mark(2, 0, 5.0)]
+    owner, _ = marks.timelines(named_takes.take().found, marked, 3)
+    assert changes(owner[0]) == ([0, 1, 2], [pytest.approx(1.9), pytest.approx(4.0)])
 
 
 def test_a_gap_may_have_exchanged_somebody():

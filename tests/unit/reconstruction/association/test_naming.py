@@ -116,10 +116,11 @@ def test_several_subjects_need_names(n_people):
 
 
 def test_a_subject_whom_nobody_is_left_for_is_not_found():
-    named = name(named_takes.take(1), [sighting("b", 0)], ("a", "b"))
+    take = named_takes.take(1)
+    named = name(take, [sighting("b", 0)], ("a", "b"))
     assert named.placed.tolist() == [0, 1]
     assert (named.index["c0"][0] == -1).all() and np.isnan(named.path[0]).all()
-    assert naming.lines(named)[0] == "a: not found"
+    assert naming.lines(take.found, named)[0] == "a: not found"
 
 
 def test_people_who_were_never_placed_stop_the_take():
@@ -136,12 +137,63 @@ def test_gaps_and_doubts_are_said():
     named = name(take, [sighting("p1", 1)])
     assert named.doubts.tolist() == [[0, 3.5, 4.0, -1, 0.6]]
     assert named.confidence.tolist() == [0.6]
-    (line,) = naming.lines(named)
+    (line,) = naming.lines(take.found, named)
     assert "one person throughout with probability 0.60; not placed from 1.9 to 3.0 s" in line
     assert "may be somebody else after 4.0 s (0.60 that not)" in line
     # A second sighting, after it, settles the doubt.
     sure = name(take, [sighting("p1", 1), sighting("p1", 1, 5.0)])
     assert sure.confidence.tolist() == [1.0]
+
+
+def met_twice(doubts):
+    """Return two people who meet at 2 s, and closer at 4 s, with these doubts."""
+    apart = np.interp(named_takes.TIMES, [0, 2, 3, 4, 6], [3, 0.6, 3, 0.5, 3])
+    paths = np.stack([np.stack([k * apart, 0 * apart], axis=1) for k in (0, 1)])
+    take = named_takes.take(paths=paths)
+    take.found = replace(take.found, doubts=np.array(doubts))
+    return take
+
+
+EXCHANGED = [sighting("a", 0), sighting("b", 1), sighting("b", 0, 5.0), sighting("a", 1, 5.0)]
+
+
+def test_an_exchange_at_one_of_two_meetings_is_told_with_its_probability():
+    """The truth is the first meeting or the second one, as likely; the closer one is taken."""
+    take = met_twice([[k, t - 0.2, t + 0.2, 1 - k, 0.6] for k in (0, 1) for t in (2, 4)])
+    named = name(take, EXCHANGED, ("a", "b"))
+    first, second = named.index["c0"]
+    assert (first[:41] == 0).all() and (first[41:] == 1).all() and (second == 1 - first).all()
+    assert named.confidence == pytest.approx([0.5, 0.5])
+    for line, other in zip(naming.lines(take.found, named), "ba", strict=True):
+        assert f"may be {other} from 1.8 to 4.2 s (0.50 that not): look at the page" in line
+
+
+def test_an_exchange_at_the_only_meeting_is_settled():
+    """Somebody who also was not placed meanwhile makes it no second occasion."""
+    take = met_twice([[0, 3.8, 4.2, 1, 0.6], [0, 3.9, 4.6, -1, 0.95], [1, 3.8, 4.2, 0, 0.6]])
+    named = name(take, EXCHANGED, ("a", "b"))
+    assert not len(named.doubts) and named.confidence.tolist() == [1, 1]
+
+
+def test_two_sightings_that_agree_settle_both_meetings():
+    take = met_twice([[k, t - 0.2, t + 0.2, 1 - k, 0.6] for k in (0, 1) for t in (2, 4)])
+    sure = [sighting("a", 0), sighting("b", 1), sighting("a", 0, 5.0), sighting("b", 1, 5.0)]
+    assert name(take, sure, ("a", "b")).confidence.tolist() == [1, 1]
+
+
+def test_the_rest_of_a_person_whom_a_subject_leaves_asks_for_a_name():
+    """The tracks of a and b are exchanged at 4 s; nobody says who person-1 is from then on."""
+    take = met_twice(np.zeros((0, 5)))
+    named = name(take, EXCHANGED[:2] + EXCHANGED[3:], ("a", "b"))
+    assert named.placed == pytest.approx([1, 41 / 61])
+    assert naming.others(take.found, named) == ["person-1 (from 4.0 to 6.0 s)"]
+    first, second = naming.lines(take.found, named)
+    assert "not named" not in first
+    assert second.endswith("; not named from 4.0 to 6.0 s: say who person-1 is then")
+    assert "not placed" not in second
+    every = name(take, EXCHANGED, ("a", "b"))
+    assert naming.others(take.found, every) == []
+    assert "not named" not in "".join(naming.lines(take.found, every))
 
 
 def test_a_joined_subject_gets_the_rows_of_both_parts():

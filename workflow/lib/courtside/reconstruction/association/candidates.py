@@ -17,7 +17,10 @@ VIEW_GAIN = 3.0  # log-likelihood gained by one more view that agrees
 SURE = -4.0  # places of three or more views with a lower cost explain their rows
 RAY_GAIN = 1.0  # log-likelihood gained by a row that no other view confirms
 SIZE_SPREAD = 0.2  # standard deviation of body heights from several views, as log ratio
-BODY_M = (0.4, 2.8)  # heights of bodies from crouching to arms up
+# Standard deviations: limit, so that size alone does not part views. A camera above sees bodies
+# shorter than a level one does.
+SIZE_MOST = 2.0
+BODY_M = (0.4, 2.8)  # heights of bodies from crouching to arms up, lengths of those who lie
 # Less certain places are dropped: views from opposite sides hardly measure depth.
 LOOSEST_M = 0.5
 WORST = 4.5  # limit of a view's cost, so that one bad view costs little more than it can gain
@@ -118,6 +121,7 @@ def _judge(
     middle = np.nansum(np.log(size), axis=1) / count
     kept &= (middle >= np.log(BODY_M[0])) & (middle <= np.log(BODY_M[1]))
     bend = np.nan_to_num((np.log(size) - middle[:, None]) / SIZE_SPREAD)
+    bend = np.clip(bend, -SIZE_MOST, SIZE_MOST)
     agree = error**2 + bend**2 + view_distances(pairs, instant, row, 2 * GATE) ** 2
     cost = np.minimum(0.5 * agree, WORST) - VIEW_GAIN + (more(instant, row) if more else 0.0)
     cost = np.where(row >= 0, cost, 0.0)

@@ -15,7 +15,13 @@ GAP_S = 0.5  # without a place
 CARRIED = 0.995  # a camera's tracklet goes through without a cut
 MOTION = 0.95  # only the motion says who is who
 REACH_MS = 4.0  # who could be where the person is found again
-TRUSTED = 6.0  # limit of the log-likelihood ratio of body lengths, which err together
+TRUSTED = 6.0  # limit of a log-likelihood ratio: body lengths err together
+LENGTH_SPREAD = 0.05  # of medians over up to 2 s of bones, as log ratio
+SAME = 0.8  # if nothing else tells: found again after a gap is no stranger
+# Standard deviations per axis, on the floor, of where a person is found again: at first, more by
+# each second, at most that of strangers.
+STAYS_M, GOES_MS, STRANGER_M = 0.5, 1.5, 4.0
+STRANGER_SPREAD = 0.08  # of the bones of people, as log ratio
 
 
 @dataclass(frozen=True)
@@ -49,11 +55,9 @@ def doubts(people: Followed, time_s: NDArray, lengths_m: NDArray) -> NDArray:
     found = []
     for person in range(len(path)):
         for first, last, other in _occasions(path, time_s, person):
-            kept = CARRIED if _carried(pieces[person, first], pieces[person, last]) else MOTION
-            if kept != CARRIED and other >= 0:
-                odds = np.log(kept / (1 - kept))
-                odds += _ratio(lengths_m, time_s, (person, other), (first, last))
-                kept = float(1 / (1 + np.exp(-odds)))
+            kept = CARRIED
+            if not _carried(pieces[person, first], pieces[person, last]):
+                kept = _kept(path, time_s, lengths_m, (person, other), (first, last))
             found.append((person, time_s[first], time_s[last], other, kept))
     return np.array(found, float).reshape(-1, 5)
 
@@ -105,20 +109,57 @@ def _carried(before: NDArray, after: NDArray) -> bool:
     return bool(((before == after) & (before >= 0)).any())
 
 
-def _ratio(lengths_m: NDArray, time_s: NDArray, pair: tuple, between: tuple) -> float:
-    """Return the log-likelihood ratio of body lengths: kept against exchanged.
+def _kept(path: NDArray, time_s: NDArray, lengths_m: NDArray, pair: tuple, between: tuple) -> float:
+    """Return the probability that a person is the same after a meeting or gap as before.
 
-    # ASSUME: medians over up to 2 s of bones have a standard deviation of 5 %, and err together.
+    It is not, if exchanged with the other of the `pair`, or, after a gap, if a stranger came.
     """
+    against = []
+    if pair[1] >= 0:
+        against.append(np.log(MOTION / (1 - MOTION)) + _ratio(lengths_m, time_s, pair, between))
+    if not np.isfinite(path[pair[0], between[0] + 1 : between[1], 0]).any():
+        against.append(_familiar(path[pair[0]], time_s, lengths_m[pair[0]], between))
+    return float(1 / (1 + np.exp(-np.array(against)).sum()))
+
+
+def _familiar(path: NDArray, time_s: NDArray, lengths_m: NDArray, between: tuple) -> float:
+    """Return the log odds that a person found again after a gap is no stranger."""
+    first, last = between
+    away_m = float(np.linalg.norm(path[last, :2] - path[first, :2]))
+    stays_m = min(STAYS_M + GOES_MS * (time_s[last] - time_s[first]), STRANGER_M)
+    odds = np.log(SAME / (1 - SAME)) + _likelier(away_m, stays_m, STRANGER_M, 2)
+    before, after = _around(lengths_m, time_s, between)
+    off = np.log(after) - np.log(before)
+    off = off[np.isfinite(off)]
+    if len(off):
+        same = np.sqrt(2) * LENGTH_SPREAD
+        other = np.sqrt(2) * np.hypot(LENGTH_SPREAD, STRANGER_SPREAD)
+        odds += _likelier(off.mean(), same, other)
+    return float(odds)
+
+
+def _likelier(off: float, same: float, other: float, axes: int = 1) -> float:
+    """Return the log-likelihood ratio of a deviation by two normal standard deviations per axis."""
+    ratio = axes * np.log(other / same) - 0.5 * off**2 * (same**-2 - other**-2)
+    return float(np.clip(ratio, -TRUSTED, TRUSTED))
+
+
+def _around(lengths_m: NDArray, time_s: NDArray, between: tuple) -> tuple[NDArray, NDArray]:
+    """Return a person's median lengths (B,) within 2 s before and after."""
     before = (time_s <= time_s[between[0]]) & (time_s > time_s[between[0]] - 2.0)
     after = (time_s >= time_s[between[1]]) & (time_s < time_s[between[1]] + 2.0)
-    size = [[_median(lengths_m[who][when]) for when in (before, after)] for who in pair]
+    return _median(lengths_m[before]), _median(lengths_m[after])
+
+
+def _ratio(lengths_m: NDArray, time_s: NDArray, pair: tuple, between: tuple) -> float:
+    """Return the log-likelihood ratio, kept against exchanged, of lengths, which err together."""
+    size = [_around(lengths_m[who], time_s, between) for who in pair]
     off = [[np.log(a[0]) - np.log(b[1]) for b in size] for a in size]
     kept, exchanged = off[0][0] ** 2 + off[1][1] ** 2, off[0][1] ** 2 + off[1][0] ** 2
     known = np.isfinite(kept) & np.isfinite(exchanged)
     if not known.any():
         return 0.0
-    ratio = (exchanged - kept)[known].mean() / (4 * 0.05**2) * np.sqrt(known.sum())
+    ratio = (exchanged - kept)[known].mean() / (4 * LENGTH_SPREAD**2) * np.sqrt(known.sum())
     return float(np.clip(ratio, -TRUSTED, TRUSTED))
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from courtside.records.keypoints.people import People
 from courtside.records.keypoints.sightings import Sighting
 from courtside.study.errors import InputError
 
+Value = Callable[["Mark"], int]  # the subject or the person of a mark
 Change = Callable[["Mark", "Mark"], float]  # when what one mark says gives way to the next
 
 # ASSUME: how exactly somebody points at a person in a paused video.
@@ -142,70 +144,64 @@ def timelines(found: People, marks: Sequence[Mark], n_subjects: int) -> tuple[ND
 
     Several marks of one subject on different persons join these persons: the subject changes from
     one to the next when the two are nearest. Marks of different subjects on one person split the
-    person: at `from_s` and `to_s` if stated, otherwise where somebody came near or the person has
-    no position. Raises `InputError` if neither happened.
+    person where somebody came near, best one whom these subjects were marked on, or the person has
+    no position. Raises `InputError` if neither happened. Marks with `from_s` or `to_s` hold within
+    these; there, other marks do not.
     """
     count, n = found.path.shape[:2]
     owner, used = np.full((count, n), -1), np.full((n_subjects, n), -1)
-    time_s = found.time_s
     for person in sorted({mark.person for mark in marks}):
         own = sorted((m for m in marks if m.person == person), key=lambda m: m.time_s)
-        owner[person] = _runs(time_s, own, [m.subject for m in own], _split_of(found, person))
-        for mark in own:
-            if mark.bounded:
-                owner[person, _span(time_s, mark)] = mark.subject
-        _leave(owner[person], time_s, own)
-    for subject in range(n_subjects):
+        owner[person] = _runs(found.time_s, own, lambda m: m.subject, _split_of(found, marks))
+    for subject in sorted({mark.subject for mark in marks}):
         own = sorted((m for m in marks if m.subject == subject), key=lambda m: m.time_s)
-        if own:
-            used[subject] = _runs(time_s, own, [m.person for m in own], _join_of(found))
-        for mark in own:
-            if mark.bounded:
-                used[subject, _span(time_s, mark)] = mark.person
+        for before, after in pairwise(own):
+            _one_place(found, before, after)
+        used[subject] = _runs(found.time_s, own, lambda m: m.person, _join_of(found))
     return owner, used
 
 
-def _leave(owner: NDArray, time_s: NDArray, own: Sequence[Mark]) -> None:
-    """Remove times outside the bounds of a person if every mark of the person has bounds."""
-    if own and all(mark.bounded for mark in own):
-        owner[~np.logical_or.reduce([_span(time_s, mark) for mark in own])] = -1
+def _runs(time_s: NDArray, own: Sequence[Mark], value: Value, change: Change) -> NDArray:
+    """Return the value of the mark that holds at each time (N,); -1 where none does.
 
-
-def _span(time_s: NDArray, mark: Mark) -> NDArray:
-    start_s = -np.inf if mark.from_s is None else mark.from_s
-    return (time_s >= start_s) & (time_s <= (np.inf if mark.to_s is None else mark.to_s))
-
-
-def _runs(time_s: NDArray, own: Sequence[Mark], values: Sequence[int], change: Change) -> NDArray:
-    """Return the value of the last mark at each time (N,); `change` says when one follows another.
-
-    Before the first mark its value holds, too.
+    Marks without bounds hold from one to the next, and before the first; `change` says when one
+    gives way to the next, unless a mark with bounds lies between them. That holds within these.
     """
-    found = np.full(len(time_s), values[0])
-    for before, after, value in zip(own[:-1], own[1:], values[1:], strict=True):
-        found[time_s > change(before, after)] = value
+    always = [mark for mark in own if not mark.bounded]
+    within = [mark for mark in own if mark.bounded]
+    found = np.full(len(time_s), value(always[0]) if always else -1)
+    for before, after in pairwise(always):
+        if value(before) == value(after):
+            continue
+        stated = [m for m in within if before.time_s < m.time_s < after.time_s]
+        change_s = _bound_s(stated[0]) if stated else change(before, after)
+        found[time_s > change_s] = value(after)
+    for mark in within:
+        start_s = -np.inf if mark.from_s is None else mark.from_s
+        stop_s = np.inf if mark.to_s is None else mark.to_s
+        found[(time_s >= start_s) & (time_s <= stop_s)] = value(mark)
     return found
 
 
-def _split_of(found: People, person: int) -> Change:
+def _bound_s(mark: Mark) -> float:
+    """Return a bound of a mark that has one."""
+    return float(next(at for at in (mark.from_s, mark.to_s) if at is not None))
+
+
+def _split_of(found: People, marks: Sequence[Mark]) -> Change:
     """Return when a person who has marks of two subjects may have been exchanged."""
 
     def change(before: Mark, after: Mark) -> float:
-        if before.subject == after.subject:
-            return after.time_s
-        bound_s = _bound_s(before, after)
-        return _exchange_s(found, person, before, after) if bound_s is None else bound_s
+        pair = {before.subject, after.subject}
+        theirs = {m.person for m in marks if m.subject in pair} - {before.person}
+        return _exchange_s(found, before, after, sorted(theirs))
 
     return change
 
 
-def _bound_s(before: Mark, after: Mark) -> float | None:
-    """Return the stated time between one mark and the next, None if neither states one."""
-    return before.to_s if after.from_s is None else after.from_s
-
-
-def _exchange_s(found: People, person: int, before: Mark, after: Mark) -> float:
-    """Return when a person may have become another between two marks."""
+def _exchange_s(found: People, before: Mark, after: Mark, theirs: Sequence[int]) -> float:
+    """Return when a person may have become another between two marks, best one of `theirs`."""
+    person = before.person
     between = (found.time_s >= before.time_s) & (found.time_s <= after.time_s)
     at, path = found.time_s[between], found.path[:, between, :2]
     known = at[np.isfinite(path[person, :, 0])]
@@ -223,7 +219,10 @@ def _exchange_s(found: People, person: int, before: Mark, after: Mark) -> float:
             "with nobody near in between; correct one of them, or state from_s and to_s in "
             "people.csv"
         )
-    return float(at[int(np.argmin(apart.min(axis=0)))])
+    near = apart[theirs].min(axis=0, initial=np.inf)
+    if near.min() > MEET_M:
+        near = apart.min(axis=0)
+    return float(at[int(np.argmin(near))])
 
 
 def _one_place(found: People, before: Mark, after: Mark) -> None:
@@ -241,12 +240,6 @@ def _join_of(found: People) -> Change:
     """Return the time at which a subject changes from one person to another."""
 
     def change(before: Mark, after: Mark) -> float:
-        if before.person == after.person:
-            return after.time_s
-        _one_place(found, before, after)
-        bound_s = _bound_s(before, after)
-        if bound_s is not None:
-            return bound_s
         between = (found.time_s >= before.time_s) & (found.time_s <= after.time_s)
         at, path = found.time_s[between], found.path[:, between]
         apart = np.linalg.norm(path[before.person] - path[after.person], axis=-1)

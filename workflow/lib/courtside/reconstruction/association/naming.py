@@ -1,5 +1,6 @@
 """Assign the subjects to the persons found, from the user's sightings and never by a guess."""
 
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -10,7 +11,7 @@ from courtside.calibration.court.court import Court
 from courtside.geometry import interpolation
 from courtside.reconstruction.association import marks as marks_of
 from courtside.reconstruction.association.associate import COUNTS, nowhere
-from courtside.reconstruction.association.identity import GAP_S, confidence
+from courtside.reconstruction.association.identity import GAP_S, MEET_M, confidence
 from courtside.reconstruction.association.marks import Mark
 from courtside.records.cameras.footage import Footage
 from courtside.records.keypoints.people import People
@@ -60,34 +61,67 @@ def name(
 
 
 def others(found: People, named: People) -> list[str]:
-    """Return the persons found in a tenth of the take who are no subject."""
-    taken = np.zeros(len(found.person_id), bool)
-    for camera, rows in found.index.items():
-        own = named.index[camera]
-        same = (rows[:, None] == own[None]) & (own[None] >= 0)
-        taken |= same.any(axis=(1, 2))
-    at = np.flatnonzero(~taken & (found.placed >= COUNTS))
-    return [f"{found.person_id[k]} (placed in {found.placed[k]:.0%} of the take)" for k in at]
+    """Return the persons found who are no subject: in a tenth of the take, or for some time."""
+    free = _nameless(found, named)
+    lines = []
+    for at, (name, placed) in enumerate(zip(found.person_id, found.placed, strict=True)):
+        if at in free:
+            lines += [f"{name} (from {_spans(free[at])})"] if free[at] else []
+        elif placed >= COUNTS:
+            lines.append(f"{name} (placed in {placed:.0%} of the take)")
+    return lines
 
 
-def lines(named: People) -> list[str]:
+def _nameless(found: People, named: People) -> dict[int, list[tuple[float, float]]]:
+    """Return by person the times, longer than 0.5 s, in which it is placed but no subject.
+
+    Whoever is no subject at any time is left out.
+    """
+    used = (found.path[:, None] == named.path).all(axis=-1).any(axis=1)
+    free = np.where(np.isfinite(found.path[..., 0]) & ~used, np.nan, 0.0)
+    return {
+        int(at): gaps_s(found.time_s, free[at, :, None]) for at in np.flatnonzero(used.any(axis=1))
+    }
+
+
+def lines(found: People, named: People) -> list[str]:
     """Return a log line for each subject: share of frames, probability, gaps and doubts."""
-    return [_line(named, at) for at in range(len(named.person_id))]
+    return [_line(found, named, at) for at in range(len(named.person_id))]
 
 
-def _line(named: People, at: int) -> str:
+def _line(found: People, named: People, at: int) -> str:
     if not named.placed[at]:
         return f"{named.person_id[at]}: not found"
-    gaps = [f"{a:.1f} to {b:.1f} s" for a, b in gaps_s(named.time_s, named.path[at])]
+    gaps: dict[str, list[tuple[float, float]]] = defaultdict(list)
+    for gap in gaps_s(named.time_s, named.path[at]):
+        gaps[_who_may_be(found, named, at, gap)].append(gap)
     exchanges = [row for row in named.doubts if row[0] == at and row[4] < 0.9]
     parts = [f"placed from two views or more in {named.placed[at]:.0%} of the take"]
     parts += [f"one person throughout with probability {named.confidence[at]:.2f}"]
-    parts += [f"not placed from {', '.join(gaps)}"] if gaps else []
+    parts += [f"not placed from {_spans(gaps.pop(''))}"] if "" in gaps else []
     parts += [
-        f"may be somebody else after {stop:.1f} s ({kept:.2f} that not): look at the page"
-        for _, _, stop, _, kept in exchanges
+        f"not named from {_spans(spans)}: say who {who} is then" for who, spans in gaps.items()
     ]
+    for _, start, stop, other, kept in exchanges:
+        span = f"{named.person_id[int(other)]} from {start:.1f} to"
+        who = span if other >= 0 else "somebody else after"
+        parts += [f"may be {who} {stop:.1f} s ({kept:.2f} that not): look at the page"]
     return f"{named.person_id[at]}: {'; '.join(parts)}"
+
+
+def _who_may_be(found: People, named: People, at: int, gap: tuple[float, float]) -> str:
+    """Return the person who has no name in a subject's gap and was near it before or after."""
+    near = np.linalg.norm(found.path - named.path[at], axis=-1) <= MEET_M
+    ends = [np.abs(found.time_s - end) <= GAP_S for end in gap]
+    for person, spans in _nameless(found, named).items():
+        overlap_s = sum(max(min(b, gap[1]) - max(a, gap[0]), 0) for a, b in spans)
+        if overlap_s > GAP_S and near[person, ends[0] | ends[1]].any():
+            return str(found.person_id[person])
+    return ""
+
+
+def _spans(spans: Sequence[tuple[float, float]]) -> str:
+    return ", ".join(f"{a:.1f} to {b:.1f} s" for a, b in spans)
 
 
 def gaps_s(time_s: NDArray, path: NDArray) -> list[tuple[float, float]]:
@@ -185,16 +219,56 @@ def _rows(found: People, one: Footage, owner: NDArray, used: NDArray) -> NDArray
 
 
 def _doubts(found: People, owner: NDArray, used: NDArray, marks: Sequence[Mark]) -> NDArray:
-    """Return the doubts about subjects; two sightings agree on what lies between them."""
-    kept = []
+    """Return the doubts about subjects; two sightings that agree settle what lies between them."""
+    kept, contradicted = [], defaultdict(list)
     for row in found.doubts:
         person, start_s, stop_s = int(row[0]), row[1], row[2]
+        own = sorted((m for m in marks if m.person == person), key=lambda m: m.time_s)
+        before = [m for m in own if m.time_s <= start_s][-1:]
+        after = [m for m in own if m.time_s >= stop_s][:1]
+        if before and after:
+            contradicted[before[0], after[0]].append(row)
+            continue
         at = np.abs(found.time_s - stop_s).argmin()
         subject = int(owner[person, at])
-        if subject < 0 or used[subject, at] != person:
-            continue
-        sighted_s = [m.time_s for m in marks if m.person == person]
-        if any(t <= start_s for t in sighted_s) and any(t >= stop_s for t in sighted_s):
-            continue
-        kept.append([subject, start_s, stop_s, -1.0, row[4]])
+        if subject >= 0 and used[subject, at] == person:
+            kept.append([subject, start_s, stop_s, -1.0, row[4]])
+    for (first, second), rows in contradicted.items():
+        if first.subject != second.subject and not (first.bounded or second.bounded):
+            kept += _exchanged(found.time_s, owner, used, (first, second), np.array(rows))
     return np.array(kept, float).reshape(-1, 5)
+
+
+def _exchanged(
+    time_s: NDArray, owner: NDArray, used: NDArray, between: tuple[Mark, Mark], rows: NDArray
+) -> list[list[float]]:
+    """Return the doubts (subject, start, stop, other, probability) about when an exchange was.
+
+    Two sightings say that one person is two subjects; it became the other in one of the doubts
+    `rows` between them. The times from the first one to that where the person changes the subject,
+    and from there to the last one, may be the other subject's.
+    """
+    before, after = between
+    inside = (time_s >= before.time_s) & (time_s <= after.time_s)
+    own_s = time_s[inside & (owner[before.person] == before.subject)]
+    start_s, stop_s, odds = _apart(rows)
+    at = int(np.abs((start_s + stop_s) / 2 - own_s.max(initial=before.time_s)).argmin())
+    share, found = odds / odds.sum(), []
+    for one, other, part, chance in (
+        (before, after, slice(at + 1), share[:at].sum()),
+        (after, before, slice(at, None), share[at + 1 :].sum()),
+    ):
+        span_s = start_s[part][0], stop_s[part][-1]
+        there = (time_s >= span_s[0]) & (time_s <= span_s[1])
+        if chance and (used[one.subject, there] == one.person).any():
+            found.append([one.subject, *span_s, other.subject, 1 - chance])
+    return found
+
+
+def _apart(rows: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+    """Return start, stop and odds of exchanges by doubts (D, 5); of those that overlap, of all."""
+    rows = rows[np.argsort(rows[:, 1])]
+    later = rows[1:, 1] > np.maximum.accumulate(rows[:-1, 2])
+    first = np.flatnonzero(np.concatenate([[True], later]))
+    odds = np.add.reduceat((1 - rows[:, 4]) / rows[:, 4], first)
+    return rows[first, 1], np.maximum.reduceat(rows[:, 2], first), odds

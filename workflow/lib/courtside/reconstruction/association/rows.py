@@ -28,7 +28,7 @@ class Rows:
     present: NDArray  # (P, T): whether the row shows a body
     # (P, T, 2): mean of the trunk's joints over at most five frames, px; NaN where absent
     centre: NDArray
-    height_px: NDArray  # (P, T): from the highest to the lowest joint; NaN where absent
+    height_px: NDArray  # (P, T): longer side of the joints' box; NaN where absent
     sigma_px: NDArray  # (P,): expected standard deviation of a joint, per axis
     cut: NDArray  # (P, T): true where the row may show another body than in the frame before
     # (P, T): number of the uncut piece, unique within this camera; -1 where absent
@@ -48,8 +48,8 @@ def describe(xy: NDArray, trunk: Sequence[int], stride: int = 1) -> Rows:
     present = seen.mean(axis=-1) >= MIN_SHARE
     centre = np.where(present[..., None], _centre(xy, seen, trunk), np.nan)
     present &= np.isfinite(centre[..., 0])
-    ys = xy[..., 1]
-    height = np.fmax.reduce(ys, axis=-1) - np.fmin.reduce(ys, axis=-1)
+    # Who lies, dives or does push-ups is longer than high.
+    height = (np.fmax.reduce(xy, axis=2) - np.fmin.reduce(xy, axis=2)).max(axis=-1)
     height = np.where(present & (height > 0), height, np.nan)
     typical = np.array(
         [np.median(h[np.isfinite(h)]) if np.isfinite(h).any() else 0 for h in height]

@@ -49,7 +49,8 @@ class People:
     confidence: NDArray
     # (D, 5) float: where a person could have become another one: row of the person; start and stop,
     # s of the reference clock; row of the other person, -1 for nobody known; probability that it is
-    # still the same person
+    # still the same person. Where sightings say that people were exchanged, but not at which of
+    # several times: start and stop of what may be the other person
     doubts: NDArray
 
     def shares(self) -> dict[str, NDArray]:
