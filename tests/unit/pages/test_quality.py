@@ -111,8 +111,9 @@ def test_the_page_and_the_report_say_the_same_of_the_cameras(rows, tmp_path):
     of_report = report.build(study | {"figures": [], "tables": []}).partition("<main>")[2]
     assert re.search(mark, own[own.index("<h2>") :]).groups() == ("doubtful", "▲")
     assert re.search(mark, of_report[of_report.index("<h3") :]).groups() == ("doubtful", "▲")
-    sentence = "Calibration sfm-n40: the median error of court points left out in turn is 2.0 cm."
-    assert sentence in listed and sentence in of_report
+    sentence = "the median error of clicked points, each aligned to the others, is 2.0 cm"
+    said = f"Calibration sfm-n40: {sentence}; the cameras were fitted to these points"
+    assert said in listed and said in of_report
     assert listed.index("<h3>Also used: known18</h3>") < listed.index("points are missing")
     assert "points are missing" not in of_report
 
