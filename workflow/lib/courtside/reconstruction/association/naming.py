@@ -20,6 +20,8 @@ from courtside.study.errors import LONGEST, InputError
 
 # ASSUME: further beyond the court's lines for most of the take, somebody is no player on it.
 BESIDE_M = 2.0
+Spans = list[tuple[float, float]]  # from and to, s
+Free = dict[int, Spans]  # by person: the times of it that no subject uses
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,7 @@ def others(found: People, named: People) -> list[str]:
     return lines
 
 
-def _nameless(found: People, named: People) -> dict[int, list[tuple[float, float]]]:
+def _nameless(found: People, named: People) -> Free:
     """Return by person the times, longer than 0.5 s, in which it is placed but no subject.
 
     Whoever is no subject at any time is left out.
@@ -86,15 +88,16 @@ def _nameless(found: People, named: People) -> dict[int, list[tuple[float, float
 
 def lines(found: People, named: People) -> list[str]:
     """Return a log line for each subject: share of frames, probability, gaps and doubts."""
-    return [_line(found, named, at) for at in range(len(named.person_id))]
+    free = _nameless(found, named)
+    return [_line(found, named, at, free) for at in range(len(named.person_id))]
 
 
-def _line(found: People, named: People, at: int) -> str:
+def _line(found: People, named: People, at: int, free: Free) -> str:
     if not named.placed[at]:
         return f"{named.person_id[at]}: not found"
-    gaps: dict[str, list[tuple[float, float]]] = defaultdict(list)
+    gaps: dict[str, Spans] = defaultdict(list)
     for gap in gaps_s(named.time_s, named.path[at]):
-        gaps[_who_may_be(found, named, at, gap)].append(gap)
+        gaps[_who_may_be(found, named.path[at], gap, free)].append(gap)
     exchanges = [row for row in named.doubts if row[0] == at and row[4] < 0.9]
     parts = [f"placed from two views or more in {named.placed[at]:.0%} of the take"]
     parts += [f"one person throughout with probability {named.confidence[at]:.2f}"]
@@ -109,22 +112,22 @@ def _line(found: People, named: People, at: int) -> str:
     return f"{named.person_id[at]}: {'; '.join(parts)}"
 
 
-def _who_may_be(found: People, named: People, at: int, gap: tuple[float, float]) -> str:
-    """Return the person who has no name in a subject's gap and was near it before or after."""
-    near = np.linalg.norm(found.path - named.path[at], axis=-1) <= MEET_M
-    ends = [np.abs(found.time_s - end) <= GAP_S for end in gap]
-    for person, spans in _nameless(found, named).items():
+def _who_may_be(found: People, path: NDArray, gap: tuple[float, float], free: Free) -> str:
+    """Return the person who has no name in a gap of a subject's path, near it before or after."""
+    ends = (np.abs(found.time_s[:, None] - gap) <= GAP_S).any(axis=1)
+    near = (np.linalg.norm(found.path[:, ends] - path[ends], axis=-1) <= MEET_M).any(axis=1)
+    for person, spans in free.items():
         overlap_s = sum(max(min(b, gap[1]) - max(a, gap[0]), 0) for a, b in spans)
-        if overlap_s > GAP_S and near[person, ends[0] | ends[1]].any():
+        if overlap_s > GAP_S and near[person]:
             return str(found.person_id[person])
     return ""
 
 
-def _spans(spans: Sequence[tuple[float, float]]) -> str:
+def _spans(spans: Spans) -> str:
     return ", ".join(f"{a:.1f} to {b:.1f} s" for a, b in spans)
 
 
-def gaps_s(time_s: NDArray, path: NDArray) -> list[tuple[float, float]]:
+def gaps_s(time_s: NDArray, path: NDArray) -> Spans:
     """Return the times, longer than 0.5 s, without a place in a path (T, 3)."""
     known = np.isfinite(path[:, 0])
     bounds = np.concatenate([[time_s[0]], time_s[known], [time_s[-1]]])
