@@ -36,8 +36,8 @@ def cameras_of(
         if not 0 < f_px < np.inf or not 0 < aspect < np.inf:
             raise InputError(
                 f"camera {name}: expected an adjustment that converges, found a focal length of "
-                f"{f_px:.0f} px; what its pictures show contradicts itself: check its clicked "
-                "points, or add some, or take more bridging images"
+                f"{f_px:.0f} px; what its pictures show is too little or contradicts itself: add "
+                "clicked points, or pictures of the walk, the board or the wand, and check them"
             )
         K = np.array([[f_px * aspect, 0, cx_px], [0, f_px, cy_px], [0, 0, 1]])
         found.append(Camera(name, size, K, np.array([*dist, 0.0]), network.cam_from_world[v]))
