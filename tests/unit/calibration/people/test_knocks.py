@@ -13,14 +13,7 @@ from fixtures.cameras import corner_cameras, walkers
 
 TRUE = corner_cameras.four_cameras()
 LIMITS = Limits(score=0.05, limit=0.05, fade=0.067)
-STATED = {
-    "rotation_deg": 0.3,
-    "position_m": 0.03,
-    "focal_percent": 0.5,
-    "principal_point_percent": 0.3,
-    "k1": 0.01,
-}
-KNOWN = prior.stated(TRUE, **STATED)
+KNOWN = prior.stated(TRUE, **corner_cameras.STATED)
 WALK = walkers.joints(80)
 SEEN = walkers.seen(TRUE, WALK)
 TURN = np.radians([0.25, -0.3, 0.1])
@@ -129,7 +122,7 @@ def test_every_camera_turned_between_takes_is_found_and_measured_with_the_others
     for at, turn in ((0, turns["c0"]), (3, turns["c3"])):
         second.xy[at] = cameras.turned_back(five[at], second.xy[at], -turn)
     takes = {"a": first, "b": second}
-    _, rows = knocks.between(five, prior.stated(five, **STATED), takes, LIMITS)
+    _, rows = knocks.between(five, prior.stated(five, **corner_cameras.STATED), takes, LIMITS)
     taken = {row["camera"]: row for row in rows if row["taken"]}
     assert sorted(taken) == sorted(turns)
     for camera, row in taken.items():

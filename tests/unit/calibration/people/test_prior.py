@@ -10,24 +10,17 @@ from courtside.geometry.similarity import Sim3
 from fixtures.cameras import corner_cameras
 
 CAMERAS = corner_cameras.four_cameras()
-STATED = {
-    "rotation_deg": 0.3,
-    "position_m": 0.03,
-    "focal_percent": 0.5,
-    "principal_point_percent": 0.3,
-    "k1": 0.01,
-}
 
 
 def test_stated_numbers_are_standard_deviations_with_units():
-    found = prior.stated(CAMERAS, **STATED)
+    found = prior.stated(CAMERAS, **corner_cameras.STATED)
     sigma = np.sqrt(np.diag(found.covariance)).reshape(4, -1)
     expected = [*[np.radians(0.3)] * 3, *[0.03] * 3, 7.0, 0, 5.76, 5.76, 0.01, 0, 0, 0]
     np.testing.assert_allclose(sigma, [expected] * 4)
 
 
 def test_knowledge_is_the_inverse_of_what_is_not_fixed():
-    known = prior.stated(CAMERAS, **STATED)
+    known = prior.stated(CAMERAS, **corner_cameras.STATED)
     mixed = np.random.default_rng(0).normal(size=(len(known.covariance),) * 2) * 0.1
     mixed += np.eye(len(mixed))
     whole = mixed @ known.covariance @ mixed.T
@@ -45,7 +38,7 @@ def test_knowledge_is_the_inverse_of_what_is_not_fixed():
 
 
 def test_a_datum_that_does_not_vary_is_known():
-    known = prior.stated(CAMERAS, **STATED)
+    known = prior.stated(CAMERAS, **corner_cameras.STATED)
     places = np.random.default_rng(0).uniform([-3, -3, 0], [3, 3, 2], (200, 3))
     shape = world_frame.of_shape(CAMERAS, known.of_columns(), places, None)
     given = covariance.of_network(known.cameras, shape)
@@ -58,7 +51,7 @@ def test_a_datum_that_does_not_vary_is_known():
 
 
 def test_cameras_are_taken_by_name():
-    known = prior.stated(CAMERAS, **STATED)
+    known = prior.stated(CAMERAS, **corner_cameras.STATED)
     with pytest.raises(ValueError, match="c9"):
         known.of(["c9"])
     turned = prior.knowledge(CAMERAS[::-1], known)
