@@ -28,12 +28,12 @@ def main(
     motion, (reference, found) = device_motion.read(device_npz), sync.read(sync_json)
     of_device = {devices[name]: clock for name, clock in found.items()}
     clocks = {name: of_device[device] for name, device in devices.items()}
-    happened = detect.of_devices(events.read(events_json), devices, stated)
-    happened = {reference: happened[reference], **happened}
-    spell = common.common(happened, clocks)[motion.source]
+    events_of = detect.of_devices(events.read(events_json), devices, stated)
+    events_of = {reference: events_of[reference], **events_of}
+    spell = common.common(events_of, clocks)[motion.source]
     anchors = bodyframe.anchors(derived_joints.read(derived_yaml), skeleton, motion.joints)
     frame = bodyframe.at_tpose(motion, anchors, spell)
-    claps_s = common.claps_of(motion.source, happened, clocks)
+    claps_s = common.claps_of(motion.source, events_of, clocks)
     body = common.aligned(motion, frame, clocks[motion.source], claps_s)
     if np.isfinite(body.tpose_s).all():
         log.logger.info("%s: T-pose %.2f to %.2f s", motion.source, spell.start_s, spell.stop_s)

@@ -22,14 +22,14 @@ def main(
     latency_s,
 ):
     motions, own = [device_motion.read(path) for path in device_npz], events.read([events_json])
-    happened = detect.of_devices(own, devices, stated)
+    events_of = detect.of_devices(own, devices, stated)
     # The reference must clap: the first source of the first device that does.
     first = devices[motions[0].source]
-    motions.sort(key=lambda m: (devices[m.source] != first, not happened[m.source].claps))
+    motions.sort(key=lambda m: (devices[m.source] != first, not events_of[m.source].claps))
     by_device = sync.stated(stated)
     known = {name: by_device[owner] for name, owner in devices.items() if owner in by_device}
     found = device_sync.synchronise(
-        motions, happened, devices=devices, known=known, latency=latency_s
+        motions, events_of, devices=devices, known=known, latency=latency_s
     )
     clocks = {source: one.clock for source, one in found.items()}
     report(clocks)
@@ -41,7 +41,7 @@ def main(
     own = {motion.source: own[motion.source] for motion in motions}
     tables.write(events_csv, detect.events(own, clocks))
     checks = device_sync.checks(found)
-    checks["n_tposes"] = [len(happened[source].tposes) for source in checks["source"]]
+    checks["n_tposes"] = [len(events_of[source].tposes) for source in checks["source"]]
     tables.write(checks_csv, checks)
 
 

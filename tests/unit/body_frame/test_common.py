@@ -34,12 +34,12 @@ def take(seed=0):
 
 
 def test_exact_devices_agree_in_space_and_time():
-    truth, made, happened = take()
-    chosen = common.common(happened, CLOCKS)
+    truth, made, events_of = take()
+    chosen = common.common(events_of, CLOCKS)
     aligned = []
     for motion in made:
         frame = bodyframe.at_tpose(motion, CARRIED_BY, chosen[motion.source])
-        claps = common.claps_of(motion.source, happened, CLOCKS)
+        claps = common.claps_of(motion.source, events_of, CLOCKS)
         aligned.append(common.aligned(motion, frame, CLOCKS[motion.source], claps))
     rgb, mocopi = aligned
     assert mocopi.unit_m == pytest.approx(0.9 * rgb.unit_m, rel=0.005)
@@ -58,14 +58,14 @@ def test_exact_devices_agree_in_space_and_time():
 
 
 def test_one_t_pose_is_chosen_for_all_although_each_likes_another_best():
-    _, made, happened = take()
-    first, second = (happened[motion.source].tposes for motion in made)
+    _, made, events_of = take()
+    first, second = (events_of[motion.source].tposes for motion in made)
     at_s = {m.source: s for m, s in zip(made, (first, second), strict=True)}
     for best in (0, 1):
         costs = {source: [0.1, 0.1] for source in at_s}
         costs["d415-rgb"][best] = 0.0
         costs["mocopi"][1 - best] = 0.05
-        happened = {
+        events_of = {
             source: Events(
                 [
                     type(s)(**{**vars(s), "cost": c})
@@ -75,38 +75,38 @@ def test_one_t_pose_is_chosen_for_all_although_each_likes_another_best():
             )
             for source, spells in at_s.items()
         }
-        chosen = common.common(happened, CLOCKS)
+        chosen = common.common(events_of, CLOCKS)
         assert chosen["d415-rgb"].start_s == first[best].start_s
         assert chosen["mocopi"].start_s == second[best].start_s
 
 
 def test_no_common_t_pose_is_an_error_with_the_times():
-    _, _, happened = take()
+    _, _, events_of = take()
     wrong = CLOCKS | {"mocopi": Clock(20.0, 0.0)}
     with pytest.raises(InputError, match=r"T-pose that all sources show.*mocopi -") as caught:
-        common.common(happened, wrong)
+        common.common(events_of, wrong)
     assert "\n" not in str(caught.value)
 
 
 def test_a_source_without_a_t_pose_stops_the_take_with_the_times_of_the_others():
-    _, _, happened = take()
-    happened["mocopi"] = Events([], [])
+    _, _, events_of = take()
+    events_of["mocopi"] = Events([], [])
     with pytest.raises(
         InputError, match=r"found T-poses at .*: d415-rgb \d\.\d\d, .*; mocopi none; film all"
     ):
-        common.common(happened, CLOCKS)
+        common.common(events_of, CLOCKS)
 
 
 def test_without_any_t_pose_the_line_asks_for_one():
-    _, _, happened = take()
-    none = {source: Events([], []) for source in happened}
+    _, _, events_of = take()
+    none = {source: Events([], []) for source in events_of}
     with pytest.raises(InputError, match=r"d415-rgb none; mocopi none; begin and end the"):
         common.common(none, CLOCKS)
 
 
 def test_the_counterpart_has_the_frame_of_the_same_t_pose():
-    truth, made, happened = take()
-    spells = happened["d415-rgb"].tposes
+    truth, made, events_of = take()
+    spells = events_of["d415-rgb"].tposes
     for number in (1, 2):
         span = [truth[2][f"tpose_{number}_{end}"] for end in ("start", "stop")]
         frame = common.counterpart(made[0], spells, CARRIED_BY, span)
@@ -120,25 +120,25 @@ def test_the_counterpart_has_the_frame_of_the_same_t_pose():
 
 
 def test_a_t_pose_that_nobody_performed_has_no_counterpart():
-    _, made, happened = take()
+    _, made, events_of = take()
     with pytest.raises(InputError, match=r"d415-rgb: expected a T-pose .* rest poses .*; film one"):
-        common.counterpart(made[0], happened["d415-rgb"].tposes, CARRIED_BY, np.full(2, np.nan))
+        common.counterpart(made[0], events_of["d415-rgb"].tposes, CARRIED_BY, np.full(2, np.nan))
 
 
 def test_frames_that_nobody_performed_are_left_out():
-    _, made, happened = take()
+    _, made, events_of = take()
     motion = made[0]
     motion.performed[:7] = False
-    frame = bodyframe.at_tpose(motion, CARRIED_BY, happened["d415-rgb"].tposes[0])
+    frame = bodyframe.at_tpose(motion, CARRIED_BY, events_of["d415-rgb"].tposes[0])
     body = common.aligned(motion, frame, Clock())
     assert len(body.time_s) == len(motion.time_s) - 7 == len(body.fixed) == len(body.reason)
 
 
 def test_a_source_without_a_clap_of_its_own_takes_that_of_another():
-    truth, _, happened = take()
-    rgb = happened["d415-rgb"]
-    happened["d415-rgb"] = Events(rgb.tposes, rgb.claps[1:])
-    found = common.claps_of("d415-rgb", happened, CLOCKS)
+    truth, _, events_of = take()
+    rgb = events_of["d415-rgb"]
+    events_of["d415-rgb"] = Events(rgb.tposes, rgb.claps[1:])
+    found = common.claps_of("d415-rgb", events_of, CLOCKS)
     np.testing.assert_allclose(found, [truth[2]["clap_1"], truth[2]["clap_2"]], atol=0.006)
 
 
@@ -147,12 +147,12 @@ def test_a_source_without_a_clap_of_its_own_takes_that_of_another():
 def test_a_real_recording_without_t_pose_takes_the_rest_pose_it_brings_along(name):
     joints = skeleton.read(CONFIG / "skeletons" / "mocopi27.yaml")
     motion = mocopi.read(REAL / "mocopi" / f"{name}.bvh", joints)
-    happened = detect.detect([motion])
-    assert (happened["mocopi"].tposes, happened["mocopi"].claps) == ([], [])
+    events_of = detect.detect([motion])
+    assert (events_of["mocopi"].tposes, events_of["mocopi"].claps) == ([], [])
     clocks = {"mocopi": Clock(status="reference")}
-    chosen = common.common(happened, clocks)["mocopi"]
-    assert chosen == happened["mocopi"].rest
-    performed = {"mocopi": replace(happened["mocopi"], rest=None)}
+    chosen = common.common(events_of, clocks)["mocopi"]
+    assert chosen == events_of["mocopi"].rest
+    performed = {"mocopi": replace(events_of["mocopi"], rest=None)}
     with pytest.raises(InputError, match="T-pose"):
         common.common(performed, clocks)
     carried_by = bodyframe.anchors(TABLE, "mocopi27", motion.joints)

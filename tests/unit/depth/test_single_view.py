@@ -69,6 +69,22 @@ def test_a_person_who_changes_with_somebody_beside_is_told():
     assert single_view.doubt_of_one("cam-rgb", view(np.zeros((0, 4, 2, 2)))) is None
 
 
+def test_one_row_that_goes_over_to_somebody_of_another_size_is_told():
+    nobody = [NONE, NONE]
+    said = single_view.doubt_of_one("cam-rgb", view([[NEAR] * 35 + [nobody] * 3 + [FAR] * 15]))
+    assert said.startswith(
+        "cam-rgb: expected one person throughout, found one of 200 px and within"
+    )
+    assert "one of 50 px, at 1.3 s" in said
+    later = view([[NEAR] * 35 + [nobody] * 20 + [FAR] * 15])
+    assert single_view.doubt_of_one("cam-rgb", later) is None
+    squats = [[[100, 300 - height], [100, 300]] for height in np.linspace(200, 80, 15)]
+    alone = view([[NEAR] * 20 + squats + squats[::-1] + [NEAR] * 20])
+    assert single_view.doubt_of_one("cam-rgb", alone) is None
+    wrong_once = view([[NEAR] * 20 + [FAR] * 2 + [NEAR] * 20])
+    assert single_view.doubt_of_one("cam-rgb", wrong_once) is None
+
+
 def test_landmarks_become_a_motion():
     in_body = np.random.default_rng(0).normal(size=(1, 2, 2, 3))
     in_body[0, 1, 1] = np.nan

@@ -124,7 +124,7 @@ def test_the_detector_confirms_a_person_and_no_furniture(pair):
     looking = search.Search(*pair, foreground.Foreground(one, 30), 0.5)
     skier = looking.everywhere(one, [])[0]
     assert looking.look_at(one, skier, [skier]) == (True, [])
-    size = search.size_px(skier)
+    size = skier.size_px
     region = replace(skier.region, y=skier.region.y + 0.1 * size)
     ghost = replace(skier, xy=np.add(skier.xy, (0, 0.2 * size)), region=region)
     assert looking.look_at(one, ghost, [ghost])[0] is True

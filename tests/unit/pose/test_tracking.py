@@ -101,6 +101,58 @@ def test_the_largest_person_is_followed():
     np.testing.assert_allclose(track.xy[0, 0, 0], [player.x, player.y])
 
 
+class Scene(LandmarkNetwork):
+    """Sees persons at places (x, size) px; the picture says which list of them is there."""
+
+    n_joints = 3
+
+    def __init__(self, people):
+        self.people = people
+
+    def detect(self, image):
+        return [Region(x, 120.0, 1.2 * size) for x, size in self.people[image[0, 0, 0]]]
+
+    def estimate(self, image, region):
+        there = self.people[image[0, 0, 0]]
+        x, size = min(there, key=lambda one: abs(one[0] - region.x), default=(0, 1))
+        seen = abs(x - region.x) < 0.3 * size and 0.5 < 1.2 * size / region.side < 2
+        xy = np.array([[x, 120 - size / 2], [x, 120.0], [x, 120 + size / 2]])
+        place = Region(x, 120.0, 1.2 * size)
+        return Pose(xy, np.full(3, 0.9), np.full((3, 3), np.nan), float(seen), place)
+
+
+def followed_sizes(people):
+    """Return the size in px of who is followed, ten pictures a second; `people` by second."""
+    scene, frames = Scene(people), []
+    for at in range(10 * len(people)):
+        image = EMPTY.copy()
+        image[0, 0] = at // 10
+        frames.append((at / 10, image))
+    track = tracking.track_person(frames, scene, scene, min_presence=0.5, redetect=False)
+    return np.ptp(track.xy[0, ..., 1], axis=-1)
+
+
+BYSTANDER, PLAYER = (250, 60), (100, 160)
+
+
+def test_a_larger_person_who_comes_back_is_followed_instead_of_a_bystander():
+    both = [BYSTANDER, PLAYER]
+    sizes = followed_sizes([both, both, [BYSTANDER], both, both])
+    assert (sizes[:20] == 160).all() and (sizes[20:30] == 60).all()
+    assert (sizes[40:] == 160).all()  # at the latest after a second
+
+
+def test_a_larger_person_who_comes_late_is_followed():
+    sizes = followed_sizes([[BYSTANDER], [BYSTANDER, PLAYER], [BYSTANDER, PLAYER]])
+    assert (sizes[:10] == 60).all() and (sizes[20:] == 160).all()
+
+
+def test_who_squats_stays_followed_beside_a_bystander():
+    beside = (250, 140)
+    sizes = followed_sizes([[beside, PLAYER], [beside, (100, 110)], [beside, (100, 90)]])
+    np.testing.assert_allclose(sizes, np.repeat([160, 110, 90], 10))
+
+
 def test_redetection_asks_in_every_frame():
     _, asked = follow([20, 30, 40], redetect=True)
     assert asked == 3

@@ -38,9 +38,9 @@ def two(take=None):
 def found(reference, suit):
     motions = [reference, suit]
     own = device_takes.each_its_own(motions)
-    happened = detect.of_devices(detect.detect(motions), own)
-    claps = [len(happened[motion.source].claps) for motion in motions]
-    solved = devices.synchronise(motions, happened, devices=own, known={}, latency={})
+    events_of = detect.of_devices(detect.detect(motions), own)
+    claps = [len(events_of[motion.source].claps) for motion in motions]
+    solved = devices.synchronise(motions, events_of, devices=own, known={}, latency={})
     return claps, solved[suit.source]
 
 

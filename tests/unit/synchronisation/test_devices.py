@@ -21,11 +21,11 @@ def shown(motions, owners):
     return detect.of_devices(detect.detect(motions), owners)
 
 
-def solve(*motions, devices=None, known=None, latency=None, happened=None):
+def solve(*motions, devices=None, known=None, latency=None, events_of=None):
     own = device_takes.each_its_own(motions)
     return device_sync.synchronise(
         list(motions),
-        happened or shown(motions, own),
+        events_of or shown(motions, own),
         devices=own | (devices or {}),
         known=known or {},
         latency=latency or {},
@@ -143,9 +143,9 @@ def test_a_device_without_a_clap_is_refused_by_name():
 def test_without_claps_of_one_source_clocks_are_unknown_and_it_is_named(still):
     take, rng = device_takes.truth(0), np.random.default_rng(0)
     motions = [device_takes.device(rng, take, **CAMERAS), device_takes.mocopi(rng, take)]
-    happened = shown(motions, device_takes.each_its_own(motions))
-    happened[still] = replace(happened[still], claps=[])
-    clock = solve(*motions, happened=happened)["mocopi"].clock
+    events_of = shown(motions, device_takes.each_its_own(motions))
+    events_of[still] = replace(events_of[still], claps=[])
+    clock = solve(*motions, events_of=events_of)["mocopi"].clock
     assert clock.status == "unknown" and not clock.usable
     assert clock.note == f"no clap of {still}"
 

@@ -16,28 +16,28 @@ from courtside.study.errors import InputError
 SAME_S = 0.3  # ASSUME: spells of two devices that overlap this long are one T-pose
 
 
-def common(happened: Mapping[str, Events], clocks: Mapping[str, Clock]) -> dict[str, TPose]:
+def common(events_of: Mapping[str, Events], clocks: Mapping[str, Clock]) -> dict[str, TPose]:
     """Choose the T-pose that all sources show best: for each source its own spell of it.
 
-    The first source of `happened` is the reference, which `clocks` are against. Where no T-pose is
+    The first source of `events_of` is the reference, which `clocks` are against. Where no T-pose is
     common, the rest poses are used, if all sources bring one along. An `InputError` if no T-pose is
     shown by all.
     """
-    reference = next(iter(happened.values()))
+    reference = next(iter(events_of.values()))
     choices = []
     for spell in reference.tposes:
-        same = {source: _same(spell, own, clocks[source]) for source, own in happened.items()}
+        same = {source: _same(spell, own, clocks[source]) for source, own in events_of.items()}
         shown = {source: own for source, own in same.items() if own}
         if len(shown) == len(same):
             choices.append(shown)
     if choices:
         return min(choices, key=lambda choice: sum(spell.cost for spell in choice.values()))
-    rests = {source: own.rest for source, own in happened.items() if own.rest}
-    if len(rests) == len(happened):
+    rests = {source: own.rest for source, own in events_of.items() if own.rest}
+    if len(rests) == len(events_of):
         return rests
     at_s = {
         source: ", ".join(f"{clocks[source].to_reference(s.start_s):.2f}" for s in own.tposes)
-        for source, own in happened.items()
+        for source, own in events_of.items()
     }
     times = "; ".join(f"{source} {at or 'none'}" for source, at in at_s.items())
     advice = "film all devices together, or leave one out"
@@ -49,25 +49,25 @@ def common(happened: Mapping[str, Events], clocks: Mapping[str, Clock]) -> dict[
     )
 
 
-def _same(spell: TPose, happened: Events, clock: Clock) -> TPose | None:
+def _same(spell: TPose, own: Events, clock: Clock) -> TPose | None:
     """Return a source's spell that overlaps the reference's most, or None."""
 
     def overlap(other: TPose) -> float:
         return _overlap(spell, clock.to_reference([other.start_s, other.stop_s]))
 
-    best = max(happened.tposes, key=overlap, default=None)
+    best = max(own.tposes, key=overlap, default=None)
     return best if best and overlap(best) >= SAME_S else None
 
 
-def claps_of(source: str, happened: Mapping[str, Events], clocks: Mapping[str, Clock]) -> NDArray:
+def claps_of(source: str, events_of: Mapping[str, Events], clocks: Mapping[str, Clock]) -> NDArray:
     """Return the times (C,) of a take's claps on the reference clock.
 
     Those that the source itself shows, and those that only other sources show. `clocks` are against
     the reference.
     """
     found: list[float] = []
-    for name in (source, *(name for name in happened if name != source)):
-        own_s = np.array([float(clap.time_s) for clap in happened[name].claps])
+    for name in (source, *(name for name in events_of if name != source)):
+        own_s = np.array([float(clap.time_s) for clap in events_of[name].claps])
         for clap_s in clocks[name].to_reference(own_s):
             if all(abs(clap_s - other) > SAME_S for other in found):
                 found.append(float(clap_s))

@@ -16,6 +16,8 @@ LEAST_SCORE = 0.5
 # ASSUME: share of the frames, that show the usual person too, in which another one is taken. With a
 # bystander 0.5 m behind a player who squats it was 0.38; where nobody else is there it is 0.
 MOST_OTHERS = 0.02
+# ASSUME: nobody becomes so many times as large or small within so many frames and seconds.
+SUDDEN, SUDDEN_FRAMES, SUDDEN_S = 1.5, 5, 0.5
 FIELDS = ("xy", "score", "reason", "xyz_in_body", "clothing")  # of each tracklet
 
 
@@ -46,10 +48,14 @@ def _spans(view: Keypoints2D) -> NDArray:
 
 
 def doubt_of_one(source: str, view: Keypoints2D) -> str | None:
-    """Return a line if the main person is now one, now another of two who are both seen."""
+    """Return a line if the main person is now one, now another one.
+
+    Another one is taken while the usual one is seen, too, or is of clearly another size than who is
+    followed just before.
+    """
     spans = _spans(view)
     if len(spans) < 2:
-        return None
+        return _doubt_of_size(source, view.time_s, spans.max(axis=0, initial=-1.0))
     seen = spans > 0
     who = np.where(seen.any(axis=0), spans.argmax(axis=0), -1)
     usual = np.bincount(who[who >= 0], minlength=1).argmax()
@@ -60,6 +66,27 @@ def doubt_of_one(source: str, view: Keypoints2D) -> str | None:
         f"{source}: expected one person nearest to the camera throughout, found another one larger "
         f"in {other.sum()} of {seen[usual].sum()} frames, the first at "
         f"{view.time_s[other.argmax()]:.1f} s: keep others out of the picture, or well behind"
+    )
+
+
+def _doubt_of_size(source: str, time_s: NDArray, spans: NDArray) -> str | None:
+    """Return a line if who is followed is suddenly of another size; `spans` (T,) px, -1 unseen."""
+    at = np.flatnonzero(spans > 0)
+    if len(at) < 2 * SUDDEN_FRAMES:
+        return None
+    means = np.median(np.lib.stride_tricks.sliding_window_view(spans[at], SUDDEN_FRAMES), axis=-1)
+    before, after = means[:-SUDDEN_FRAMES], means[SUDDEN_FRAMES:]
+    lasted_s = time_s[at[2 * SUDDEN_FRAMES - 1 :]] - time_s[at[: -2 * SUDDEN_FRAMES + 1]]
+    ratio = np.maximum(before, after) / np.minimum(before, after)
+    sudden = (ratio > SUDDEN) & (lasted_s <= SUDDEN_S)
+    if not sudden.any():
+        return None
+    first = sudden.argmax()  # where the larger part of `after` is of another size
+    at_s = time_s[at[first + SUDDEN_FRAMES + SUDDEN_FRAMES // 2]]
+    return (
+        f"{source}: expected one person throughout, found one of {before[first]:.0f} px and within "
+        f"{lasted_s[first]:.1f} s one of {after[first]:.0f} px, at {at_s:.1f} s: keep others out "
+        "of the picture"
     )
 
 

@@ -65,8 +65,8 @@ def tables(
             events.append(_event(person, kind, "both", before, landing))
         events += [_hop_event(person, hop, feet) for hop in hops]
     columns = list(footwork.STEP_COLUMNS), list(footwork.EVENT_COLUMNS)
-    happened = pd.DataFrame(events, columns=columns[1]).sort_values(["person", "stop_s"])
-    return pd.DataFrame(steps, columns=columns[0]), happened.reset_index(drop=True)
+    table = pd.DataFrame(events, columns=columns[1]).sort_values(["person", "stop_s"])
+    return pd.DataFrame(steps, columns=columns[0]), table.reset_index(drop=True)
 
 
 def _is_swing(stances: Sequence[Stance], at: int) -> bool:

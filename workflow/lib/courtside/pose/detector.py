@@ -46,6 +46,11 @@ class Pose:
     presence: float  # confidence that the region shows a person at all, 0 to 1
     region: Region  # where to look for the same person in the next frame
 
+    @property
+    def size_px(self) -> float:
+        """The longer side of the box around the joints."""
+        return float(np.ptp(self.xy, axis=0).max())
+
 
 class PersonDetector(Protocol):
     """Finds persons in a whole picture."""

@@ -33,33 +33,28 @@ def middle(pose: Pose) -> NDArray:
     return np.median(pose.xy, axis=0)
 
 
-def size_px(pose: Pose) -> float:
-    """Return the longer side of the box around a pose's joints."""
-    return float(np.ptp(pose.xy, axis=0).max())
-
-
 def are_twins(one: Pose, other: Pose) -> bool:
     """Return whether two poses are of one body."""
     apart = np.linalg.norm(one.xy - other.xy, axis=1).mean()
-    return bool(apart < TWINS * max(size_px(one), size_px(other)))
+    return bool(apart < TWINS * max(one.size_px, other.size_px))
 
 
 def are_close(one: Pose, other: Pose, share: float = MEETING) -> bool:
     """Return whether two bodies are close: at MEETING, they may be taken for one another."""
     apart = np.linalg.norm(middle(one) - middle(other))
-    return bool(apart < share * max(size_px(one), size_px(other)))
+    return bool(apart < share * max(one.size_px, other.size_px))
 
 
 def around(pose: Pose) -> tuple[float, float, float, float]:
     """Return the box (x, y, width, height) that a pose explains, px."""
-    margin = BODY_MARGIN * size_px(pose)
+    margin = BODY_MARGIN * pose.size_px
     low, high = pose.xy.min(axis=0) - margin, pose.xy.max(axis=0) + margin
     return (*low, *(high - low))
 
 
 def inside(region: Region, pose: Pose, reach: float = MEETING / 2) -> bool:
     """Return whether a region shows the body of a pose: whether their centres are close."""
-    return _apart_px(region, pose) < reach * size_px(pose)
+    return _apart_px(region, pose) < reach * pose.size_px
 
 
 def confirms(region: Region, pose: Pose, others: Iterable[Pose]) -> bool:
@@ -86,7 +81,7 @@ def _is_part(pose: Pose, whole: Pose) -> bool:
     """Return whether a pose is a smaller one within another: a part taken for a whole body."""
     x, y, width, height = around(whole)
     low, high = pose.xy.min(axis=0) >= (x, y), pose.xy.max(axis=0) <= (x + width, y + height)
-    return bool(low.all() and high.all() and size_px(pose) < PART * size_px(whole))
+    return bool(low.all() and high.all() and pose.size_px < PART * whole.size_px)
 
 
 class Search:

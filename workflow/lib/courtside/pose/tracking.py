@@ -16,6 +16,10 @@ SEARCH_MARGIN = 1.3
 # ASSUME: joints of a tracked body have their middle within this share of the box's longer side
 # around it.
 STRAY = 0.25
+# ASSUME: times for a person who moves, sizes for one who squats beside a bystander.
+LOOK_S = 0.99  # between two looks of the detector for somebody nearer to the camera
+NEARER = 1.3  # somebody nearer is so many times as large as who is followed
+LARGE = 0.9  # quantile of the sizes of who is followed: squatting, a person is still that large
 
 
 @dataclass(frozen=True)
@@ -41,7 +45,7 @@ def track_person(
     """Follow the person who fills most of each picture: a track of one person.
 
     This is for a device that films one person from near. The detector sees the whole picture when
-    there is no track.
+    there is no track, and once a second: somebody clearly larger is followed from then on.
 
     Parameters
     ----------
@@ -53,12 +57,17 @@ def track_person(
     times: list[float] = []
     rows: list[tuple[NDArray, ...]] = []
     region: Region | None = None
+    looked_s, sizes = -np.inf, [0.0]
     for time_s, image in frames:
-        pose: Pose | None = None
-        if region is not None and not redetect:
-            pose = landmarks.estimate(image, region)
-        if pose is None or pose.presence < min_presence:
-            pose = _largest(image, detector, landmarks, min_presence)
+        pose = None if region is None or redetect else landmarks.estimate(image, region)
+        if pose is not None and pose.presence < min_presence:
+            pose = None
+        if pose is None or time_s - looked_s > LOOK_S:
+            largest, looked_s = _largest(image, detector, landmarks, min_presence), time_s
+            nearer = largest.size_px > NEARER * np.quantile(sizes, LARGE)
+            if pose is None or (nearer and largest.presence >= min_presence):
+                pose, sizes = largest, []
+        sizes.append(pose.size_px)
         found = pose if pose.presence >= min_presence else None
         region = None if found is None else found.region
         times.append(time_s)

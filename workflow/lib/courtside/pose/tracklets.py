@@ -15,7 +15,7 @@ from courtside.pose import tracking
 from courtside.pose.clothing import Clothing
 from courtside.pose.detector import LandmarkNetwork, PersonDetector, Pose, Region
 from courtside.pose.foreground import Box, Foreground
-from courtside.pose.search import MEETING, Search, are_close, are_twins, middle, size_px
+from courtside.pose.search import MEETING, Search, are_close, are_twins, middle
 from courtside.pose.tracking import Track
 
 # ASSUME: for people who play or walk; shares are of a body's size in the picture.
@@ -50,7 +50,7 @@ class _Body:
 
     def goes_on(self, pose: Pose) -> bool:
         """Return whether a pose lies on this body's course."""
-        return self.off_px(pose) <= JUMP * size_px(pose)
+        return self.off_px(pose) <= JUMP * pose.size_px
 
     def moved(self, pose: Pose) -> _Body:
         """Return the body in its next pose."""
@@ -301,6 +301,6 @@ def _assigned(old: Sequence[_Body], poses: Sequence[Pose]) -> list[tuple[int, in
     # Imported here: one person needs none of it, and loading it takes as long as 15 frames.
     from scipy.optimize import linear_sum_assignment
 
-    cost = np.array([[body.off_px(pose) / size_px(pose) for pose in poses] for body in old])
+    cost = np.array([[body.off_px(pose) / pose.size_px for pose in poses] for body in old])
     pairs = zip(*linear_sum_assignment(cost), strict=True)
     return [(int(at), int(to)) for at, to in pairs if cost[at, to] <= JUMP]

@@ -54,7 +54,7 @@ class Found:
 
 def synchronise(
     motions: Sequence[DeviceMotion],
-    happened: Mapping[str, Events],
+    events_of: Mapping[str, Events],
     *,
     devices: Mapping[str, str],
     known: Mapping[str, Clock],
@@ -62,7 +62,7 @@ def synchronise(
 ) -> dict[str, Found]:
     """Find the clock of every source against the first one's.
 
-    `happened` holds the events of every source, `devices` its device: sources of one device share
+    `events_of` holds the events of every source, `devices` its device: sources of one device share
     its clock. Clocks `known` against the reference are used as they are. The stated delay of a
     source (`latency`, with its standard deviation, s) is reported, not subtracted: places must be
     compared at the times of the same event. An `InputError` if the claps of a source cannot be
@@ -77,12 +77,12 @@ def synchronise(
         elif devices[motion.source] == devices[reference.source]:
             clock = Clock(note="one device with the reference: one clock")
             found[motion.source] = Found(clock, [])
-        elif still := [m.source for m in (reference, motion) if not happened[m.source].claps]:
+        elif still := [m.source for m in (reference, motion) if not events_of[m.source].claps]:
             note = f"no clap of {' and '.join(still)}"
             clock = Clock(status="unknown", note=note, uncertainty_s=np.inf)
             found[motion.source] = Found(clock, [])
         else:
-            found[motion.source] = _against(reference, motion, happened)
+            found[motion.source] = _against(reference, motion, events_of)
     shared = _shared(found, [m for m in others if m.source not in known], devices)
     for source, (delay_s, sigma_s) in latency.items():
         if source in shared:
@@ -115,17 +115,17 @@ def _shared(found, motions, devices) -> dict[str, Found]:
     return {source: found[taken.get(source, source)] for source in found}
 
 
-def _against(reference, motion, happened) -> Found:
+def _against(reference, motion, events_of) -> Found:
     """Find the clock of one source against another."""
     where = f"{motion.source} against {reference.source}"
-    claps = happened[reference.source].claps, happened[motion.source].claps
+    claps = events_of[reference.source].claps, events_of[motion.source].claps
     signals = Signals(reference, motion)
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "All-NaN|Mean of empty|Degrees of freedom")
         pairs = pair(*claps, _likeness(signals, reference, motion), where)
         if len(pairs) == 1:
             clock_doubts.refuse_other_claps(signals, offset_s(pairs), where)
-        spells = happened[reference.source].tposes, happened[motion.source].tposes
+        spells = events_of[reference.source].tposes, events_of[motion.source].tposes
         chosen = [spell[clap.tpose] for spell, clap in zip(spells, pairs[0], strict=True)]
         axes = motion_signals.common_axes((reference, motion), chosen)
         signals = Signals(reference, motion, axes)

@@ -37,7 +37,7 @@ def draw(
     for row, part in enumerate(drawing.subfigures(len(people), 1, squeeze=False)[:, 0]):
         grid = part.add_gridspec(2, 2, width_ratios=(1.0, 1.6))
         own = steps[steps.person == people[row]]
-        happened = events[events.person == people[row]]
+        own_events = events[events.person == people[row]]
         _draw_places(part.add_subplot(grid[:, 0]), own, court, people[row])
         stances = part.add_subplot(grid[0, 1])
         contact = part.add_subplot(grid[1, 1], sharex=stances)
@@ -45,7 +45,7 @@ def draw(
             _draw_landings(stances, contacts, row, own, window_s)
             _draw_mean_contact(contact, contacts, row, window_s)
         else:
-            _draw_stances(stances, own, happened)
+            _draw_stances(stances, own, own_events)
             _draw_contact(contact, contacts, row)
     return drawing
 

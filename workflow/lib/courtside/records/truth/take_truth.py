@@ -52,7 +52,7 @@ class DeviceTruth:
 
 @dataclass(frozen=True, eq=False)
 class TakeTruth:
-    """What really happened in a take."""
+    """The true movement and events of a take."""
 
     # (T,) float: of each frame of the first camera (without cameras, the first device), whose clock
     # is the reference, and in the same steps before and after, as long as anything records:
@@ -85,12 +85,12 @@ def write(path: StrPath, truth: TakeTruth) -> None:
         raise ValueError(
             f"{path}: expected clocks of the same cameras, events of people, found {found}"
         )
-    happened = [
+    rows = [
         (person, name, time_s)
         for person, events in truth.events.items()
         for name, time_s in events.items()
     ]
-    who, what, when = zip(*happened, strict=True) if happened else ((), (), ())
+    who, what, when = zip(*rows, strict=True) if rows else ((), (), ())
     poses = np.array(list(truth.shaken.values()), dtype=float)
     arrays = {key: getattr(truth, key) for key in ("time_s", "xyz", "racket")}
     arrays |= {
@@ -114,8 +114,8 @@ def read(path: StrPath) -> TakeTruth:
     arrays = npz.read(path, FORM, SPEC)
     cameras, people = arrays["camera"].tolist(), arrays["person_id"].tolist()
     events: dict[str, dict[str, float]] = {person: {} for person in people}
-    happened = (arrays[key].tolist() for key in ("event_person", "event", "event_s"))
-    for person, name, time_s in zip(*happened, strict=True):
+    rows = (arrays[key].tolist() for key in ("event_person", "event", "event_s"))
+    for person, name, time_s in zip(*rows, strict=True):
         events.setdefault(person, {})[name] = time_s
     return TakeTruth(
         **{key: arrays[key] for key in ("time_s", "joints", "person_id", "xyz", "racket")},
