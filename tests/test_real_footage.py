@@ -328,7 +328,7 @@ def skeletons(folder, filmed, limits):
         video = FOLDER / "videos" / f"{name}.mp4" if filmed else []
         paths = SimpleNamespace(**used | {"folder": folders[name], "video": video})
         run_script("import_pose2d", paths, out, camera=name, **given)
-    clocks = {"synchronised": True, "stated": {}}
+    clocks = {"synchronised": True, "stated": {}, "trim_s": given["trim_s"]}
     run_script("synchronise_cameras", None, used["cameras"], used["pose2d"], used["sync"], **clocks)
     found = Inputs(**used | {"people": None})
     run_script("associate_people", found, used["people"], several=False, calibration="file")

@@ -43,6 +43,7 @@ rule synchronise_cameras:
         step=step("synchronise_cameras"),
         synchronised=lambda w: take_of(w).synchronised,
         stated=of_job(lambda job: takes.clocks(job, job.take.cameras)),
+        trim_s=lambda w: take_of(w).trim_s,
     script:
         "../scripts/synchronise_cameras.py"
 

@@ -8,7 +8,7 @@ from courtside.study.execution.script import run
 from courtside.synchronisation import cameras as camera_sync
 
 
-def main(cameras_toml, pose2d_npz, sync_json, *, synchronised, stated, **options):
+def main(cameras_toml, pose2d_npz, sync_json, *, synchronised, stated, trim_s, **options):
     views = [keypoints.read_2d(path) for path in pose2d_npz]
     known = None
     if cameras_toml:
@@ -21,9 +21,8 @@ def main(cameras_toml, pose2d_npz, sync_json, *, synchronised, stated, **options
         if clock.doubt:
             log.tell(f"{camera}: {clock.doubt}", sync_json)
     used = {view.camera: view.time_s[[0, -1]] for view in views}
-    cut = all(start_s > 0 for start_s, _ in used.values())  # whole videos start with zero
     usable = all(clock.usable for clock in clocks.values())
-    if cut and usable and (line := sync.little_shared(used, clocks)):
+    if trim_s and usable and (line := sync.little_shared(used, clocks)):
         log.tell(line, sync_json)
     sync.write(sync_json, views[0].camera, clocks)
 

@@ -128,6 +128,7 @@ def test_what_the_cameras_add_stands_beside_what_the_keypoints_add():
     assert np.isnan(unknown.loc["neck_distance", "sigma_camera"])
     largest = known.loc["neck_speed_max"]
     assert largest.sigma_camera == pytest.approx(0.05 * largest.value, rel=1e-3)
+    assert np.isnan(known.loc["neck_acceleration_max", "sigma_camera"])  # common to both ends
     both = np.hypot(narrow.neck_speed_sd_m_s, 0.05 * narrow.neck_speed_m_s)
     np.testing.assert_allclose(wide.neck_speed_sd_m_s, both, atol=2e-4)
 

@@ -154,6 +154,36 @@ def test_a_person_who_lies_is_read(tmp_path):
     np.testing.assert_allclose(found.xyz, lying, atol=1e-6)
 
 
+@pytest.mark.parametrize(("at_m", "told"), [(0.0, True), (-0.9, False)])
+def test_a_person_who_lies_at_the_origin_is_read_and_asked_about_if_they_could_stand(
+    tmp_path, capsys, at_m, told
+):
+    """With the soles at zero they have the joints of one who stands in a file with Z up."""
+    points = walker.points()
+    lying = points.xyz[..., [2, 0, 1]] + [at_m, 0, 0.3]
+    trc.write(tmp_path / "p1.trc", replace(points, xyz=lying), 0)
+    found = pose2sim.read_takes({"p1": tmp_path / "p1.trc"}, walker.SKELETON, model="m")
+    np.testing.assert_allclose(found.xyz, lying, atol=1e-6)
+    line = "found the trunk along Z; export it with Y up, unless the person lies"
+    assert (line in capsys.readouterr().err) == told
+
+
+@pytest.mark.parametrize("turn", [1, -1])
+@pytest.mark.parametrize("at_m", [-1.0, -0.3, 0.0, 0.3, 0.8])
+def test_a_cyclist_at_the_origin_is_read(tmp_path, capsys, at_m, turn):
+    """The trunk is level, but the feet are below the hips, not beside them."""
+    points = walker.points()
+    places = {"hip": (0.0, 0.9), "knee": (0.3, 0.6), "ankle": (0.05, 0.1), "heel": (0.0, 0.05)}
+    ahead, up = np.transpose(
+        [places.get(joint.split("_")[-1], (0.5, 1.1)) for joint in walker.SKELETON.joints]
+    )
+    xyz = np.stack([turn * ahead + at_m, 0 * ahead, up], axis=1) + 0 * points.xyz
+    trc.write(tmp_path / "p1.trc", replace(points, xyz=xyz), 0)
+    found = pose2sim.read_takes({"p1": tmp_path / "p1.trc"}, walker.SKELETON, model="m")
+    np.testing.assert_allclose(found.xyz, xyz, atol=1e-6)
+    assert not capsys.readouterr().err
+
+
 def test_a_joint_at_zero_is_missing(project, tmp_path):
     """Programs without blanks write 0 0 0; no joint is there to a micrometre."""
     lines = (project[0] / "pose-3d" / "take_p1.trc").read_text().splitlines()

@@ -1,7 +1,9 @@
 """Clocks of simulated and of real cameras over whole takes, and their stated intervals."""
 
 import json
+import runpy
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,12 +12,14 @@ from courtside.calibration import file_formats
 from courtside.geometry import camera as camera_models
 from courtside.records.devices import clocks as sync
 from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints import keypoints
 from courtside.study.errors import InputError
 from courtside.synchronisation import cameras as camera_sync
 from fixtures.cameras import scene, sync_takes
 from fixtures.people import keypoints_made
 from fixtures.recordings.real_data import REAL, needs_real
 
+SCRIPT = Path(__file__).parents[3] / "workflow" / "scripts" / "synchronise_cameras.py"
 CAMERAS = sync_takes.rig(3)
 CLOCKS = [Clock(), Clock(2.31, -120.0), Clock(-3.07, 90.0)]
 FOLDER = REAL / "walk-4cams"
@@ -51,6 +55,21 @@ def test_shifted_cameras_are_found_within_8_ms(known, rate_hz):
         assert found[camera].status == "found"
         assert np.abs(errors_s(found[camera], truth, 20.0)).max() <= 0.008
     assert all(clock.usable for clock in found.values())
+
+
+@pytest.mark.parametrize("trim_s", [(0.0, 6.0), None])
+def test_a_part_from_zero_of_which_cameras_share_little_is_told(tmp_path, capsys, trim_s):
+    """The cameras start up to 5 s apart; whole videos are none of `trim_s`."""
+    paths = []
+    for view in take(0, seconds=6.0):
+        paths.append(tmp_path / f"{view.camera}.npz")
+        keypoints.write_2d(paths[-1], view)
+    stated = {"c1": {"offset_s": 2.0}, "c2": {"offset_s": -3.0}}
+    main = runpy.run_path(str(SCRIPT))["main"]
+    how = {"synchronised": False, "stated": stated, "trim_s": trim_s}
+    main(None, paths, tmp_path / "clocks.json", **how)
+    told = "trim_s: all cameras share 0.97 of 5.97 s" in capsys.readouterr().err
+    assert told == (trim_s is not None)
 
 
 def test_clocks_of_a_take_are_one_or_found_or_stated():

@@ -93,6 +93,20 @@ def test_every_track_of_many_takes_has_enough_frames_to_be_measured():
     assert similarity.umeyama(placed, xyz).scale == pytest.approx(1, abs=0.01)
 
 
+def test_a_short_take_of_known_heights_beside_long_ones_gives_the_scale():
+    """By its share of the time it has 8 frames of each person, fewer than a body needs."""
+    short = tracks_made.take(TRUE, WALK)
+    tracks = guessed(short, lenses=LENSES).tracks
+    long, n_long = tracks_made.take(TRUE, tracks_made.persons(400), seed=1), 3
+    every = joined([seen(short, tracks), *[seen(long, tracks)] * n_long]), lambda _, limbs: limbs
+    rows = [(number, rows) for number in range(1 + n_long) for _, rows in tracks]
+    heights = HEIGHTS | {f"match {at}": {"p0": None, "p1": None} for at in range(n_long)}
+    found = from_nothing.adjust(TRUE, LENSES, *every, rows, heights, LIMITS)
+    xyz = WALK[:, ::4].reshape(-1, 3)
+    placed = triangulate_all(found.cameras, np.stack([cameras.project(c, xyz) for c in TRUE]))
+    assert similarity.umeyama(placed, xyz).scale == pytest.approx(1, abs=0.01)
+
+
 def test_a_lens_of_a_board_is_not_guessed():
     take = tracks_made.take(TRUE, WALK)
     start = guessed(take, lenses=LENSES)

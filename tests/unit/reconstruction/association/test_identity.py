@@ -100,7 +100,7 @@ def found_again(gap_s, away_m, size=1.0, beside=()):
 def test_a_stranger_may_come_after_a_long_gap_or_far_away():
     assert found_again(0.6, 0.5) > 0.95
     assert found_again(1.0, 1.0) > 0.9
-    assert found_again(1.5, 6.0) < 0.9 and found_again(3.5, 1.0) < 0.9
+    assert found_again(1.5, 6.0) < 0.9 and found_again(3.5, 1.0, np.nan) < 0.9
     near, far = ([found_again(gap, away) for gap in (0.6, 1.0, 1.5, 2.0)] for away in (0.5, 3.0))
     assert near == sorted(near, reverse=True)
     assert (np.array(far) < near).all()
@@ -113,9 +113,15 @@ def test_the_own_bones_say_whether_a_stranger_came():
     assert found_again(1.0, 1.0, np.nan) < found_again(1.0, 1.0)
 
 
+def test_the_same_bones_at_the_same_place_raise_no_question_after_any_gap():
+    """Bones of one person differ by 1 % (median of development takes), those of two by 10 %."""
+    assert min(found_again(gap, 0.0, 0.98) for gap in (0.6, 1.5, 2.5, 3.5)) > 0.9
+    assert max(found_again(gap, 3.0, 0.9) for gap in (0.6, 1.5, 2.5, 3.5)) < 0.7
+
+
 def test_a_stranger_may_come_while_somebody_else_is_there():
     beside = [np.tile([3.0, 3.0], (60, 1))]
-    assert found_again(3.5, 3.0, beside=beside) < 0.9
+    assert found_again(3.5, 3.0, np.nan, beside) < 0.9
     assert found_again(3.5, 3.0, 0.75, beside) < 0.2
     assert found_again(0.6, 0.5, beside=beside) > 0.9
 

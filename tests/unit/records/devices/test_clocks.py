@@ -108,3 +108,16 @@ def test_cameras_that_show_few_common_times_are_told_what_would_show_them():
     assert "all cameras share 4.00 of 10.00 s" in line
     assert "[114.00, 130.00] lets all show what camera a shows from 120.00 to 130.00 s" in line
     assert clocks.little_shared(used, found | {"b": clocks.Clock(-0.5)}) == ""
+
+
+def test_a_camera_that_begins_later_is_not_asked_for_pictures_before_it_began():
+    """Camera b began 5 s after camera a: it has none of a's first 5 s."""
+    found = {"a": clocks.Clock(status="reference"), "b": clocks.Clock(-5.0, status="found")}
+
+    def told(trim_s):
+        return clocks.little_shared(dict.fromkeys("ab", trim_s), found)
+
+    assert "[0.00, 8.00] lets all show what camera a shows from 5.00 to 8.00 s" in told((2.0, 8.0))
+    for trim_s in ((0.0, 8.0), (1.0, 4.0)):  # stated already, and over before b begins
+        assert "end later: camera b begins at 5.00 s of camera a's clock" in told(trim_s)
+        assert "lets all show" not in told(trim_s)

@@ -123,7 +123,8 @@ def _peaks(time_s: NDArray, point: measures.Point) -> Iterator[Row]:
     """Yield the largest speed, a mean over `PEAK_S`, and the largest acceleration over `CHANGE_S`.
 
     `EDGE_S` at both ends of a stretch without gaps is left out. Errors of the frames that make a
-    mean are taken as equal, those of the two that make a change as independent.
+    mean are taken as equal, those of the two that make a change as independent; the cameras' are
+    not, and left out: they cancel or add as both velocities have one direction or opposite ones.
     """
     step_s = float(np.median(np.diff(time_s))) if len(time_s) > 1 else PEAK_S
     inside = _inside(point.velocity, max(1, round(EDGE_S / step_s)))
@@ -131,7 +132,8 @@ def _peaks(time_s: NDArray, point: measures.Point) -> Iterator[Row]:
     yield _peak("speed_max", "m/s", point.velocity, spread, inside, max(3, round(PEAK_S / step_s)))
     n = max(1, round(CHANGE_S / step_s))
     change = _over(point.velocity, n, -1) / (n * step_s)
-    both = [_over(of, n, 1) / (n * step_s) ** 2 for of in spread]
+    own = _over(spread[0], n, 1) / (n * step_s) ** 2
+    both = own, np.zeros_like(own)
     whole = pd.Series(inside).rolling(n + 1).sum().to_numpy() == n + 1
     name, value, sigma, camera, unit, _ = _peak("acceleration_max", "m/s2", change, both, whole, 1)
     sigma = float(np.hypot(sigma, LARGEST * value))

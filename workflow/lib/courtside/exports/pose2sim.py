@@ -22,6 +22,7 @@ from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints3D, unknown_errors
 from courtside.records.keypoints.skeleton import Skeleton
 from courtside.study.errors import InputError, StrPath
+from courtside.study.execution import log
 from courtside.study.execution.files import atomic_folder
 
 # Skeletons with a name of their own in Pose2Sim, points in the same order.
@@ -36,10 +37,10 @@ OWN = "COURTSIDE"
 SOURCE = "Courtside"
 # ASSUME: diagonal of the box around all joints of a person, median of a take.
 LARGE_M = (0.1, 4.0)
-# ASSUME: of trunks of persons who do not lie, median of a take: share of their length along another
-# axis than the vertical, and along the vertical. Laboratories have the floor at zero.
-SIDEWAYS, UPRIGHT, FLOOR_M = 0.8, 0.5, 0.5
-TRUNK = [("left_hip", "right_hip"), ("left_shoulder", "right_shoulder")]
+# ASSUME: of trunks and legs of persons who stand, median of a take: share of their length along the
+# vertical. Laboratories have the floor at zero; joints of who lies are between two heights over it.
+UPRIGHT, FLOOR_M, LYING_M = 0.8, 0.5, (-0.1, 1.0)
+HEIGHTS = [(f"left_{joint}", f"right_{joint}") for joint in ("ankle", "hip", "shoulder")]
 LEAST_VIEWS = 2  # of a point in a file that does not say: triangulation needs two
 
 
@@ -179,21 +180,25 @@ def _check_size(path: StrPath, xyz: NDArray) -> None:
 def _check_axes(path: StrPath, joints: Sequence[str], xyz: NDArray) -> None:
     """Raise `InputError` if a person (J, T, 3) stands on the floor along the file's X or Z.
 
-    A person who lies is told from that by the feet, which are rarely near zero along the trunk.
+    Who lies straight, feet near zero, looks alike: at a height of one who lies, it is a warning.
     """
-    if not all(joint in joints for pair in TRUNK for joint in pair):
+    if not all(joint in joints for pair in HEIGHTS for joint in pair):
         return
-    hips, shoulders = (xyz[[joints.index(one) for one in pair]].mean(axis=0) for pair in TRUNK)
-    trunk = shoulders - hips
-    known = np.isfinite(trunk).all(axis=1)
+    low, hips, high = (xyz[[joints.index(one) for one in pair]].mean(axis=0) for pair in HEIGHTS)
+    known = np.isfinite(low + hips + high).all(axis=1)
     if not known.any():
         return
-    trunk = trunk[known] / np.linalg.norm(trunk[known], axis=1, keepdims=True)
-    along = np.abs(np.median(trunk, axis=0))
+    parts = [part[known] for part in (hips - low, high - hips)]
+    shares = [part / np.linalg.norm(part, axis=1, keepdims=True) for part in parts]
+    along = np.median(shares, axis=1).min(axis=0)
     axis = int(np.argmax(along))
-    lowest = np.median(np.fmin.reduce(xyz[:, known, axis], axis=0))
-    if along[2] < UPRIGHT and along[axis] > SIDEWAYS and abs(lowest) < FLOOR_M:
-        name = "XYZ"[trc.WORLD_AXES.index(axis)]
-        raise InputError(
-            f"{path}: expected Y up, found the trunk along {name}; export it with Y up"
-        )
+    lowest, highest = (
+        np.median(of.reduce(xyz[:, known], axis=0), axis=0) for of in (np.fmin, np.fmax)
+    )
+    if axis == 2 or along[axis] < UPRIGHT or abs(lowest[axis]) > FLOOR_M:
+        return
+    name = "XYZ"[trc.WORLD_AXES.index(axis)]
+    line = f"expected Y up, found the trunk along {name}; export it with Y up"
+    if not (LYING_M[0] < lowest[2] and highest[2] < LYING_M[1]):
+        raise InputError(f"{path}: {line}")
+    log.tell(f"{line}, unless the person lies", path)

@@ -6,6 +6,7 @@ Focal lengths that are not known are tried, people's joints and all cameras are 
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -208,7 +209,7 @@ def adjust(
     there are too few people, if they stay in one place, or if a camera disagrees with the others on
     held-out joints.
     """
-    cameras, rows = list(start), max(MOST_ROWS, ROWS_OF_TRACK * len(tracks))
+    cameras = list(start)
     for number in range(PASSES):
         seen = limbs(cameras, everything.thinned(MOST_ROWS))
         if not number:
@@ -216,7 +217,7 @@ def adjust(
         fitted = _refined(cameras, lenses, seen, limits)
         joints = _joints(fitted.cameras, seen, limits)
         shape = world_frame.of_shape(fitted.cameras, fitted.covariance, _places(joints), 0.0)
-        bodies = _bodies(fitted.cameras, limbs(cameras, everything.thinned(rows)), tracks, limits)
+        bodies = _bodies(fitted.cameras, everything, partial(limbs, cameras), tracks, limits)
         scale = metric_scale.find(fitted.cameras, bodies, heights_m, known, shape, share)
         cameras = [_scaled(camera, scale.metres) for camera in fitted.cameras]
     joints = _joints(cameras, seen, limits)
@@ -304,12 +305,19 @@ def _places(joints: NDArray) -> NDArray:
 
 
 def _bodies(
-    cameras, seen: Seen, tracks: Sequence[Track], limits: Limits
+    cameras, everything: Seen, limbs: Callable[[Seen], Seen], tracks: Sequence[Track], limits
 ) -> list[metric_scale.Body]:
-    """Return the bodies of tracks."""
-    joints = _joints(cameras, seen, limits)
-    each = [(track, seen.track == track) for track in np.unique(seen.track)]
-    return [_body(tracks[track], joints[own], seen.time_s[own]) for track, own in each]
+    """Return the bodies of tracks, measured in enough frames of each take."""
+    take_of = np.array([take for take, _ in tracks])[everything.track]
+    found = []
+    for take in np.unique(take_of):
+        own = everything.of(take_of == take)
+        share = MOST_ROWS * len(own.track) // len(everything.track)
+        seen = limbs(own.thinned(max(share, ROWS_OF_TRACK * len(np.unique(own.track)))))
+        joints = _joints(cameras, seen, limits)
+        each = [(track, seen.track == track) for track in np.unique(seen.track)]
+        found += [_body(tracks[track], joints[at], seen.time_s[at]) for track, at in each]
+    return found
 
 
 def check(cameras: Sequence[Camera], score: Score) -> None:

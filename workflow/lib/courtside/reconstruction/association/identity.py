@@ -21,6 +21,7 @@ SAME = 0.8  # if nothing else tells: found again after a gap is no stranger
 # Standard deviations per axis, on the floor, of where a person is found again: at first, more by
 # each second, at most that of strangers.
 STAYS_M, GOES_MS, STRANGER_M = 0.5, 1.5, 4.0
+OWN_SPREAD = 0.03  # as LENGTH_SPREAD, of the mean over one person's bones: best in 34 takes
 STRANGER_SPREAD = 0.08  # of the bones of people, as log ratio
 
 
@@ -132,8 +133,8 @@ def _familiar(path: NDArray, time_s: NDArray, lengths_m: NDArray, between: tuple
     off = np.log(after) - np.log(before)
     off = off[np.isfinite(off)]
     if len(off):
-        same = np.sqrt(2) * LENGTH_SPREAD
-        other = np.sqrt(2) * np.hypot(LENGTH_SPREAD, STRANGER_SPREAD)
+        same = np.sqrt(2) * OWN_SPREAD
+        other = np.sqrt(2) * np.hypot(OWN_SPREAD, STRANGER_SPREAD)
         odds += _likelier(off.mean(), same, other)
     return float(odds)
 

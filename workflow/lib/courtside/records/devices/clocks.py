@@ -95,13 +95,20 @@ def little_shared(used: Mapping[str, Sequence[float]], clocks: Mapping[str, Cloc
     shortest_s = min(stop - start for start, stop in spans)
     if shared_s >= LEAST_SHARED * shortest_s:
         return ""
-    first, wanted = next(iter(used.items()))
-    own = [clocks[name].from_reference(spans[0]) for name in used]
-    start_s, stop_s = max(0.0, min(one[0] for one in own)), max(one[1] for one in own)
+    first, (start_s, stop_s) = next(iter(used.items()))
+    begin_s, late = max((float(clocks[name].to_reference(0)), name) for name in used)
+    shown_s = max(start_s, begin_s), stop_s
+    own = [clocks[name].from_reference(shown_s) for name in used]
+    part = min(one[0] for one in own), max(one[1] for one in own)
+    starts, stops = zip(*used.values(), strict=True)
+    if begin_s >= stop_s or np.allclose(part, (min(starts), max(stops)), atol=0.1):
+        remedy = f"end later: camera {late} begins at {begin_s:.2f} s of camera {first}'s clock"
+    else:
+        shown = f"camera {first} shows from {shown_s[0]:.2f} to {stop_s:.2f} s"
+        remedy = f"[{part[0]:.2f}, {part[1]:.2f}] lets all show what {shown}"
     return (
         f"trim_s: all cameras share {max(0.0, shared_s):.2f} of {shortest_s:.2f} s, because "
-        f"{ON_OWN_CLOCK}; if that is too little, [{start_s:.2f}, {stop_s:.2f}] lets all show what "
-        f"camera {first} shows from {wanted[0]:.2f} to {wanted[1]:.2f} s"
+        f"{ON_OWN_CLOCK}; if that is too little, {remedy}"
     )
 
 
