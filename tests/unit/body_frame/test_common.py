@@ -80,6 +80,21 @@ def test_one_t_pose_is_chosen_for_all_although_each_likes_another_best():
         assert chosen["mocopi"].start_s == second[best].start_s
 
 
+@pytest.mark.parametrize("clapping", ["d415-rgb", "mocopi"])
+def test_a_t_pose_that_a_clap_follows_is_chosen_before_a_better_one(clapping):
+    _, _, happened = take()
+    for source, own in happened.items():
+        first, second = own.tposes
+        better = replace(first, cost=second.cost / 100)
+        claps = own.claps[1:] if source == clapping else []
+        happened[source] = replace(own, tposes=[better, second], claps=claps)
+    chosen = common.common(happened, CLOCKS)
+    assert {source: own.tposes.index(chosen[source]) for source, own in happened.items()} == {
+        "d415-rgb": 1,
+        "mocopi": 1,
+    }
+
+
 def test_no_common_t_pose_is_an_error_with_the_times():
     _, _, happened = take()
     wrong = CLOCKS | {"mocopi": Clock(20.0, 0.0)}
