@@ -135,7 +135,9 @@ def test_the_speed_of_a_player_is_right_to_a_stated_error():
 
 def test_the_share_of_the_bias_that_is_subtracted_is_the_documented_one():
     share, sigma = measures.MODEL_BIAS
-    assert f"From distances, {share} (+- {sigma}) of the bias" in (CONFIG / "README.md").read_text()
+    caption = CONFIG.parent / "workflow" / "report" / "draw_kinematics.rst"
+    for document in (CONFIG / "README.md", caption):
+        assert f"{share} (+- {sigma}) of the bias that the noise" in document.read_text()
 
 
 def test_gaps_are_missing_with_their_reason_and_not_differentiated_across():
