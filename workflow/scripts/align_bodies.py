@@ -33,6 +33,8 @@ def main(
     spell = common.common(events_of, clocks)[motion.source]
     anchors = bodyframe.anchors(derived_joints.read(derived_yaml), skeleton, motion.joints)
     frame = bodyframe.at_tpose(motion, anchors, spell)
+    if doubt := bodyframe.doubt(motion, frame):
+        log.tell(doubt, frame_json)
     claps_s = common.claps_of(motion.source, events_of, clocks)
     body = common.aligned(motion, frame, clocks[motion.source], claps_s)
     if np.isfinite(body.tpose_s).all():

@@ -1,15 +1,18 @@
 """All sources of a take lie in one body frame, on one clock."""
 
+import runpy
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from courtside.body_frame import common
 from courtside.body_frame import frame as bodyframe
 from courtside.devices import mocopi
 from courtside.events import detect
+from courtside.records.devices import clocks, device_motion, events
 from courtside.records.devices.clocks import Clock
 from courtside.records.devices.events import Events
 from courtside.records.keypoints import derived_joints, skeleton
@@ -80,6 +83,21 @@ def test_one_t_pose_is_chosen_for_all_although_each_likes_another_best():
         assert chosen["mocopi"].start_s == second[best].start_s
 
 
+@pytest.mark.parametrize("clapping", ["d415-rgb", "mocopi"])
+def test_a_t_pose_that_a_clap_follows_is_chosen_before_a_better_one(clapping):
+    _, _, events_of = take()
+    for source, own in events_of.items():
+        first, second = own.tposes
+        better = replace(first, cost=second.cost / 100)
+        claps = own.claps[1:] if source == clapping else []
+        events_of[source] = replace(own, tposes=[better, second], claps=claps)
+    chosen = common.common(events_of, CLOCKS)
+    assert {source: own.tposes.index(chosen[source]) for source, own in events_of.items()} == {
+        "d415-rgb": 1,
+        "mocopi": 1,
+    }
+
+
 def test_no_common_t_pose_is_an_error_with_the_times():
     _, _, events_of = take()
     wrong = CLOCKS | {"mocopi": Clock(20.0, 0.0)}
@@ -132,6 +150,27 @@ def test_frames_that_nobody_performed_are_left_out():
     frame = bodyframe.at_tpose(motion, CARRIED_BY, events_of["d415-rgb"].tposes[0])
     body = common.aligned(motion, frame, Clock())
     assert len(body.time_s) == len(motion.time_s) - 7 == len(body.fixed) == len(body.reason)
+
+
+def test_the_script_tells_of_a_device_that_is_not_level(tmp_path, capsys):
+    axes = Rotation.from_rotvec([90, 0, 0], degrees=True).as_matrix() @ device_takes.Y_UP
+    motion = device_takes.mocopi(np.random.default_rng(0), device_takes.truth(0), axes=axes)
+    device_motion.write(tmp_path / "suit.npz", motion)
+    clocks.write(tmp_path / "clocks.json", "mocopi", {"mocopi": Clock(status="reference")})
+    events.write(tmp_path / "events.json", detect.detect([motion]))
+    script = runpy.run_path(str(CONFIG.parent / "workflow" / "scripts" / "align_bodies.py"))
+    script["main"](
+        tmp_path / "suit.npz",
+        tmp_path / "clocks.json",
+        [tmp_path / "events.json"],
+        CONFIG / "derived_joints.yaml",
+        tmp_path / "body.npz",
+        tmp_path / "frame.json",
+        skeleton="rig",
+        devices={"mocopi": "mocopi"},
+        stated={},
+    )
+    assert "Y is not up in its file" in capsys.readouterr().err
 
 
 def test_a_source_without_a_clap_of_its_own_takes_that_of_another():

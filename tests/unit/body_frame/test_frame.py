@@ -1,6 +1,8 @@
 """The body's frame against the same definition on the exact joints, and against geometry."""
 
 import json
+import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -70,6 +72,39 @@ def test_the_frame_is_right_handed_with_wrists_at_one_and_toes_in_front():
     assert at["left_toe"][2] > at["left_ankle"][2]
     assert np.linalg.det(frame.body_from_device.rotation) == pytest.approx(1)
     assert frame.residuals["forward"] > 0.05
+
+
+PITCH_15, ROLL_15, Z_UP = (
+    Rotation.from_rotvec(turn, degrees=True).as_matrix()
+    for turn in ([15, 0, 0], [0, 0, -15], [90, 0, 0])
+)
+
+
+@pytest.mark.parametrize(
+    ("make", "axes", "found"),
+    [
+        (device_takes.device, device_takes.Y_DOWN, None),
+        (device_takes.device, PITCH_15 @ device_takes.Y_DOWN, r"found 1\d.*: .* not level"),
+        (device_takes.device, ROLL_15 @ device_takes.Y_DOWN, r"found 1\d.*: .* not level"),
+        (device_takes.mocopi, device_takes.Y_UP, None),
+        (device_takes.mocopi, Z_UP @ device_takes.Y_UP, r"found [89]\d.*: Y is not up"),
+    ],
+)
+def test_a_device_whose_vertical_is_another_is_doubted(make, axes, found):
+    kind = "inertial" if make is device_takes.mocopi else "rgbd"
+    rng, take = np.random.default_rng(0), device_takes.truth(0)
+    motion = replace(make(rng, take, axes=axes), kind=kind)
+    frame = bodyframe.at_tpose(motion, CARRIED_BY, tpose.find(motion)[0])
+    doubt = bodyframe.doubt(motion, frame)
+    assert (doubt is None) if found is None else re.search(found, doubt)
+
+
+def test_the_colour_camera_alone_is_not_doubted():
+    """Its network leans by itself."""
+    take = device_takes.truth(0)
+    motion = device_takes.device(np.random.default_rng(0), take, axes=Z_UP @ device_takes.Y_DOWN)
+    frame = bodyframe.at_tpose(motion, CARRIED_BY, tpose.find(motion)[0])
+    assert (motion.kind, bodyframe.doubt(motion, frame)) == ("rgb", None)
 
 
 def test_residuals_are_those_of_a_known_body():

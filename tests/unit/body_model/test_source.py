@@ -59,6 +59,25 @@ def test_a_lost_frame_is_interpolated_and_a_long_gap_is_not():
     np.testing.assert_allclose(found.xyz[0, 43:], points.xyz[0, 43:], atol=1e-9)
 
 
+@pytest.mark.parametrize("made", ["a frame lost", "jitter", "milliseconds"])
+def test_neighbours_of_a_missing_joint_stay_where_times_are_not_uniform(made):
+    points = record()
+    xyz = points.xyz.copy()
+    xyz[0, 10::7, 3] = np.nan
+    time_s, kept = points.time_s, np.arange(len(points.time_s))
+    if made == "a frame lost":
+        time_s, kept = np.round(time_s, 6), np.delete(kept, 27)
+    elif made == "jitter":
+        time_s = time_s + np.random.default_rng(0).uniform(-3e-4, 3e-4, len(time_s))
+    elif made == "milliseconds":
+        time_s = np.round(time_s, 3)
+    found = source.even(replace(points, xyz=xyz, time_s=time_s).frames(kept))
+    np.testing.assert_array_equal(np.isnan(found.xyz), np.isnan(xyz))
+    missing = np.isnan(xyz[..., 0])
+    assert (found.reason[~missing] == missing_reason.OK).all()
+    np.testing.assert_allclose(found.xyz[~missing], points.xyz[~missing], atol=5e-3)
+
+
 def test_times_in_milliseconds_keep_their_frames():
     points = record()
     time_s = np.round(np.arange(len(points.time_s)) / 60, 3)

@@ -80,7 +80,7 @@ def test_cameras_that_count_otherwise_are_refused(tmp_path):
 
 def test_a_file_of_all_frames_is_told_with_what_to_do(tmp_path):
     (tmp_path / "alphapose-results.json").write_text('[{"image_id": "0.jpg"}]')
-    with pytest.raises(InputError, match="found a file of all frames; run AlphaPose with"):
+    with pytest.raises(InputError, match="found a file of all frames; `AlphaPose_to_OpenPose`"):
         frame_numbers.numbered(tmp_path)
     (tmp_path / "alphapose-results.json").write_text("{}")
     with pytest.raises(InputError, match="found none; rename it"):

@@ -128,6 +128,21 @@ def test_only_a_first_row_without_any_rotation_is_the_rest_pose(tmp_path):
     assert mocopi.read(tmp_path / "a.bvh", MOCOPI).performed.all()
 
 
+@pytest.mark.parametrize(("n_repeats", "told"), [(0, ""), (3, ""), (30, "from 0.3 to 0.8 s:")])
+def test_a_pose_that_is_repeated_is_told(tmp_path, capsys, n_repeats, told):
+    """A suit that loses its sensors writes the last pose on."""
+    path = tmp_path / "a.bvh"
+    recorded(path, n_frames=100)
+    lines = path.read_text().splitlines()
+    row = len(lines) - 100 + 20
+    lines[row : row + n_repeats + 1] = [lines[row]] * (n_repeats + 1)
+    path.write_text("\n".join(lines))
+    found = mocopi.read(path, MOCOPI)
+    assert len(found.time_s) == 100
+    said = capsys.readouterr().err
+    assert told in said if told else not said
+
+
 @pytest.mark.parametrize(("n_frames", "n_performed"), [(0, 0), (1, 0), (2, 1)])
 def test_fewer_than_two_frames_of_motion_are_refused(tmp_path, n_frames, n_performed):
     recorded(tmp_path / "a.bvh", n_frames=n_frames)

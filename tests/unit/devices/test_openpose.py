@@ -251,6 +251,19 @@ def test_points_of_no_skeleton_are_named(tmp_path):
         assert not openpose.is_one(tmp_path / "k" / "1.json")
 
 
+@pytest.mark.parametrize(("count", "known"), [(17, True), (26, True), (133, True), (18, False)])
+def test_points_of_alphapose_are_read_if_all_are_there(tmp_path, count, known):
+    """`AlphaPose_to_OpenPose` copies those of the network; `--format open` always writes 18."""
+    person = np.random.default_rng(0).uniform(1, 400, (count, 3)) * [1, 1, 1 / 400]
+    for at in range(3):
+        write(tmp_path / "j", f"{at:05d}.json", person.ravel().tolist())
+    if known:
+        assert openpose.skeletons(tmp_path / "j")[0] == count
+    else:
+        with pytest.raises(InputError, match=r"found 18; see config/README.md, Keypoints of other"):
+            openpose.skeletons(tmp_path / "j")
+
+
 def test_scores_above_one_are_one(tmp_path):
     high = keypoints()
     high[2] = 1.7

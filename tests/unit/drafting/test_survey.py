@@ -183,7 +183,7 @@ def test_keypoints_of_all_frames_in_one_file_are_told_with_what_to_do(tmp_path):
     (tmp_path / "notes.json").write_text("[]")
     (found,) = survey.survey(tmp_path, root=tmp_path)
     assert (found.path, found.kind) == ("left_json/alphapose-results.json", "unusable")
-    assert "run AlphaPose with `--format open`, and name its folder `sep-json`" in found.note
+    assert "`AlphaPose_to_OpenPose` of Pose2Sim writes one of each frame from it" in found.note
 
 
 def test_a_path_with_braces_is_unusable(tmp_path):

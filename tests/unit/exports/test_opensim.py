@@ -5,6 +5,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from courtside.body_model import take
 from courtside.exports import markers, opensim
@@ -89,6 +90,27 @@ def test_a_motion_file_has_opensims_header_and_coordinates(tmp_path):
     for name in ("arm_add_l", "arm_add_r"):  # both arms 44 degrees from the trunk
         assert np.abs(column[name] + 43).max() < 4
     assert 10 < column["pelvis_rotation"][-1] - column["pelvis_rotation"][0] < 40
+
+
+def test_the_trunk_bends_as_far_in_pose2sims_default_model(tmp_path):
+    """Its constraints turn five more joints by these multiples of L5_S1's angle, about its axes."""
+    others = {
+        "Flex_Ext": [1.8571, 1.6429, 1.1429, 0.9286, 0.5714],
+        "Lat_Bending": [1.33, 2.4314, 2.4314, 2.0392, 1.549],
+        "axial_rotation": [1.0625, 1.0625, 0.875, 0.8125, 0.75],
+    }
+    bent = motion()
+    angles = np.linspace([-60, -20, -30], [10, 15, 40], len(bent.time_s))
+    bent.parent_from_segment[0, :, bent.segments.tolist().index("thorax")] = Rotation.from_euler(
+        "ZXY", angles, degrees=True
+    ).as_matrix()
+    opensim.write_motion(tmp_path / "a.mot", bent, 0)
+    names, *lines = (tmp_path / "a.mot").read_text().split("endheader\n")[1].splitlines()
+    values = np.array([line.split("\t") for line in lines], dtype=float).T
+    column = dict(zip(names.split("\t"), values, strict=True))
+    for (name, multiples), angle in zip(others.items(), angles.T, strict=True):
+        whole = column[f"L5_S1_{name}"] * (1 + sum(multiples))
+        np.testing.assert_allclose(whole, angle, atol=1e-4)
 
 
 def test_the_motion_file_of_a_person_without_fitted_frames_has_no_rows(tmp_path):

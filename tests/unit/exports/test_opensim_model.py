@@ -282,6 +282,25 @@ def test_an_arm_that_hangs_again_has_angles_near_zero(path, n_frames, repeats):
     assert np.abs(found[:, 1]).max() <= 90
 
 
+@pytest.mark.parametrize("path", PATHS)
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_swung_arm_has_coordinates_that_a_spline_may_go_through(tmp_path, walking, path, side):
+    """OpenSim takes speeds and moments from splines through the coordinates of a motion file."""
+    turned = np.concatenate([np.linspace(*ends, 30) for ends in pairwise(PATHS[path])])
+    motion = anyhow(walking, len(turned))
+    arm = motion.segments.tolist().index(f"{side}_humerus")
+    arms = Rotation.from_euler("ZXY", turned, degrees=True)
+    motion.parent_from_segment[0, :, arm] = arms.as_matrix()
+    opensim.write_motion(tmp_path / "a.mot", motion, 0)
+    values, mirror = columns(tmp_path / "a.mot"), -1 if side == "left" else 1
+    names = [f"glenohumeral_{name}_{side[0]}" for name in ("flexion", "adduction", "rotation")]
+    found = np.stack([values[name] for name in names], axis=1) * [1, mirror, mirror]
+    between = Rotation.from_euler("ZXY", (found[1:] + found[:-1]) / 2, degrees=True)
+    step = np.degrees((arms[1:] * arms[:-1].inv()).magnitude())
+    way = np.degrees((between * arms[:-1].inv()).magnitude())
+    assert (way <= step + 0.1).all()
+
+
 def test_coordinates_lie_in_the_ranges_of_the_model(tmp_path, walking):
     motion = anyhow(walking, 400)
     turning = Rotation.from_rotvec(np.linspace([0, 0, 0], [0, 0, 3.5 * 360], 400), degrees=True)

@@ -72,7 +72,7 @@ def test_2d_keypoints_are_in_each_frames_file(project):
 
 def test_3d_keypoints_come_back_from_the_folder(project):
     folder, _, _, points = project
-    files = {person: folder / "pose-3d" / f"take_{person}.trc" for person in ("p1", "p2")}
+    files = {person: folder / "pose-3d" / f"take_{person}_1-20.trc" for person in ("p1", "p2")}
     found = pose2sim.read_takes(files, walker.SKELETON, model="theirs")
     assert found.person_id.tolist() == ["p1", "p2"]
     assert found.joints.tolist() == points.joints.tolist()
@@ -82,6 +82,13 @@ def test_3d_keypoints_come_back_from_the_folder(project):
     assert found.n_views[0, 3, 3:5].tolist() == [2, 0]
     keypoints.write_3d(folder / "x.npz", found)  # a record as any other
     assert keypoints.read_3d(folder / "x.npz").model == "theirs"
+
+
+def test_filtered_files_keep_the_person_in_their_names(project):
+    """`Pose2Sim.filtering` replaces the part after the last `_` by the frames and the filter."""
+    names = [path.name for path in (project[0] / "pose-3d").iterdir()]
+    filtered = {name.replace(name.split("_")[-1], "1-20_filt_butterworth.trc") for name in names}
+    assert filtered == {f"take_{person}_1-20_filt_butterworth.trc" for person in ("p1", "p2")}
 
 
 def test_settings_name_the_skeleton(project, tmp_path):
@@ -114,22 +121,22 @@ def test_views_of_other_shapes_are_refused(project, tmp_path):
 
 def test_files_that_do_not_fit_are_named(project, tmp_path):
     folder, *_ = project
-    good = folder / "pose-3d" / "take_p1.trc"
+    good = folder / "pose-3d" / "take_p1_1-20.trc"
     with pytest.raises(
-        InputError, match=r"take_p1.trc: expected markers of skeleton small such as"
+        InputError, match=r"take_p1_1-20.trc: expected markers of skeleton small such as"
     ):
         other = replace(walker.SKELETON, name="small", joints=("tail",))
         pose2sim.read_takes({"p1": good}, other, model="m")
     short = walker.points(n_frames=12)
     trc.write(tmp_path / "short.trc", short, 0)
-    with pytest.raises(InputError, match=r"short.trc: expected the times of .*take_p1.trc"):
+    with pytest.raises(InputError, match=r"short.trc: expected the times of .*take_p1_1-20.trc"):
         files = {"p1": good, "p2": tmp_path / "short.trc"}
         pose2sim.read_takes(files, walker.SKELETON, model="m")
 
 
 @pytest.mark.parametrize(("unit", "found"), [("mm", "0.00"), ("in", "0.0")])
 def test_a_person_of_no_person_s_size_is_refused(project, tmp_path, unit, found):
-    text = (project[0] / "pose-3d" / "take_p1.trc").read_text()
+    text = (project[0] / "pose-3d" / "take_p1_1-20.trc").read_text()
     path = tmp_path / "p1.trc"
     path.write_text(text.replace("\tm\t", f"\t{unit}\t", 1))
     message = rf"p1.trc: expected joints of a person over 0.1 to 4 m, found them over {found}"
@@ -186,14 +193,14 @@ def test_a_cyclist_at_the_origin_is_read(tmp_path, capsys, at_m, turn):
 
 def test_a_joint_at_zero_is_missing(project, tmp_path):
     """Programs without blanks write 0 0 0; no joint is there to a micrometre."""
-    lines = (project[0] / "pose-3d" / "take_p1.trc").read_text().splitlines()
+    lines = (project[0] / "pose-3d" / "take_p1_1-20.trc").read_text().splitlines()
     cells = lines[8].split("\t")
     cells[5:8] = ["0.000000"] * 3
     path = tmp_path / "p1.trc"
     path.write_text("\n".join([*lines[:8], "\t".join(cells), *lines[9:], ""]))
     given, found = (
         pose2sim.read_takes({"p1": one}, walker.SKELETON, model="m").xyz
-        for one in (project[0] / "pose-3d" / "take_p1.trc", path)
+        for one in (project[0] / "pose-3d" / "take_p1_1-20.trc", path)
     )
     assert np.isfinite(given[0, 2, 1]).all()
     assert np.argwhere(np.isnan(found) & ~np.isnan(given)).tolist() == [

@@ -93,6 +93,14 @@ def test_no_clap_after_the_t_pose():
     assert wrist_arcs.missing(swing()) == ""
 
 
+def test_a_clap_long_after_the_t_pose_ends_no_arc():
+    """Between them the person plays: those paths are no arcs."""
+    made = swing()
+    late = replace(made, time_s=made.time_s + 3.0, clap_s=np.array([1.0 + 3.5]))
+    with pytest.raises(InputError, match=r"within 3 s of the T-pose of .* found claps at 4\.50"):
+        wrist_arcs.arcs(late)
+
+
 def test_without_a_t_pose_the_tables_say_that_there_is_no_point():
     made = swing()
     made.tpose_s[:] = np.nan

@@ -53,6 +53,29 @@ def test_lost_frames_of_several_cameras_are_told_of_each():
     assert {name for name, clock in found.items() if clock.doubt} == {"c1", "c3"}
 
 
+@pytest.mark.parametrize(
+    ("count", "guilty", "n", "seed"), [(3, 0, 4, 0), (3, 0, 4, 1), (4, 3, 5, 0), (4, 0, 4, 0)]
+)
+def test_a_camera_is_not_doubted_for_the_frames_of_another(count, guilty, n, seed):
+    """Few lost frames look like a drift, which the prior of all drifts spreads over all."""
+    rig = sync_takes.rig(count)
+    shown = views(seed, seconds=60.0, rig=rig)
+    shown[guilty] = without(shown[guilty], 30.0, n)
+    found = cameras.synchronise(shown, rig)
+    assert [name for name, clock in found.items() if clock.doubt] == [f"c{guilty}"]
+
+
+@pytest.mark.parametrize("guilty", [0, 1])
+@pytest.mark.parametrize("n", [4, 6])
+def test_of_two_cameras_that_disagree_both_are_named(guilty, n):
+    rig = sync_takes.rig(2)
+    shown = views(1, seconds=60.0, rig=rig)
+    shown[guilty] = without(shown[guilty], 30.0, n)
+    doubts = {name: clock.doubt for name, clock in cameras.synchronise(shown, rig).items()}
+    said = " ".join(f"{name}: {doubt}" for name, doubt in doubts.items() if doubt)
+    assert "c0" in said and "c1" in said
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_whole_takes_are_not_doubted(seed):
     for known in (RIG, None):

@@ -40,6 +40,17 @@ def test_who_comes_later_or_leaves_earlier_is_counted_while_there(tmp_path):
     assert facts["left_out"]["p1"] == (2, 6, {"unseen": 1, "one_view": 1}, when)
     assert facts["left_out"]["p2"] == (20, 20, {"unseen": 20}, "")
     assert facts["seconds"]["p1"] == (pytest.approx(0.5), when)
+    assert facts["part"] == {"p1": when}
+
+
+@pytest.mark.parametrize(("n_seen", "told"), [(2, True), (12, False), (20, False)])
+def test_who_is_lost_for_most_of_a_take_is_told(tmp_path, n_seen, told):
+    files = report_made.files_of_take(tmp_path, n_frames=20)
+    words = ["ok"] * n_seen + ["unseen"] * (20 - n_seen)
+    lines = [f"{at},{at / 10},p1,{word}" for at, word in enumerate(words)]
+    Path(files["frames"]).write_text("\n".join(["frame_idx,time_s,person,neck_reason", *lines]))
+    part = report_facts.of_take(files)["part"]
+    assert part == ({"p1": "from 0.0 to 0.1 s of the take"} if told else {})
 
 
 def test_cut_offs_are_those_that_were_used(tmp_path):

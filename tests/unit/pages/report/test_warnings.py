@@ -20,7 +20,7 @@ STILL = {
     "n_matches": 300,
 }
 NOTHING = dict.fromkeys(("movement", "shake", "devices", "quality", "true_paths"), ())
-NOTHING |= {"persons": {}, "clocks": {}, "joints": {}, "left_out": {}}
+NOTHING |= {"persons": {}, "clocks": {}, "joints": {}, "left_out": {}, "part": {}}
 QUALITY = {"warnings": [], "left_out": {"p01": {"error_cm": 0.5}}, "expected_volume_rms_cm": 0.7}
 
 
@@ -272,6 +272,13 @@ def test_frames_left_out_give_a_warning_with_the_reason():
     assert f"10 of 100 frames {when};" in warned.frames("p1", 10, 100, {"unseen": 10}, when).text
 
 
+def test_who_is_there_for_a_small_part_of_a_take_is_told():
+    facts = NOTHING | {"part": {"p1": "from 0.0 to 2.0 s of the take"}}
+    (found,) = warned.of_take(facts, max_shift_px=1.0, max_zoom_percent=0.2)
+    assert found.level == warned.GOOD
+    assert found.text == "p1: two cameras see this person only from 0.0 to 2.0 s of the take."
+
+
 def test_a_truth_outside_the_error_bar_gives_a_warning():
     row = {"person": "m3", "point": "neck", "distance_sigma_percent": 1.0}
     assert warned.true_path(row | {"distance_error_percent": -1.6}) is None
@@ -345,6 +352,7 @@ def test_warnings_are_sorted_by_level():
         "quality": [verdict("good")],
         "joints": {},
         "left_out": {},
+        "part": {},
         "true_paths": [],
     }
     found = warned.of_take(facts, max_shift_px=1.0, max_zoom_percent=0.2)

@@ -19,9 +19,9 @@ SAME_S = 0.3  # ASSUME: spells of two devices that overlap this long are one T-p
 def common(events_of: Mapping[str, Events], clocks: Mapping[str, Clock]) -> dict[str, TPose]:
     """Choose the T-pose that all sources show best: for each source its own spell of it.
 
-    The first source of `events_of` is the reference, which `clocks` are against. Where no T-pose is
-    common, the rest poses are used, if all sources bring one along. An `InputError` if no T-pose is
-    shown by all.
+    One that a clap follows comes before all others. The first source of `events_of` is the
+    reference, which `clocks` are against. Where no T-pose is common, the rest poses are used, if
+    all sources bring one along. An `InputError` if no T-pose is shown by all.
     """
     reference = next(iter(events_of.values()))
     choices = []
@@ -31,7 +31,12 @@ def common(events_of: Mapping[str, Events], clocks: Mapping[str, Clock]) -> dict
         if len(shown) == len(same):
             choices.append(shown)
     if choices:
-        return min(choices, key=lambda choice: sum(spell.cost for spell in choice.values()))
+        clapped = {own.tposes[clap.tpose] for own in events_of.values() for clap in own.claps}
+
+        def cost(choice: dict[str, TPose]) -> tuple[bool, float]:
+            return clapped.isdisjoint(choice.values()), sum(one.cost for one in choice.values())
+
+        return min(choices, key=cost)
     rests = {source: own.rest for source, own in events_of.items() if own.rest}
     if len(rests) == len(events_of):
         return rests

@@ -18,7 +18,7 @@ from courtside.events import tpose as tposes
 from courtside.geometry import rotations
 from courtside.geometry.rotations import unit
 from courtside.geometry.similarity import Sim3, kabsch
-from courtside.records.devices.device_motion import DeviceMotion
+from courtside.records.devices.device_motion import UPRIGHT, DeviceMotion
 from courtside.records.devices.events import TPose
 from courtside.records.keypoints.derived_joints import DerivedJoints
 from courtside.records.keypoints.skeleton import TRUNK
@@ -49,6 +49,13 @@ FORWARDS = (  # pairs of joints, the second in front of the first
 LEAST_FORWARD = 0.02  # ASSUME: units; less does not tell front from back
 OUTLIER_RATIO = 4.0  # ASSUME: median distances from the median; further is an outlier
 SMALLEST_M = 1e-9  # for joints that do not move at all
+# ASSUME: degrees; by how much a trunk in a T-pose may lean. In level devices 1 to 3 (depth) and 7
+# (disturbed suits); what a network sees in single pictures leans by 22, so `rgb` has no limit.
+LEANS_DEG = {
+    "rgbd": (10.0, "the camera is not level, and tilt and list of the pelvis and all exports lean "
+             "as much; level it before the next take"),
+    "inertial": (45.0, "Y is not up in its file, and all exports lie down; export it with Y up"),
+}  # fmt: skip
 REMAKE = "make it again with the rule align_bodies"
 
 
@@ -158,6 +165,21 @@ def at_tpose(motion: DeviceMotion, carried_by: Anchors, tpose: TPose) -> BodyFra
     head = _head_deg(transform.points(middle), names)
     residuals |= {"head_deg": head, "forward": forward, "n_frames": int(whole.sum())}
     return BodyFrame(transform, tpose, {"unit_m": float(unit_m), **residuals})
+
+
+def doubt(motion: DeviceMotion, frame: BodyFrame) -> str | None:
+    """Return why the vertical of a device is none, if the trunk leans too far in the T-pose."""
+    if motion.kind not in LEANS_DEG:
+        return None
+    most_deg, why = LEANS_DEG[motion.kind]
+    up = UPRIGHT[motion.kind][2] @ frame.body_from_device.rotation[1]
+    lean_deg = np.degrees(np.arccos(np.clip(up, -1, 1)))
+    if lean_deg <= most_deg:
+        return None
+    return (
+        f"{motion.source}: expected a trunk within {most_deg:g} degrees of its vertical in the "
+        f"T-pose, found {lean_deg:.1f}: {why}"
+    )
 
 
 def fixed(motion: DeviceMotion, frame: BodyFrame) -> NDArray:

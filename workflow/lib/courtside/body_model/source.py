@@ -11,6 +11,9 @@ from courtside.records.keypoints import missing_reason, skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
 
 EVEN_S = 5e-5  # ASSUME: a deviation from uniform times that has no effect
+# ASSUME: where a joint cannot be interpolated, a frame this near stands for it: stamps in
+# milliseconds are off by as much, and a wrist at 10 m/s moves by 10 mm.
+STANDS_FOR_S = 1e-3
 LONGEST_STEPS = 2.5  # longest gap that is interpolated, in steps: one missing frame
 
 
@@ -39,7 +42,8 @@ def even(points: Keypoints3D) -> Keypoints3D:
     """Return the record of one device at uniform times, from its first frame to its last.
 
     The step is the time between two frames. Positions between frames are interpolated, across one
-    missing frame at most; all other values are those of the nearest frame.
+    missing frame at most, or else those of a frame within `STANDS_FOR_S`: neighbours of a missing
+    joint stay. All other values are those of the nearest frame.
     """
     time_s = points.time_s
     if len(time_s) < 3:
@@ -52,6 +56,8 @@ def even(points: Keypoints3D) -> Keypoints3D:
     taken = points.frames(interpolation.nearest(time_s, wanted_s))
     longest_s = LONGEST_STEPS * step_s
     xyz = np.stack([interpolation.between(time_s, one, wanted_s, longest_s) for one in points.xyz])
+    near = np.abs(taken.time_s - wanted_s) <= STANDS_FOR_S
+    xyz = np.where(near[:, None, None] & np.isnan(xyz), taken.xyz, xyz)
     lost = np.isnan(xyz[..., 0]) & (taken.reason == missing_reason.OK)
     reason = np.where(lost, missing_reason.UNSEEN, taken.reason).astype(points.reason.dtype)
     return replace(taken, time_s=wanted_s, xyz=xyz, reason=reason)

@@ -11,7 +11,8 @@ from courtside.study.errors import LONGEST, InputError, StrPath
 LEAST_FILES = 10
 RENUMBER = "number the files by the frames of the video, from 0, or name the video of these files"
 OF_ALPHAPOSE = (
-    "a file of all frames; run AlphaPose with `--format open`, and name its folder `sep-json`"
+    "a file of all frames; `AlphaPose_to_OpenPose` of Pose2Sim writes one of each frame from it: "
+    "give it a folder of its own"
 )
 # ASSUME: in a take somebody is seen in more than one of so many frames.
 SPARSEST = 20

@@ -8,6 +8,7 @@ a row that nobody performed: the rest pose of its own model, all rotations zero.
 from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,7 @@ from courtside.records.devices.hierarchy import PosedHierarchy
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.skeleton import Skeleton
 from courtside.study.errors import InputError, StrPath
+from courtside.study.execution import log
 
 KIND = "inertial"
 RATES_HZ = (30.0, 50.0, 60.0)  # of the app
@@ -30,6 +32,7 @@ WRITTEN_TO_S = 0.6e-6  # the app writes its frame time with six decimals: 0.0166
 BODY_M = (0.85, 2.3)
 # Three angles of at most 2 pi, read as degrees, turn a joint by less; nobody moves so little.
 LEAST_TURN_DEG = 11.0
+HELD_S = 0.2  # ASSUME: nobody holds every joint still to the last digit for this long
 NO_TURN = 1e-6  # rounding: largest entry by which a rotation may differ from the identity
 
 
@@ -52,7 +55,8 @@ def read(
     frames of motion, or the size of the body, the angles or the rate are not a person's.
 
     A frame time of 0.016667 s means 1/60 s: as written the clock would run 20 ppm fast. Frame times
-    of 30, 50 and 60 frames a second are taken as these; others as written.
+    of 30, 50 and 60 frames a second are taken as these; others as written. Times in which every
+    row repeats one pose are told.
     """
     unit = unit or "cm"
     posed = bvh.read(path, unit_m=METRES[unit], radians=angles == "radians")
@@ -70,6 +74,7 @@ def read(
     if angles is None:
         _check_angles(path, posed)
     performed = _performed(path, posed)
+    _tell_of_held(path, posed)
     xyz, _ = hierarchy.forward(posed)
     order = [posed.hierarchy.joints.index(joint) for joint in skeleton.joints]
     return DeviceMotion(
@@ -145,3 +150,16 @@ def _performed(path: StrPath, posed: PosedHierarchy) -> NDArray:
             f"model, found {found.sum()}; record again, or remove the device from the take"
         )
     return found
+
+
+def _tell_of_held(path: StrPath, posed: PosedHierarchy) -> None:
+    repeats = (np.diff(posed.parent_from_joint, axis=0) == 0).all(axis=(1, 2, 3))
+    edges = np.flatnonzero(np.diff(repeats, prepend=False, append=False))
+    held_s = [posed.time_s[[first, last]] for first, last in edges.reshape(-1, 2)]
+    spans = [f"{first:.1f} to {last:.1f} s" for first, last in held_s if last - first >= HELD_S]
+    if spans:
+        log.tell(
+            f"{Path(path).name}: the same pose in every row from {', '.join(spans)}: the suit lost "
+            "its sensors or its link; record again, or do not use these times",
+            path,
+        )

@@ -14,11 +14,10 @@ from courtside.events import contact_time, tpose
 from courtside.geometry import interpolation
 from courtside.kinematics import filtering
 from courtside.records.devices.device_motion import DeviceMotion
-from courtside.records.devices.events import Clap, NoClap, TPose
+from courtside.records.devices.events import MOST_S, Clap, NoClap, TPose
 
 # ASSUME: this block has no source but the development takes (CONTRIBUTING.md). "Span" is the wrist
 # distance in the T-pose.
-MOST_S = 3.0  # from the T-pose to its clap
 CLOSE = 0.25  # spans: closer hands may clap
 TOGETHER = 0.2  # spans: hands that are held together are closer
 FLAT = 0.06  # spans: hands this close to their rest have nearly met

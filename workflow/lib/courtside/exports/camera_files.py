@@ -1,6 +1,6 @@
 """The cameras of a session for other programs: EasyMocap's two files and a COLMAP model.
 
-`cameras.toml` itself is what Pose2Sim, aniposelib and FreeMoCap read.
+`cameras.toml` itself is what Pose2Sim and aniposelib read.
 """
 
 from collections.abc import Sequence

@@ -86,11 +86,12 @@ def _place(joint: str) -> tuple[str, tuple[float, float, float], bool] | None:
     return body.format(letter), (x, y, -z if side == "left" and z else z), False
 
 
-# The trunk's coordinates in Pose2Sim's models, with ours.
-SAME = {
-    "L5_S1_Flex_Ext": "lumbar_extension",
-    "L5_S1_Lat_Bending": "lumbar_bending",
-    "L5_S1_axial_rotation": "lumbar_rotation",
+# The trunk's coordinates in Pose2Sim's default model: ours, and the share of one of its six coupled
+# joints. Its constraints give the other five 6.1429, 9.781 and 4.5625 times the angle of this one.
+L5_S1 = {
+    "L5_S1_Flex_Ext": ("lumbar_extension", 1 / 7.1429),
+    "L5_S1_Lat_Bending": ("lumbar_bending", 1 / 10.781),
+    "L5_S1_axial_rotation": ("lumbar_rotation", 1 / 5.5625),
 }
 ARM = ("arm_flex", "arm_add", "arm_rot")  # of the arm against the trunk, about Z, X, Y
 
@@ -99,12 +100,12 @@ def write_motion(path: StrPath, motion: SkeletalMotion, person: int) -> None:
     """Write one person's coordinates over the fitted frames as `.mot`, degrees and metres.
 
     They are those of the person's own model (`opensim_model`), of the model of Rajagopal et al.
-    2016 and of Pose2Sim's models, whose arms hang on the trunk; these share most names. A program
-    leaves out those that its model lacks. Without a fitted frame the file has no rows.
+    2016 and of Pose2Sim's default model, whose arms hang on the trunk; these share most names. A
+    program leaves out those that its model lacks. Without a fitted frame the file has no rows.
     """
     posed, _ = motion.posed(person)
     columns = {"time": posed.time_s} | opensim_model.coordinates(motion, person)
-    columns |= {name: columns[own] for name, own in SAME.items()}
+    columns |= {name: share * columns[own] for name, (own, share) in L5_S1.items()}
     _, turned = hierarchy.forward(posed)
     names = motion.segments.tolist()
     for side, letter in opensim_model.LETTERS.items():

@@ -57,9 +57,9 @@ LEG = 0.491  # length of thigh and shank, share of the height (Winter 2009, fig.
 # ASSUME: up to which an angle goes on beyond 180 degrees: an arm that points up, or its turn about
 # itself, swings round 180 by less; beyond, the arm came round by the back and is lowered.
 FAR_DEG = 240.0
-# Ranges of coordinates: metres; turns of the pelvis, which are counted (ASSUME: never so many);
-# turns of others
+# Ranges of coordinates: metres; turns of those that count them (ASSUME: never so many); of others
 WIDE_M, COUNTED, OTHERS = 100.0, 1000, 1
+COUNTING = ("pelvis_rotation", "glenohumeral")
 
 
 def body(segment: str) -> str:
@@ -83,8 +83,8 @@ def turns(segment: str) -> list[tuple[int, str, int]]:
 def coordinates(motion: SkeletalMotion, person: int) -> dict[str, NDArray]:
     """Return the coordinates of one person's fitted frames by name, degrees and metres, (T,) each.
 
-    The ground's axes are those of the TRC files. The rotation of the pelvis goes on beyond 180
-    degrees over the whole take.
+    The ground's axes are those of the TRC files. The rotation of the pelvis and the shoulders'
+    coordinates go on beyond 180 degrees over the whole take: OpenSim puts splines through them.
     """
     fitted = np.isfinite(motion.root[person]).all(axis=1)
     found: dict[str, NDArray] = {}
@@ -95,7 +95,10 @@ def coordinates(motion: SkeletalMotion, person: int) -> dict[str, NDArray]:
             place = motion.root[person, fitted][:, WORLD_AXES] - turned @ MID_HIP_M
             found |= {f"pelvis_t{axis}": place[:, k] for k, axis in enumerate("xyz")}
         own = turns(segment)
-        split = euler_deg(turned) if len(own) == 3 else _hinges_deg(turned, own[0][0], own[1][0])
+        if len(own) == 2:
+            split = _hinges_deg(turned, own[0][0], own[1][0])
+        else:
+            split = (continuous_deg if segment.endswith("humerus") else euler_deg)(turned)
         if motion.parents[at] < 0:
             split[:, 2] = np.unwrap(split[:, 2], period=360)
         found |= {name: sign * split[:, k] for k, (_, name, sign) in enumerate(own)}
@@ -115,6 +118,19 @@ def euler_deg(turned: NDArray) -> NDArray:
         near = last + (first[at] - last + 180) % 360 - 180
         first[at] = np.where(np.abs(near) <= FAR_DEG, near, first[at])
     return np.asarray(first)
+
+
+def continuous_deg(turned: NDArray) -> NDArray:
+    """Return such angles without a jump: of both sets and all turns those nearest the last ones.
+
+    They move as the segment does, but the same rotation may have others later in the take.
+    """
+    found = scipy.spatial.transform.Rotation.from_matrix(turned).as_euler("ZXY", degrees=True)
+    for at in range(1, len(found)):
+        both = np.stack([found[at], found[at] * [1, -1, 1] + 180])
+        steps = (both - found[at - 1] + 180) % 360 - 180
+        found[at] = found[at - 1] + steps[np.abs(steps).sum(axis=1).argmin()]
+    return np.asarray(found)
 
 
 def _hinges_deg(turned: NDArray, one: int, other: int) -> NDArray:
@@ -320,7 +336,7 @@ def _add_joint(parent: Element, segment: str, above: str, place: NDArray) -> Non
     listed = SubElement(joint, "coordinates")
     for name in [*(name for _, name, _ in own), *moves]:
         entry = SubElement(listed, "Coordinate", name=name)
-        turned = 2 * np.pi * (COUNTED if name == "pelvis_rotation" else OTHERS)
+        turned = 2 * np.pi * (COUNTED if name.startswith(COUNTING) else OTHERS)
         most = WIDE_M if name in moves else turned
         _text(entry, "range", (-most, most))
         _text(entry, "clamped", "false")

@@ -1,7 +1,8 @@
 """A project folder for Pose2Sim: cameras, 2D and 3D keypoints, settings; and its TRC files back.
 
 Pose2Sim sorts the folders of 2D keypoints by the last number in their names and takes the cameras
-of the calibration in the file's order, so the names carry that order. Its frames are the uniform
+of the calibration in the file's order, so the names carry that order. Its filter replaces what
+follows the last `_` in the name of a TRC file, so that is the frames. Its frames are the uniform
 times of the 3D keypoints: the clocks of the cameras are already taken into account.
 """
 
@@ -69,7 +70,8 @@ def write_project(
         for number, camera in enumerate(cameras, start=1):
             _write_2d(made / "pose", f"{camera.name}_{number:02d}", *views[camera.name])
         for person, name in enumerate(points.person_id):
-            trc.write(made / "pose-3d" / f"{Path(folder).name}_{name}.trc", named, person)
+            file = f"{Path(folder).name}_{name}_1-{len(points.time_s)}.trc"
+            trc.write(made / "pose-3d" / file, named, person)
         opensim.write_markers(made / "kinematics" / f"Markers_{OWN}.xml", list(points.joints))
         with (made / "Config.toml").open("wb") as stream:
             tomli_w.dump(_settings(points, skeleton), stream)

@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from courtside.records.devices.events import MOST_S
 from courtside.records.keypoints.body_motion import BodyMotion
 from courtside.study.errors import InputError
 
@@ -57,11 +58,11 @@ def missing(body: BodyMotion) -> str:
         return (
             f"{body.source}: expected a T-pose, found only the rest pose of its own model; film one"
         )
-    if not (body.clap_s > stop_s).any():
+    if not len(_claps_s(body)):
         claps = ", ".join(f"{time_s:.2f}" for time_s in body.clap_s) or "no time"
         return (
-            f"{body.source}: expected a clap after the T-pose of {start_s:.2f} to {stop_s:.2f} s, "
-            f"found claps at {claps}; choose another T-pose"
+            f"{body.source}: expected a clap within {MOST_S:g} s of the T-pose of {start_s:.2f} to "
+            f"{stop_s:.2f} s, found claps at {claps}; clap after each T-pose"
         )
     return ""
 
@@ -74,9 +75,8 @@ def arcs(body: BodyMotion) -> list[Arc]:
     if why := missing(body):
         raise InputError(why)
     start_s, stop_s = body.tpose_s
-    later = body.clap_s[body.clap_s > stop_s]
     still = (body.time_s >= start_s) & (body.time_s <= stop_s)
-    moving = (body.time_s >= stop_s) & (body.time_s <= later[0])
+    moving = (body.time_s >= stop_s) & (body.time_s <= _claps_s(body)[0])
     found = []
     for side in SIDES:
         shoulder, wrist = (body.joint(f"{side}_{part}")[:, PLANE] for part in ("shoulder", "wrist"))
@@ -84,6 +84,12 @@ def arcs(body: BodyMotion) -> list[Arc]:
         radius = float(np.linalg.norm(np.nanmedian(wrist[still], axis=0) - centre))
         found.append(Arc(side, body.time_s[moving], wrist[moving], centre, radius))
     return found
+
+
+def _claps_s(body: BodyMotion) -> NDArray:
+    """Return the claps that belong to the T-pose: later ones end other movements."""
+    after_s = body.clap_s - body.tpose_s[1]
+    return body.clap_s[(after_s > 0) & (after_s <= MOST_S)]
 
 
 def paths(found: Sequence[Arc]) -> pd.DataFrame:

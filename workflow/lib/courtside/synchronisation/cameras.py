@@ -73,7 +73,8 @@ def synchronise(
         offset_s = [placed[c].offset_s if c in sure else 0.0 for c in range(len(views))]
         pairs = evidence.match(time_s + np.array(offset_s)[:, None], sure)
         sure = sorted(_connected(pairs, {0, *still}))
-        adjusted = _adjust(evidence, offset_s, sure, time_s, still)
+        motion = _adjust(evidence, offset_s, sure, time_s, still)
+        adjusted = clock_adjustment.with_prior(motion, PRIOR_DRIFT)
     found = {views[0].camera: REFERENCE}
     stated_s = max((clock.uncertainty_s for clock in still.values()), default=0.0)
     for camera in range(1, len(views)):
@@ -84,7 +85,7 @@ def synchronise(
         else:
             clock = _not_found(placed.get(camera), max_offset_s)
         found[views[camera].camera] = clock
-    return _doubted(found, evidence)
+    return _doubted(found, evidence, motion)
 
 
 def of_take(
@@ -156,14 +157,11 @@ def _adjust(evidence, offset_s, sure, time_s, still) -> clock_adjustment.Adjuste
         spread = np.sqrt(np.diag(adjusted.covariance)[1::2])
         lost = (unknowns == 2) & ~(spread <= HOPELESS * PRIOR_DRIFT)
         if not lost.any():
-            break
+            return adjusted
         # One undetermined drift makes all of them infinite: that of the least evidence goes first.
         told = np.isfinite(spread[lost]).all()
         known = -spread if told else _of_drifts(evidence, offset_s, time_s)
         unknowns[np.argmin(np.where(lost, known, np.inf))] = 1
-    if not (unknowns == 2).any():
-        return adjusted
-    return clock_adjustment.with_prior(adjusted, PRIOR_DRIFT)
 
 
 def _of_drifts(evidence, offset_s, time_s) -> NDArray:
@@ -219,20 +217,53 @@ def _found(adjusted, camera, views, time_s, stated_s) -> Clock:
     )
 
 
-def _doubted(found: dict[str, Clock], evidence: Epipolar | Speeds) -> dict[str, Clock]:
-    """Return the clocks, with what speaks against those that are used."""
-    lost = _lost_frames(evidence, list(found.values()))
-    doubted = {}
-    for at, (name, clock) in enumerate(found.items()):
-        drift = clock_doubts.drift(clock, PRIOR_DRIFT) if clock.usable else ""
-        doubted[name] = replace(clock, doubt="; ".join(filter(None, [drift, lost.get(at, "")])))
-    return doubted
+def _doubted(
+    found: dict[str, Clock], evidence: Epipolar | Speeds, motion: clock_adjustment.Adjusted
+) -> dict[str, Clock]:
+    """Return the clocks, with what speaks against those that are used.
+
+    `motion` are the clocks without a prior: it spreads an impossible drift of one over all.
+    """
+    own = list(found.values())
+    doubts = _lost_frames(evidence, own, list(found))
+    estimated = np.diag(motion.covariance)[1::2] > 0
+    known = [
+        at
+        for at, clock in enumerate(own)
+        if clock.usable and at not in doubts and (estimated[at] or clock.status != "found")
+    ]
+    doubts |= _drifts(motion, known)
+    return {
+        name: replace(clock, doubt=doubts.get(at, ""))
+        for at, (name, clock) in enumerate(found.items())
+    }
 
 
-def _lost_frames(evidence: Epipolar | Speeds, own: Sequence[Clock]) -> dict[int, str]:
+def _drifts(motion: clock_adjustment.Adjusted, cameras: list[int]) -> dict[int, str]:
+    """Return what is said of cameras that drift as no clock does, by their index.
+
+    These are the ones that drift against more than half of the others, or against the most: of two
+    cameras both. The first one, against which drifts are estimated, may be wrong as any other.
+    """
+    at = 2 * np.array(cameras, int) + 1
+    covariance, drift = motion.covariance[np.ix_(at, at)], motion.drift[cameras]
+    apart, variance = drift[:, None] - drift, np.diag(covariance)
+    spread = np.sqrt(np.maximum(variance[:, None] + variance - 2 * covariance, 0))
+    wrong = np.abs(apart) > clock_doubts.MOST_DRIFT * PRIOR_DRIFT + DISTINCT * spread
+    count = wrong.sum(axis=1)
+    least = max(1, min(count.max(initial=0), (len(cameras) + 1) // 2))
+    return {
+        cameras[row]: clock_doubts.drift(1e6 * np.median(apart[row, wrong[row]]), PRIOR_DRIFT)
+        for row in np.flatnonzero(count >= least)
+    }
+
+
+def _lost_frames(
+    evidence: Epipolar | Speeds, own: Sequence[Clock], names: Sequence[str]
+) -> dict[int, str]:
     """Return what is said of cameras that lost frames, by their index.
 
-    The others see it of the worst, too: they are asked again without it.
+    The others see it of the worst, too: they are asked again without it. Of two, it may be either.
     """
     used, doubts = [at for at, clock in enumerate(own) if clock.usable], {}
     with warnings.catch_warnings():
@@ -244,6 +275,8 @@ def _lost_frames(evidence: Epipolar | Speeds, own: Sequence[Clock]) -> dict[int,
                 break
             doubts[worst] = said[worst][1]
             used.remove(worst)
+            if len(used) == 1:
+                doubts[worst] += f"; or {names[used[0]]}'s video lacks them: two cannot tell"
     return doubts
 
 
@@ -275,7 +308,7 @@ def _not_found(placed: "Placed | None", max_offset_s: float) -> Clock:
 
 # ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
 SEPARATE_S = 0.25  # minima closer than this are one
-DISTINCT = 3.0  # standard deviations by which the best offset must beat another one
+DISTINCT = 3.0  # standard deviations: of an offset better than all others, of an impossible drift
 FEWEST = 0.15  # share of the times of a pair that must overlap at an offset
 MOST_CANDIDATES = 5  # with this many other offsets, the offset is unknown
 

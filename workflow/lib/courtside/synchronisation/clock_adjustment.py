@@ -83,7 +83,7 @@ def adjust(
 def with_prior(adjusted: Adjusted, spread: float) -> Adjusted:
     """Apply a prior of standard deviation `spread`, without unit, about zero to all drifts.
 
-    The covariance of `adjusted` must be finite.
+    The covariance of the drifts in `adjusted` must be finite.
     """
     drifts = np.arange(3, len(adjusted.covariance), 2)
     gain = adjusted.covariance[:, drifts] @ np.linalg.inv(

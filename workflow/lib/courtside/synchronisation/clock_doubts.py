@@ -97,21 +97,24 @@ def doubts(
     `spells` are those of the same T-pose, `signals` on its axes, `time_s` (T,) uniform times of the
     first device's clock, `prior_drift` the standard deviation of drifts.
     """
-    said = [_exchanged(motions, spells, signals, time_s, clock), drift(clock, prior_drift)]
+    said = [
+        _exchanged(motions, spells, signals, time_s, clock),
+        drift(clock.drift_ppm, prior_drift),
+    ]
     said += _beside(signals, time_s, clock)
     return [line for line in said if line]
 
 
-def drift(clock: Clock, prior_drift: float) -> str:
+def drift(drift_ppm: float, prior_drift: float) -> str:
     """Return a line if no clock drifts as much; `prior_drift` is the standard deviation of drifts.
 
     It is empty otherwise.
     """
     most_ppm = 1e6 * MOST_DRIFT * prior_drift
-    if abs(clock.drift_ppm) <= most_ppm:
+    if abs(drift_ppm) <= most_ppm:
         return ""
     return (
-        f"expected a drift of at most {most_ppm:.0f} ppm, found {clock.drift_ppm:.0f} ppm: look "
+        f"expected a drift of at most {most_ppm:.0f} ppm, found {drift_ppm:.0f} ppm: look "
         "whether a file lacks frames, or states a wrong rate"
     )
 

@@ -21,6 +21,8 @@ SUMMARY = ("person", "measure", "value", "sigma", "sigma_camera", "unit", "n")
 OBSERVED = {"static": "points at rest", "people": "people"}  # by a check of a calibration file
 FRAMES = ("person", "time_s", "neck_reason")
 KNOWN = [missing_reason.WORDS[code] for code in (missing_reason.OK, missing_reason.INTERPOLATED)]
+# ASSUME: who is there for less of a take may be a substitute, or a player whose track was lost.
+LEAST_THERE = 0.5
 FOOTWORK = ("person", "measure", "value", "sigma", "unit", "n")
 
 
@@ -30,7 +32,8 @@ def of_take(files: dict) -> dict:
     `persons`: {person: {measure: (value, half of the 90 % interval, unit)}}; `footwork` likewise;
     `cutoffs`: {group of joints: Hz}; `strokes`: {person: rows}; `left_out`: {person: (frames
     without a neck, frames, {reason: frames}, when)}, while the person is there, and when that is;
-    `seconds`: {person: (of the path, when)}; `joints` and `cameras` as `of_skeleton` returns them;
+    `part`: {person: when}, of those who are there for less than half of the take; `seconds`:
+    {person: (of the path, when)}; `joints` and `cameras` as `of_skeleton` returns them;
     `clocks`: {camera: Clock}; `shake`: lines; `movement`, `devices`, `truth`,
     `true_paths` and `quality`: rows. Empty without a file. `InputError` if a file is missing or has
     another content.
@@ -40,12 +43,15 @@ def of_take(files: dict) -> dict:
     and `kinematics` (against the truth), and by `quality` the `file` of verdicts and the `way` in
     which the take was measured; each may be left out.
     """
-    facts: dict = {"persons": {}, "left_out": {}, "seconds": {}, "joints": {}, "cameras": {}}
+    facts: dict = {"persons": {}, "left_out": {}, "part": {}, "seconds": {}}
+    facts |= {"joints": {}, "cameras": {}}
     if files.get("summary"):
         facts["persons"] = _measures(_table(files["summary"], SUMMARY))
         frames = _table(files["frames"], FRAMES)
         by_person = list(frames.groupby("person"))
         facts["left_out"] = {p: _left_out(rows) for p, rows in by_person}
+        short = [(p, rows) for p, rows in by_person if _there(rows).mean() < LEAST_THERE]
+        facts["part"] = {p: _when(rows, rows[_there(rows)]) for p, rows in short}
         facts["seconds"] = {p: _seconds(rows) for p, rows in by_person}
     steps = _table(files["footwork"], FOOTWORK) if files.get("footwork") else None
     facts["footwork"] = {} if steps is None else _measures(steps.assign(sigma_camera=np.nan))

@@ -68,6 +68,7 @@ def of_take(facts: dict, *, max_shift_px: float, max_zoom_percent: float) -> lis
     found += judged(facts["quality"])
     found += joints(facts["joints"])
     found += [frames(person, *each) for person, each in facts["left_out"].items()]
+    found += [part(person, when) for person, when in facts["part"].items()]
     found += [distance(person, measures) for person, measures in facts["persons"].items()]
     found += [true_path(row) for row in facts["true_paths"]]
     return sorted(filter(None, found), key=lambda item: -item.level)
@@ -323,6 +324,11 @@ def true_path(row: dict) -> Warned | None:
     text = f"the distance is {abs(off):.1f} % too {'long' if off > 0 else 'short'}"
     said = "the true one of this simulated take is outside its error bar"
     return Warned(DOUBTFUL, f"{row['person']}: {text}; {said}.")
+
+
+def part(person: str, when: str) -> Warned:
+    """Return a remark on who is there for a small part of a take: lost, or no longer in view."""
+    return Warned(GOOD, f"{person}: two cameras see this person only {when}.")
 
 
 def frames(

@@ -144,9 +144,9 @@ def timelines(found: People, marks: Sequence[Mark], n_subjects: int) -> tuple[ND
 
     Several marks of one subject on different persons join these persons: the subject changes from
     one to the next when the two are nearest. Marks of different subjects on one person split the
-    person where somebody came near, best one whom these subjects were marked on, or the person has
-    no position. Raises `InputError` if neither happened. Marks with `from_s` or `to_s` hold within
-    these; there, other marks do not.
+    person where one came near whom these subjects were marked on, else where the person has no
+    position or somebody else came near. Raises `InputError` if neither happened. Marks with
+    `from_s` or `to_s` hold within these; there, other marks do not.
     """
     count, n = found.path.shape[:2]
     owner, used = np.full((count, n), -1), np.full((n_subjects, n), -1)
@@ -200,29 +200,31 @@ def _split_of(found: People, marks: Sequence[Mark]) -> Change:
 
 
 def _exchange_s(found: People, before: Mark, after: Mark, theirs: Sequence[int]) -> float:
-    """Return when a person may have become another between two marks, best one of `theirs`."""
+    """Return when a person may have become another between two marks, best one of `theirs`.
+
+    That is where they met, else in a gap or where somebody else came near.
+    """
     person = before.person
     between = (found.time_s >= before.time_s) & (found.time_s <= after.time_s)
     at, path = found.time_s[between], found.path[:, between, :2]
-    known = at[np.isfinite(path[person, :, 0])]
-    bounds = np.concatenate([[before.time_s], known, [after.time_s]])
-    gap = int(np.argmax(np.diff(bounds)))
-    one_moment = after.time_s - before.time_s < ONE_MOMENT_S
-    if not one_moment and bounds[gap + 1] - bounds[gap] > GAP_S:
-        return float(bounds[gap] + bounds[gap + 1]) / 2
     apart = np.linalg.norm(path - path[person], axis=-1)
     apart[person] = np.inf
     apart = np.nan_to_num(apart, nan=np.inf)
-    if one_moment or not apart.size or apart.min() > MEET_M:
-        raise InputError(
-            f"{after.where}: expected another person than at {before.where}, found the same one, "
-            "with nobody near in between; correct one of them, or state from_s and to_s in "
-            "people.csv"
-        )
-    near = apart[theirs].min(axis=0, initial=np.inf)
-    if near.min() > MEET_M:
-        near = apart.min(axis=0)
-    return float(at[int(np.argmin(near))])
+    known = at[np.isfinite(path[person, :, 0])]
+    bounds = np.concatenate([[before.time_s], known, [after.time_s]])
+    gap = int(np.argmax(np.diff(bounds)))
+    if after.time_s - before.time_s >= ONE_MOMENT_S:
+        if apart[theirs].min(initial=np.inf) <= MEET_M:
+            return float(at[int(np.argmin(apart[theirs].min(axis=0)))])
+        if bounds[gap + 1] - bounds[gap] > GAP_S:
+            return float(bounds[gap] + bounds[gap + 1]) / 2
+        if apart.min(initial=np.inf) <= MEET_M:
+            return float(at[int(np.argmin(apart.min(axis=0)))])
+    raise InputError(
+        f"{after.where}: expected another person than at {before.where}, found the same one, "
+        "with nobody near in between; correct one of them, or state from_s and to_s in "
+        "people.csv"
+    )
 
 
 def _one_place(found: People, before: Mark, after: Mark) -> None:
