@@ -52,20 +52,17 @@ def estimate(
     """Fit the offsets on skeletons whose true joints are known.
 
     `joints` and `true_joints` name the J and the K joints of the clips. The table has `COLUMNS`:
-    the share of each joint (both sides together) and vector; `sigma_m`, the residual per axis for a
-    person of the development bodies' size; `n`, the number of joints used. A `ValueError` if a
-    joint is never seen.
+    the share of each joint (both sides together) and vector; `sigma_m`, the residual per axis; `n`,
+    the number of joints used. A `ValueError` if a joint is never seen. Bodies are those of adults.
     """
     joints, true_joints, rows = list(joints), list(true_joints), []
-    sizes = [offset_vectors.size_of(clip.xyz, joints) for clip in clips]
     for joint in skeleton.LIMBS:
         columns_of, offset_of = [], []
-        for (clip, size), side in product(zip(clips, sizes, strict=True), SIDES):
+        for clip, side in product(clips, SIDES):
             name, person = f"{side}_{joint}", (clip.xyz, joints, side, joint)
-            basis = offset_vectors.every(*person, clip.sex, clip.cameras, clip.accepted, size)
+            basis = offset_vectors.every(*person, clip.sex, clip.cameras, clip.accepted)
             columns = np.stack(list(basis.values()), axis=-1)
             difference = clip.xyz[:, joints.index(name)] - clip.true[:, true_joints.index(name)]
-            difference = difference / size
             known = np.isfinite(difference).all(axis=-1) & np.isfinite(columns).all(axis=(-2, -1))
             columns_of.append(columns[known])
             offset_of.append(difference[known])
@@ -100,7 +97,7 @@ def correct(
 
 
 def _sizes(points: Keypoints3D) -> NDArray:
-    """Return the size (P,) of each person over that of the development bodies."""
+    """Return the size (P,) of each person over that of adults."""
     return np.array([offset_vectors.size_of(xyz, points.joints.tolist()) for xyz in points.xyz])
 
 
