@@ -15,13 +15,14 @@ from fixtures.people import view_offsets, walker
 CAMERAS = scene.ring(3)
 
 
-def written(folder, shown, off=False):
+def written(folder, shown, off=False, second=1.0):
     """Write a take that some of the cameras film, and return its record and its files.
 
-    If `off`, the cameras see limbs off as in `view_offsets`.
+    If `off`, the cameras see limbs off as in `view_offsets`. `second` is the second's size.
     """
     folder.mkdir()
     record = walker.points(n_frames=12, n_persons=2)
+    record.xyz[1] *= second
     paths = [folder / f"{camera.name}.npz" for camera in shown]
     views = walker.views(record, shown)
     if off:
@@ -63,9 +64,11 @@ def limbs_of(record):
     return [list(record.joints).index(name) for name in skeleton.JOINTS]
 
 
-def test_offsets_of_a_network_are_taken_from_its_keypoints(tmp_path):
+@pytest.mark.parametrize("second", [1.0, 0.6])
+def test_offsets_of_a_network_are_taken_from_its_keypoints(tmp_path, second):
+    """Of two adults; and of an adult and a child, whose offsets are smaller."""
     camera_models.write_toml(tmp_path / "cameras.toml", CAMERAS, source="made")
-    record, files = written(tmp_path / "a", CAMERAS, off=True)
+    record, files = written(tmp_path / "a", CAMERAS, off=True, second=second)
     names = [camera.name for camera in CAMERAS]
     exact = np.stack([
         camera_models.project(camera, record.xyz[:, :, limbs_of(record)]).reshape(24, 12, 2)

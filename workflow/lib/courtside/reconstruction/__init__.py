@@ -11,8 +11,8 @@ left_right: `swapped_views`, `apply_swaps`, `exchange`: sides that a network con
 fusion: `triangulate_take`, `merge`, `with_cameras`: half bodies, the cameras' covariance
 camera_shake: `steady`, `put_back`, `read_as_filmed`: shake removed from keypoints, and put back for
     pictures; `still`, `knocked`: tables of it; `find`, `say`: knocks described
-offset_vectors: `every`, `of_body`, `of_views`, `of_each_view`, `views`, `names`: what joint offsets
-    consist of
+offset_vectors: `every`, `of_body`, `of_views`, `of_each_view`, `views`, `names`, `size_of`: what
+    joint offsets consist of
 joint_correction: `estimate`, `correct`: a network's joint offsets; `keep`: constant limb lengths;
     `correct_then_filter`, `offsets`; `in_pictures`: keypoints without them
 error_signs: `keypoints_used`, `of_points`: what a method sees of wrong joints

@@ -1,6 +1,6 @@
 """The limb keypoints of all persons in several takes and all cameras, at common times."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -91,7 +91,7 @@ def of_limbs(
     limbs = [list(joints).index(name) for name in skeleton.JOINTS]
     xy = seen.xy[:, :, limbs]
     if offsets is not None:
-        for at in keypoints.blocks(len(seen.track)):
+        for at in _of_each(seen.track):
             some = seen.of(at)
             found = placed(cameras, some, WIDE)
             xyz = found.xyz.reshape(*some.score.shape[1:], 3)
@@ -100,6 +100,13 @@ def of_limbs(
             xy[:, at] = np.where(agrees, without, some.xy)[:, :, limbs]
     offset_px = None if offsets is None else seen.xy[:, :, limbs] - xy
     return replace(seen, xy=xy, score=seen.score[:, :, limbs], offset_px=offset_px)
+
+
+def _of_each(track: NDArray) -> Iterator[NDArray]:
+    """Yield rows by number, a block of one track's at a time, for the memory."""
+    for one in np.unique(track):
+        rows = np.flatnonzero(track == one)
+        yield from (rows[at] for at in keypoints.blocks(len(rows)))
 
 
 def _by_camera(values: NDArray, rows: Sequence[int], count: int, fill: float) -> NDArray:

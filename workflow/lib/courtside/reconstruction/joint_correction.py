@@ -53,7 +53,7 @@ def estimate(
 
     `joints` and `true_joints` name the J and the K joints of the clips. The table has `COLUMNS`:
     the share of each joint (both sides together) and vector; `sigma_m`, the residual per axis; `n`,
-    the number of joints used. A `ValueError` if a joint is never seen.
+    the number of joints used. A `ValueError` if a joint is never seen. Bodies are those of adults.
     """
     joints, true_joints, rows = list(joints), list(true_joints), []
     for joint in skeleton.LIMBS:
@@ -88,22 +88,34 @@ def correct(
     `cameras` are those of the record, needed for offsets that depend on the view. `sex_of` gives
     "m", "f" or None for persons; for others the mean of both is used. Joints without a row stay. A
     joint's offset needs shoulders, hips and the joint's own limb; if one of them is missing the
-    joint keeps its place and its offset. The square of `sigma_m` is added to the `covariance_2d` of
-    all these joints, moved or not, and taken out of `covariance_network`, which contains it: `keep`
-    must not take a joint that could not be corrected for the more certain one.
+    joint keeps its place and its offset. The square of `sigma_m`, times the person's size, is added
+    to the `covariance_2d` of all these joints, moved or not, and taken out of `covariance_network`,
+    which contains it: `keep` must not take a joint that could not be corrected for the more certain
+    one.
     """
-    return _corrected(points, table, offsets(points, table, sex_of, cameras))
+    return _corrected(points, table, offsets(points, table, sex_of, cameras), _sizes(points))
 
 
-def _corrected(points: Keypoints3D, table: pd.DataFrame, moved: NDArray) -> Keypoints3D:
-    """Subtract offsets (P, T, J, 3) m of a table, and add their scatter to the covariance."""
+def _sizes(points: Keypoints3D) -> NDArray:
+    """Return the size (P,) of each person over that of adults."""
+    return np.array([offset_vectors.size_of(xyz, points.joints.tolist()) for xyz in points.xyz])
+
+
+def _corrected(
+    points: Keypoints3D, table: pd.DataFrame, moved: NDArray, sizes: NDArray
+) -> Keypoints3D:
+    """Subtract offsets (P, T, J, 3) m of a table, and add their scatter to the covariance.
+
+    `sizes` (P,) are those of the persons.
+    """
     covariance, network = points.covariance_2d.copy(), points.covariance_network.copy()
     for joint, side in product(table["joint"].unique(), SIDES):
         at = list(points.joints).index(f"{side}_{joint}")
         sigma_m = table.loc[table["joint"] == joint, "sigma_m"].iloc[0]
-        covariance[:, :, at] += sigma_m**2 * np.eye(3)
+        scatter = np.square(sigma_m * sizes)[:, None, None, None]
+        covariance[:, :, at] += scatter * np.eye(3)
         variance = np.trace(network[:, :, at], axis1=-2, axis2=-1)[..., None, None] / 3
-        network[:, :, at] = np.maximum(variance - sigma_m**2, 0.0) * np.eye(3)
+        network[:, :, at] = np.maximum(variance - scatter, 0.0) * np.eye(3)
     return replace(
         points,
         xyz=points.xyz - np.nan_to_num(moved),
@@ -124,12 +136,13 @@ def offsets(
     A `ValueError` if the table has offsets that depend on the view, and a camera is missing.
     """
     joints, found = list(points.joints), np.full(points.xyz.shape, np.nan)
+    sizes = _sizes(points)
     sexes = [(sex_of or {}).get(str(person)) for person in points.person_id]
     by_view = table["vector"].str.startswith(offset_vectors.SEEN).any()
     used = _in_order(cameras, points.cameras) if by_view else []
     for at, (person, sex) in product(keypoints.blocks(len(points.time_s)), enumerate(sexes)):
         xyz, accepted = points.xyz[person, at], points.accepted[person, at]
-        found[person, at] = of_person(xyz, accepted, joints, table, used, sex)
+        found[person, at] = of_person(xyz, accepted, joints, table, used, sizes[person], sex)
     return found
 
 
@@ -139,18 +152,20 @@ def of_person(
     joints: list[str],
     table: pd.DataFrame,
     cameras: Sequence[Camera],
+    size: float,
     sex: str | None = None,
 ) -> NDArray:
     """Return the offsets (T, J, 3) m of one person's joints `xyz` (T, J, 3), NaN where unknown.
 
-    `accepted` (T, J, C) tells which views of the C `cameras` were used. Of a person whose sex is
-    not known the offsets are the mean of both.
+    `accepted` (T, J, C) tells which views of the C `cameras` were used, `size` is that of the whole
+    take (`offset_vectors.size_of`). Of a person whose sex is not known the offsets are the mean of
+    both.
     """
     found = np.full(xyz.shape, np.nan)
     for (joint, rows), side in product(table.groupby("joint"), SIDES):
-        basis = offset_vectors.every(xyz, joints, side, joint, sex, cameras, accepted)
+        basis = offset_vectors.every(xyz, joints, side, joint, sex, cameras, accepted, size)
         offset = sum(basis[row.vector] * row.share for row in rows.itertuples())
-        found[:, joints.index(f"{side}_{joint}")] = offset
+        found[:, joints.index(f"{side}_{joint}")] = size * offset
     return found
 
 
@@ -163,7 +178,7 @@ def in_pictures(
 ) -> NDArray:
     """Return keypoints (C, T, J, 2) px without the offsets with which each camera sees its joints.
 
-    `xy` are distorted px, `xyz` (T, J, 3) m the named joints triangulated from them, of persons
+    `xy` are distorted px, `xyz` (T, J, 3) m the named joints triangulated from them, of one person
     whose sex is not known. Keypoints whose offset is not known stay.
     """
     found = xy.copy()
@@ -178,13 +193,13 @@ def _of_each_camera(
     xyz: NDArray, joints: list[str], table: pd.DataFrame, cameras: Sequence[Camera]
 ) -> NDArray:
     """Return the offsets (C, T, J, 3) m with which each camera sees joints, NaN where unknown."""
-    found = np.full((len(cameras), *xyz.shape), np.nan)
+    found, size = np.full((len(cameras), *xyz.shape), np.nan), offset_vectors.size_of(xyz, joints)
     for (joint, rows), side in product(table.groupby("joint"), SIDES):
         at = joints.index(f"{side}_{joint}")
         ways, _ = offset_vectors.directions(cameras, xyz[:, at])
-        basis = offset_vectors.of_body(xyz, joints, side, joint)
+        basis = offset_vectors.of_body(xyz / size, joints, side, joint)
         basis |= offset_vectors.of_each_view(xyz, joints, side, joint, ways)
-        found[:, :, at] = sum(basis[row.vector] * row.share for row in rows.itertuples())
+        found[:, :, at] = size * sum(basis[row.vector] * row.share for row in rows.itertuples())
     return found
 
 
@@ -223,14 +238,15 @@ def correct_then_filter(
     moved = _steady_offsets(filtered, replace(raw, xyz=slow_xyz), table, sex_of, cameras)
     joints = raw.joints.tolist()
     limbs_m = [lengths(one, joints) for one in raw.xyz - np.nan_to_num(moved)]
+    sizes = _sizes(filtered)
     kept = [
-        keep(_corrected(raw.frames(at), table, moved[:, at]), limbs_m).xyz
+        keep(_corrected(raw.frames(at), table, moved[:, at], sizes), limbs_m).xyz
         for at in keypoints.blocks(len(raw.time_s))
     ]
     raw = replace(raw, xyz=np.concatenate(kept, axis=1))
     xyz = skeleton_filter.smooth_xyz(raw, cutoff_hz, order)
     del raw, kept  # for the memory of what follows
-    return replace(_corrected(filtered, table, moved), xyz=xyz)
+    return replace(_corrected(filtered, table, moved, sizes), xyz=xyz)
 
 
 def _steady_offsets(
