@@ -30,7 +30,7 @@ from courtside.statistics.normal_errors import MEDIAN_TO_SIGMA
 from courtside.study.errors import InputError
 
 # ASSUME: what lenses and sensors usually are, standard deviations: nearly square pixels, a
-# principal point within 3 % of the picture's width of its centre, little decentering.
+# principal point within 3 % of the picture's longer side of its centre, little decentering.
 SPREAD = {"aspect": 0.01, "k1": 0.5, "k2": 0.5, "p1": 5e-3, "p2": 5e-3}
 CENTRE_SHARE = 0.03
 ROUNDS = 12  # ASSUME: of new weights; the cost stands still before
