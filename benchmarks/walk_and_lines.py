@@ -51,7 +51,7 @@ class Walk:
         )
         for camera in near.cameras:
             image = cv2.imread(str(folder / "static" / f"{camera.name}.png"))
-            search = {"search_px": step["search_share"] * camera.size[0], "lines": step["lines"]}
+            search = {"search_px": step["search_share"] * max(camera.size), "lines": step["lines"]}
             found, reason = edges.measure(camera, image, self.one.court, **search)
             print(name, camera.name, reason or f"{len(found.line)} stretches", flush=True)
             if found is not None:

@@ -22,7 +22,7 @@ def main(cameras_toml, pictures, court_yaml, proposals_csv, *, names, search_sha
             )
         image = images.read(path)
         cameras.check_size(known[name], image.shape[1::-1], path)
-        reach = {"search_px": search_share * image.shape[1]}
+        reach = {"search_px": search_share * max(image.shape[:2])}
         found[name] = court_proposals.propose(known[name], image, court, **reach, **options)
         n = sum(not reason for reason in found[name].reason)
         log.logger.info("%s: %d of %d points proposed", name, n, len(court.points))

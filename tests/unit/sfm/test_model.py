@@ -71,8 +71,8 @@ def test_an_empty_model_is_an_empty_network(tmp_path):
 
 
 def test_what_is_known_of_a_lens_follows_its_picture():
-    mean, sigma = model.lens_prior([(1280, 720), (640, 480)])
-    np.testing.assert_array_equal(mean[:, 2:4], [[639.5, 359.5], [319.5, 239.5]])
-    np.testing.assert_allclose(sigma[:, 2:4], [[25.6, 25.6], [12.8, 12.8]])
+    mean, sigma = model.lens_prior([(1280, 720), (640, 480), (720, 1280)])
+    np.testing.assert_array_equal(mean[:, 2:4], [[639.5, 359.5], [319.5, 239.5], [359.5, 639.5]])
+    np.testing.assert_allclose(sigma[:, 2:4], [[25.6, 25.6], [12.8, 12.8], [25.6, 25.6]])
     assert np.isinf(sigma[:, 0]).all() and (mean[:, 1] == 1).all()
     assert [values.shape for values in model.lens_prior([])] == [(0, 8), (0, 8)]

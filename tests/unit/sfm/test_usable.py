@@ -69,6 +69,12 @@ def test_of_a_walker_who_stands_still_one_frame_is_kept(noise):
     np.testing.assert_array_equal(kept, why == "")
 
 
+def test_frames_of_an_upright_telephone_are_judged_as_those_of_a_level_one():
+    table, images = walk([0, 2, 2.2, 4, 4.1, 6])
+    upright = [np.rot90(image) for image in images]
+    assert usable.judge(table, upright)[1].tolist() == usable.judge(table, images)[1].tolist()
+
+
 def test_slow_walking_adds_up():
     """Each step is below the limit of 0.16 px, but frames are compared with the last kept one."""
     kept, _ = usable.judge(*walk(np.arange(13) * 0.08, noise=0.5))

@@ -50,7 +50,7 @@ class Preset:
         foot, per axis.
     click_sigma_px_at_3840, click_bias_px_at_3840 : float
         Standard deviations per axis of single clicks, and of the error that all clicks of one
-        person share; px at 3840 px width.
+        person share; px at a longer side of 3840 px.
     """
 
     name: str

@@ -115,6 +115,51 @@ def test_the_error_of_the_boards_size_is_an_error_of_the_scale():
         assert np.sqrt(np.trace(more)) == pytest.approx(0.01 * away_m, rel=1e-6)
 
 
+def filmed(seen, times):
+    """Return what a video shows of boards that rest: the same errors, and noise of each frame."""
+    parts = {key: np.repeat(getattr(seen, key), times, axis=0) for key in ("camera", "corner")}
+    frame = times * np.repeat(seen.picture, times) + np.tile(np.arange(times), len(seen.xy))
+    noise = np.random.default_rng(1).normal(0, 0.08, (len(frame), 2))
+    count = times * len(seen.pictures)
+    names, xy = tuple(f"{p:03d}" for p in range(count)), np.repeat(seen.xy, times, axis=0) + noise
+    return replace(seen, **parts, picture=frame, xy=xy, pictures=names, step=np.arange(count))
+
+
+@pytest.mark.parametrize("floor", ["7", None])
+def test_a_board_that_rests_is_stated_as_one_picture(floor):
+    """Most of a corner's error stays while nothing moves, however long it is filmed."""
+    seen = boards_made.seen(BOARD, RIG, boards_made.places(20, 3), 0.2, 0)
+    sigma_px = []
+    for times in (1, 12):
+        named = None if floor is None else str(int(floor) * times + times // 2)
+        found = adjustment.calibrate(BOARD, filmed(seen, times), SIZES, floor=named)
+        sigma_px.append([found.covariance.sigma(camera.name, "f_px") for camera in RIG])
+    assert sigma_px[1] == pytest.approx(sigma_px[0], rel=0.2)
+
+
+def test_a_camera_that_sees_a_rest_later_than_the_others_keeps_its_place():
+    seen = filmed(boards_made.seen(BOARD, RIG, boards_made.places(20, 3), 0.2, 0), 3)
+    hidden = (seen.camera == 3) & (seen.picture % 3 == 0)
+    rows = {key: getattr(seen, key)[~hidden] for key in ("camera", "picture", "corner", "xy")}
+    found = adjustment.calibrate(BOARD, replace(seen, **rows), SIZES)
+    whole = adjustment.calibrate(BOARD, seen, SIZES)
+    sigma_px = [one.covariance.sigma("c3", "f_px") for one in (found, whole)]
+    assert sigma_px[0] == pytest.approx(sigma_px[1], rel=0.2)
+
+
+def test_every_picture_of_a_board_that_moves_slowly_counts():
+    """It moves by 5 mm from frame to frame, 1 to 2 px."""
+    places = np.repeat(boards_made.places(5, 3), 8, axis=0)
+    places[:, :, 3] += 0.005 * (np.arange(40) % 8)[:, None]
+    seen = boards_made.seen(BOARD, RIG, places, 0.2, 0)
+    lenses = {camera.name: camera for camera in RIG}
+    covariance = [
+        adjustment.calibrate(BOARD, one, SIZES, lenses=lenses).covariance.covariance
+        for one in (seen, replace(seen, step=np.arange(40)))
+    ]
+    np.testing.assert_array_equal(*covariance)
+
+
 def test_misread_corners_do_not_move_the_cameras():
     places = boards_made.places(30, 5)
     seen = boards_made.seen(BOARD, RIG, places, 0.2, 1)

@@ -318,9 +318,10 @@ def test_a_court_point_behind_the_camera_that_saw_it_is_an_error():
         condense(truth, clicks, court=replace(COURT, xyz=xyz))
 
 
-def test_clicks_are_as_good_as_the_picture_is_wide():
+def test_clicks_are_as_good_as_the_picture_is_long():
     assert joint_adjustment.click_sigma(1.5, (3840, 2160)) == 1.5
     assert joint_adjustment.click_sigma(1.5, (1280, 720)) == 0.5
+    assert joint_adjustment.click_sigma(1.5, (720, 1280)) == 0.5  # the same camera on its side
 
 
 FREE = {"tie_sigma_px": 1.0, "tie_loss": np.inf, **EVERYTHING}

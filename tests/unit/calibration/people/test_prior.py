@@ -1,5 +1,7 @@
 """What is known of cameras before: stated numbers, and a covariance turned into a `Quadratic`."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -17,6 +19,8 @@ def test_stated_numbers_are_standard_deviations_with_units():
     sigma = np.sqrt(np.diag(found.covariance)).reshape(4, -1)
     expected = [*[np.radians(0.3)] * 3, *[0.03] * 3, 7.0, 0, 5.76, 5.76, 0.01, 0, 0, 0]
     np.testing.assert_allclose(sigma, [expected] * 4)
+    turned = prior.stated([replace(c, size=c.size[::-1]) for c in CAMERAS], **corner_cameras.STATED)
+    np.testing.assert_allclose(turned.covariance, found.covariance)
 
 
 def test_knowledge_is_the_inverse_of_what_is_not_fixed():

@@ -13,7 +13,7 @@ from courtside.calibration.planning.prediction import Prediction
 from courtside.calibration.records import covariance
 from courtside.evaluation.calibration import over_volume
 from courtside.geometry.camera import in_picture, project
-from fixtures.cameras import hall_plan
+from fixtures.cameras import hall_plan, scene
 
 PRIOR = (hall_plan.LENS_MEAN, hall_plan.LENS_SIGMA)
 # Median of volume_rms_cm over draws and offsets in results/plain-a/evaluation/global-n*.csv: all 18
@@ -94,6 +94,14 @@ def test_without_a_walk_the_court_points_hold_the_cameras():
     assert alone.n_ties < 20
     assert np.isnan(alone.neighbour_deg)
     assert predict(20).error_cm[1] < alone.error_cm[1] < 3
+
+
+def test_cameras_on_their_side_are_as_good():
+    turned = [scene.quarter_turned(camera) for camera in hall_plan.fixed()]
+    weights = hall_plan.WEIGHTS | {"thinning": hall_plan.THINNING, "seed": 0}
+    hall = hall_plan.COURT, hall_plan.HALL_M, hall_plan.PLAIN, PRIOR
+    found = prediction.predict(turned, hall_plan.walked(10), *hall, **weights)
+    assert found.error_cm == pytest.approx(predict(10).error_cm, rel=0.05)
 
 
 def test_a_camera_that_sees_no_point_is_named():

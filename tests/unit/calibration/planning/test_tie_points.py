@@ -81,6 +81,19 @@ def test_the_walk_decides_the_order(twenty):
     assert tie_points.path_order(images[:2], []).tolist() == [0, 1]
 
 
+def test_a_turned_camera_has_as_many_features():
+    fixed, walked = hall_plan.fixed(), hall_plan.walked(10)
+    counts = []
+    for turned in ((), fixed, [*fixed, *walked]):
+        images = [scene.quarter_turned(c) if c in turned else c for c in [*fixed, *walked]]
+        rng = np.random.default_rng(0)
+        found = tie_points.network(
+            images[:2], images[2:], hall_plan.HALL_M, hall_plan.PLAIN, PRIOR, rng
+        )
+        counts.append(np.bincount(found.image_idx, minlength=12).tolist())
+    assert counts[0] == counts[1] == counts[2]
+
+
 def test_a_smaller_picture_has_fewer_features():
     fixed, walked = hall_plan.fixed(), hall_plan.walked(10)
     K = walked[0].K / 2

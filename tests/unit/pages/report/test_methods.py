@@ -81,7 +81,7 @@ def test_no_clicks_are_told_where_none_were_used(study):
     study["sessions"].append({**study["sessions"][0], "name": "door"})
     html = re.sub(r"\s+", " ", methods_text(study))
     assert "The cameras of hall and door were calibrated" in html
-    assert "(at 3840 px width), a tie point of 2.0 robust" in html
+    assert "(at a longer side of 3840 px), a tie point of 2.0 robust" in html
     study["sessions"][1]["clicked"] = False
     html = re.sub(r"\s+", " ", methods_text(study))
     assert "of a walk and of the clicked court points (<code>sfm-n40</code>)" in html

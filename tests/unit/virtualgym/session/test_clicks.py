@@ -31,7 +31,7 @@ def test_without_errors_clicks_are_the_projections():
         np.testing.assert_allclose(found, scene.opencv_projection(camera, POINTS), atol=1e-8)
 
 
-def test_scatter_scales_with_the_width_and_the_bias_is_common_to_all_cameras():
+def test_scatter_scales_with_the_longer_side_and_the_bias_is_common_to_all_cameras():
     biases = []
     for seed in range(60):
         found = click(seed)

@@ -15,8 +15,8 @@ from courtside.study.errors import StrPath, reading
 
 HALF_PIXEL = 0.5  # COLMAP has the first pixel's corner at (0, 0), the project its centre
 # ASSUME: unknown focal length, square pixels within 0.1 %, a principal point within 2 % of the
-# width of the centre (cx, cy are in picture widths), and the mild distortion of a camera that is
-# not a fisheye.
+# picture's longer side of the centre (cx, cy are shares of it), and the mild distortion of a camera
+# that is not a fisheye.
 LENS_SIGMA = (np.inf, 1e-3, 0.02, 0.02, 0.2, 0.2, 2e-3, 2e-3)
 
 
@@ -77,7 +77,7 @@ def lens_prior(sizes: Sequence[tuple[int, int]]) -> tuple[NDArray, NDArray]:
     mean[:, 0], mean[:, 1] = width, 1.0
     mean[:, 2], mean[:, 3] = (width - 1) / 2, (height - 1) / 2
     sigma = np.tile(np.array(LENS_SIGMA), (len(width), 1))
-    sigma[:, 2:4] *= width[:, None]
+    sigma[:, 2:4] *= np.maximum(width, height)[:, None]
     return mean, sigma
 
 

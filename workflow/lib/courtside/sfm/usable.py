@@ -21,8 +21,8 @@ MIN_SHARE = 0.6  # ASSUME: of the median sharpness in the window
 # ASSUME: of photos, whose sharpness is compared with the coarse detail that each shows: of 72 parts
 # of sharp pictures none had less than 0.33, blurred by 2 px none more than 0.15.
 MIN_PHOTO_SHARE = 0.25
-# Of a picture's width, from the last kept frame: 0.6 px of 1280 is about the noise of a feature's
-# place.
+# Of a picture's longer side, from the last kept frame: 0.6 px of 1280 is about the noise of a
+# feature's place.
 STILL_SHARE = 5e-4
 # ASSUME: squared grey levels per pixel; with less in most blocks motion cannot be measured.
 MIN_TEXTURE = 1.0
@@ -71,7 +71,7 @@ def judge(
     why[[np.mean(np.asarray(image) < BLACK_LEVEL) > BLACK_SHARE for image in images]] = "dark"
     last = None
     for at in np.flatnonzero(why == "").tolist():
-        limit_px = STILL_SHARE * images[at].shape[1]
+        limit_px = STILL_SHARE * max(images[at].shape)
         if last is not None and motion_px(images[last], images[at]) < limit_px:
             why[at] = "duplicate"
         else:

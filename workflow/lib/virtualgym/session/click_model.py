@@ -26,7 +26,7 @@ BLUR_PX = 1.5  # ASSUME: of lens, sensor and coding: a thinner line loses contra
 STEP = 90.0  # ASSUME: grey levels between a line and the floor
 ALONG_PX = 10.0  # ASSUME: length of a line that the eye averages
 THROUGH_NET = 1.5  # ASSUME: factor on the scatter of a point behind the net
-LONGEST = 0.002  # ASSUME: of the picture's width: along edges at a small angle, from their lengths
+LONGEST = 0.002  # ASSUME: of the longer side: along edges at a small angle, from their lengths
 HAND_SPREAD = 0.3  # ASSUME: standard deviation of the logarithm of a person's own factor
 BIAS_PX_AT_3840, BIAS_PX = 0.7, 0.1  # ASSUME: of a person, common to all clicks
 STEP_M = 1e-3  # for derivatives
@@ -40,7 +40,7 @@ def person(rng: np.random.Generator) -> tuple[float, NDArray]:
 
 def bias_px(camera: Camera) -> float:
     """Return the standard deviation per axis of a person's bias in a camera's picture."""
-    return float(np.hypot(BIAS_PX_AT_3840 * camera.size[0] / FULL_WIDTH_PX, BIAS_PX))
+    return float(np.hypot(BIAS_PX_AT_3840 * max(camera.size) / FULL_WIDTH_PX, BIAS_PX))
 
 
 def covariance(camera: Camera, xyz: NDArray, court: Court, preset: Preset) -> NDArray:
@@ -70,9 +70,9 @@ def covariance(camera: Camera, xyz: NDArray, court: Court, preset: Preset) -> ND
     weight = _edge_sigma(width_px, preset) ** -2.0
     information = np.einsum("pe,pei,pej->pij", weight, normal, normal)
     extent, axes = np.linalg.eigh(np.nan_to_num(information))
-    longest = LONGEST * camera.size[0]
+    longest = LONGEST * max(camera.size)
     found = (axes / np.maximum(extent, longest**-2.0)[:, None]) @ axes.transpose(0, 2, 1)
-    hand = HAND_PX_AT_3840 * camera.size[0] / FULL_WIDTH_PX
+    hand = HAND_PX_AT_3840 * max(camera.size) / FULL_WIDTH_PX
     behind = np.where(behind_net(camera, xyz, court), THROUGH_NET, 1.0)
     return (found + hand**2 * np.eye(2)) * behind[:, None, None] ** 2
 

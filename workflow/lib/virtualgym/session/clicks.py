@@ -30,8 +30,8 @@ def click_points(
     points_xyz : (P, 3) float
         True places of the points, metres.
     sigma_px_at_3840 : float
-        Standard deviation per axis of one click, px, in a picture 3840 px wide; it scales with the
-        width, as a person zooms in on the same content.
+        Standard deviation per axis of one click, px, in a picture of 3840 px; it scales with the
+        longer side, as a person zooms in on the same content.
     bias_px_at_3840 : float
         Standard deviation per axis of the person's bias: one vector, the same for every click.
     rng : numpy.random.Generator
@@ -47,7 +47,7 @@ def click_points(
     clicks = {}
     for camera in cameras:
         error = bias + rng.standard_normal((len(points_xyz), 2)) * sigma_px_at_3840
-        error_px = error * camera.size[0] / click_model.FULL_WIDTH_PX
+        error_px = error * max(camera.size) / click_model.FULL_WIDTH_PX
         clicks[camera.name] = _clicked(camera, points_xyz, error_px)
     return clicks
 

@@ -116,7 +116,7 @@ def click_racket(
     ends : (F, 2, 3) float
         Top and butt, m.
     sigma_px_at_3840 : float
-        Standard deviation per axis of one click, px, in a picture 3840 px wide. The errors of one
+        Standard deviation per axis of one click, px, in a picture of 3840 px. The errors of one
         run differ only by this factor. There is no bias, which would shift both ends alike.
     again : bool
         Whether these are repeated clicks, with new errors.

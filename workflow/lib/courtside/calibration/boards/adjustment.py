@@ -30,7 +30,7 @@ from courtside.statistics.normal_errors import MEDIAN_TO_SIGMA
 from courtside.study.errors import InputError
 
 # ASSUME: what lenses and sensors usually are, standard deviations: nearly square pixels, a
-# principal point within 3 % of the picture's width of its centre, little decentering.
+# principal point within 3 % of the picture's longer side of its centre, little decentering.
 SPREAD = {"aspect": 0.01, "k1": 0.5, "k2": 0.5, "p1": 5e-3, "p2": 5e-3}
 CENTRE_SHARE = 0.03
 ROUNDS = 12  # ASSUME: of new weights; the cost stands still before
@@ -39,6 +39,7 @@ SETTLED = 1e-6  # of the cost
 CAUCHY = 2.5  # ASSUME: of the corners' sigma: where a residual has lost half its weight
 LEAST_SIGMA_PX = 0.01  # no corner is found better
 FAR_PX = 5.0  # ASSUME: a corner so far off is another, or its camera filmed at another time
+REST_PX = 1.0  # ASSUME: the median corner moves by less where a board rests; noise is less
 LEAST_NEAR = 0.7  # ASSUME: share of the corners, in pictures that two cameras see, that is nearer
 
 
@@ -110,7 +111,7 @@ def calibrate(
     error_px = np.full(seen.xy.shape, np.nan)
     error_px[usable] = problem.residuals(state.network)
     _check_rigid(seen, error_px)
-    covariance, factor = _covariance(state, fixed, sigma_px)
+    covariance, factor = _covariance(state, fixed, sigma_px, _once(seen, fixed))
     covariance += _of_size(board, state.network)
     solved = conversion.cameras_of(state.network, seen.cameras, [c.size for c in known])
     if lenses:
@@ -280,20 +281,49 @@ def _moved(
     return _placed(_State(network, boards), fixed)
 
 
-def _covariance(state: _State, fixed: _Problem, sigma_px: float) -> tuple[NDArray, float]:
+def _once(seen: Corners, fixed: _Problem) -> NDArray:
+    """Return the world and the first picture of each rest of a board that is filmed, (P,) bool.
+
+    A rest ends with a picture that another camera sees, too. Else return all pictures.
+    """
+    count = len(seen.pictures)
+    once = np.isin(np.arange(count), fixed.picture)
+    if seen.step is None:
+        return once
+    xy = np.full((count, len(seen.cameras), seen.corner.max() + 1, 2), np.nan)
+    xy[seen.picture, seen.camera, seen.corner] = seen.xy
+    order = [p for p in np.argsort(seen.step, kind="stable").tolist() if once[p]]
+    first = order[0]
+    for p in order[1:]:
+        moved = [one[np.isfinite(one)] for one in np.linalg.norm(xy[p] - xy[first], axis=-1)]
+        sees = np.isfinite(xy[p]).any(axis=(1, 2))
+        near = [len(one) > 0 and np.median(one) < REST_PX for one in moved]
+        if all(near[c] for c in np.flatnonzero(sees)):
+            once[p] = p == fixed.world
+        else:
+            first = p
+    return once
+
+
+def _covariance(
+    state: _State, fixed: _Problem, sigma_px: float, once: NDArray
+) -> tuple[NDArray, float]:
     """Return the covariance of the network's columns, and the factor of whole pictures.
+
+    Only the pictures `once` (P,) count: most of a corner's error stays while a board rests.
 
     Corners of one picture err together where cameras do not film at one time or a picture is
     blurred. The scores of whole pictures scatter then more than independent corners say; their
     mean excess over all unknowns widens the covariance (a sandwich estimate with one number). The
     slope of a score is the mean of the squared Cauchy weights, that of the information their mean.
     """
-    weight = _weight(problem.residuals(state.network), sigma_px)
+    rows = once[fixed.picture]
+    weight = np.where(rows, _weight(problem.residuals(state.network), sigma_px), 0.0)
     normal = _normal(state, fixed, weight, sigma_px, 0.0)
     inverse = np.linalg.inv(normal.information)
-    used = len(np.unique(fixed.picture))
+    used = len(np.unique(fixed.picture[rows]))
     scatter = normal.scores.T @ normal.scores * used / max(used - 1, 1)
-    slope = float((weight**2).mean() / weight.mean())
+    slope = float((weight**2).sum() / weight.sum())
     factor = max(1.0, float(np.trace(inverse @ scatter)) / (len(inverse) * slope**2))
     whole = np.zeros((len(fixed.active), len(fixed.active)))
     whole[np.ix_(fixed.active, fixed.active)] = factor * inverse

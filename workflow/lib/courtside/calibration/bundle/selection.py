@@ -217,12 +217,12 @@ def with_lens_priors(
     """Return a network with priors of usual lenses: square pixels, centred, without distortion.
 
     Standard deviations are `spread` by name of `problem.LENS`, and of the principal point
-    `centre_share` of the picture's width; `sizes` are those of the pictures by lens, px.
+    `centre_share` of the picture's longer side; `sizes` are those of the pictures by lens, px.
     """
     mean, sigma = network.lens.copy(), np.full(network.lens.shape, np.inf)
     mean[:, problem.LENS.index("aspect")] = 1.0
     mean[:, 2:4] = [[(length - 1) / 2 for length in size] for size in sizes]
-    sigma[:, 2:4] = [[centre_share * width] for width, _ in sizes]
+    sigma[:, 2:4] = [[centre_share * max(size)] for size in sizes]
     mean[:, 4:] = 0.0
     for key, value in spread.items():
         sigma[:, problem.LENS.index(key)] = value

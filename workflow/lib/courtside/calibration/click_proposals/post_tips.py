@@ -18,7 +18,7 @@ LOWER, UPPER = (0.04, 0.6), (0.4, 0.985)  # parts of a post's height that give i
 SEARCH_PX = 3.0  # across the axis
 LEAST_SCORE, LEAST_SHARE = 0.3, 0.4  # from which an axis is reliable
 OWN_PX = 0.15  # error of an axis that is not in the fit of its profiles
-END_SEARCH = 0.008  # of the picture's width: lines on the floor determine heights badly
+END_SEARCH = 0.008  # of the picture's longer side: lines on the floor determine heights badly
 END_PX = 10.0  # of the axis beyond that, on each side
 END_STEP_PX = 0.2
 BESIDE_PX = (1.5, 3.5)  # of background beside the post
@@ -115,7 +115,7 @@ def _covered(view: View, post: int, share: float) -> bool:
 
 def _end(view: View, post: int, ray: Ray) -> tuple[float, float] | None:
     """Return the shift of a post's end along its axis, and its sigma; None if unseen."""
-    reach = END_SEARCH * view.camera.size[0]
+    reach = END_SEARCH * max(view.camera.size)
     steps = np.arange(-reach - END_PX, reach + END_PX, END_STEP_PX)
     normal = np.array([-ray.direction[1], ray.direction[0]])
     half = _half_width(view, post)

@@ -10,7 +10,7 @@ from courtside.calibration.court import line_edges
 from courtside.calibration.court.court import Court
 from courtside.geometry.camera import Camera, project
 
-BLUR = 0.75, 1920  # ASSUME: px of blur, per px of width beyond this
+BLUR = 0.75, 1920  # ASSUME: px of blur, per px of the longer side beyond this
 NO_PLACE = np.full(2, np.nan), np.full((2, 2), np.nan), 0.0  # px, covariance, share that is seen
 
 
@@ -27,7 +27,7 @@ class View:
     @classmethod
     def of(cls, image: NDArray, camera: Camera, court: Court, lines: str) -> "View":
         """Return the view of a picture (H, W, 3) uint8; `lines` are "light", "dark" or "any"."""
-        blur_px = BLUR[0] * max(1.0, camera.size[0] / BLUR[1])
+        blur_px = BLUR[0] * max(1.0, max(camera.size) / BLUR[1])
         polarity = {"light": 1, "dark": -1, "any": 0}[lines]
         return cls(image.mean(axis=2).astype(np.float32), camera, court, blur_px, polarity)
 

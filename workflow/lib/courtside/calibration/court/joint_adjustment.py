@@ -31,7 +31,7 @@ from courtside.geometry.camera import Camera
 from courtside.geometry.similarity import Sim3
 from courtside.study.errors import InputError
 
-UHD = 3840  # picture width at which click sigmas are stated
+UHD = 3840  # longer side of a picture, px, at which click sigmas are stated
 # Focal lengths are correlated with the bend of the whole model, and the cost falls slowly along a
 # curved valley. Most sessions need 20 steps. With at most 20, one small session in thirty was 2.5
 # cm off instead of 0.9, and without a court the fixed cameras of one in five were 4 to 7 degrees
@@ -118,7 +118,8 @@ def condense(
     tie_sigma_px : weight of the ties. Their errors are not independent: it is larger than a
         feature's own noise
     tie_loss, click_loss : scale of the Cauchy loss, in sigmas
-    click_sigma_px : of a click per axis, at a picture width of 3840 px; in proportion at others
+    click_sigma_px : of a click per axis, in pictures with a longer side of 3840 px; in proportion
+        in others
     **thinning : arguments of `selection.thin`
 
     Returns
@@ -246,7 +247,7 @@ def free(ties: Ties) -> Solution:
 
 def click_sigma(sigma_px_at_3840: float, size: tuple[int, int]) -> float:
     """Return the sigma of a click in a picture of this size, px."""
-    return sigma_px_at_3840 * size[0] / UHD
+    return sigma_px_at_3840 * max(size) / UHD
 
 
 def click_sigmas(sigma_px_at_3840: float, cameras: Sequence[Camera]) -> NDArray:
@@ -285,7 +286,7 @@ def solve(
     ----------
     click_sigma_px, click_loss : as for `condense`
     click_bias_px : bias that all clicks in one picture share, standard deviation per axis, at a
-        width of 3840 px
+        longer side of 3840 px
     points : (P,) bool; court points to use; by default all
     factors : on the variances of clicks (scatter, by their edges, and bias) and ties; by default
         none

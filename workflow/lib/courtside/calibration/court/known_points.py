@@ -56,8 +56,8 @@ def calibrate(
 ) -> dict[str, Found]:
     """Calibrate each camera, whose pictures have the given size (px), from its clicks.
 
-    `lenses` give K and dist, for methods with a board; `click_sigma_px` is that at a picture width
-    of 3840 px. Raises `InputError` if the points do not determine a camera.
+    `lenses` give K and dist, for methods with a board; `click_sigma_px` is that at a longer
+    side of 3840 px. Raises `InputError` if the points do not determine a camera.
     """
     found: dict[str, Found] = {}
     for name, size in sizes.items():

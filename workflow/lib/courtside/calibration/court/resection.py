@@ -22,8 +22,8 @@ OUTLIER = 4.0  # sigmas; a good click is farther off in 0.03 % of cases
 CAUCHY = 3.0  # ASSUME: scale of the Cauchy loss, in sigmas
 # ASSUME: a DLT that magnifies click errors more often than this within the volume is degenerate.
 MAX_MAGNIFICATION = 30.0
-# ASSUME: of the picture's width: clicks that most miss by more are of other points. In virtual
-# halls clicks of three times the usual scatter missed by 0.005 at most.
+# ASSUME: of the picture's longer side: clicks that most miss by more are of other points. In
+# virtual halls clicks of three times the usual scatter missed by 0.005 at most.
 MAX_MISFIT = 0.01
 # ASSUME: of the points' extent: a camera farther off sees no perspective. Clicks of mirrored or
 # wrong points have the best fit at infinity.
@@ -265,7 +265,7 @@ def _check_agreement(clicks, agree, off_px, size, name) -> None:
     fewest = FEWEST["lens" if clicks.free_lens else "pose"]
     least = max(min(fewest, len(agree) - 1), 4)  # three clicks fit any pose
     few = agree.sum() < least or similarity.is_collinear(clicks.xyz[agree])
-    if few or off_px > MAX_MISFIT * size[0]:
+    if few or off_px > MAX_MISFIT * max(size):
         found = f"{agree.sum()} of {len(agree)}" if few else f"half of all {off_px:.1f} px off"
         raise InputError(
             f"camera {name}: expected {least} clicks or more that fit one camera, found {found}; "

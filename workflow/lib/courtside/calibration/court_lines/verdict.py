@@ -46,12 +46,12 @@ def examine(
 ) -> tuple[Verdict, Proposals]:
     """Find a court in a picture (H, W, 3) of a camera, judge what was found, propose its points.
 
-    `search_share` of the picture's width is as far as a line is searched for; `limits` are those of
-    `proposed`.
+    `search_share` of the picture's longer side is as far as a line is searched for; `limits` are
+    those of `proposed`.
     """
     found = search.find(image, court, lines)
     judged = judge(found, court, name, image.shape[1::-1], lines)
-    reach = {"search_px": search_share * image.shape[1]}
+    reach = {"search_px": search_share * max(image.shape[:2])}
     return judged, proposed(judged, image, court, lines=lines, **reach, **limits)
 
 

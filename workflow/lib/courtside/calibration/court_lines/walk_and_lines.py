@@ -74,13 +74,13 @@ def of_pictures(
     """Measure a court's lines in the fixed cameras' pictures, near their predicted positions.
 
     The prediction comes from walk and clicks; `search_share` is the search range as a share of the
-    picture's width. `**weights` are those of `joint_adjustment.solve`.
+    picture's longer side. `**weights` are those of `joint_adjustment.solve`.
     """
     weights = {**weights, "max_iterations": joint_adjustment.SOLVE_ITERATIONS}
     base = joint_adjustment.solve_with_factors(ties, clicks, court, **weights)
     found, remarks = {}, []
     for camera in base.cameras:
-        image, search_px = images[camera.name], search_share * camera.size[0]
+        image, search_px = images[camera.name], search_share * max(camera.size)
         seen, reason = edges.measure(camera, image, court, search_px=search_px, lines=lines)
         if seen is None:
             remarks.append(f"camera {camera.name}: court lines not used: {reason}")

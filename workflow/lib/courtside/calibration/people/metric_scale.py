@@ -91,7 +91,7 @@ class KnownLength:
     name: str
     length_m: float
     xy: NDArray  # (C, 2, 2): both ends in each camera, px, NaN where not clicked
-    click_sigma_px: float  # scatter of a click, per axis, in a picture of 3840 px width
+    click_sigma_px: float  # scatter of a click, per axis, at a longer side of 3840 px
     click_bias_px: float = 0.0  # what all clicks in one picture have in common, likewise
     on_floor: bool = False  # whether both ends lie on the floor
 
@@ -130,7 +130,7 @@ def of_clicks(
     """Return the known lengths of a session between clicked `points` (P,), `xy` (C, P, 2) px.
 
     Each of `stated` has `points`, `length_m` and perhaps `on_floor`. Scatter and bias of a click
-    are for a picture of 3840 px width. Raises `InputError` for a point that is not clicked.
+    are at a longer side of 3840 px. Raises `InputError` for a point that is not clicked.
     """
     found = []
     for one in stated:

@@ -25,14 +25,15 @@ def stated(
 ) -> CameraCovariance:
     """Return the covariance of cameras of a file, from standard deviations per number.
 
-    The principal point's is in percent of the picture's width. The other numbers of a lens count as
-    known.
+    The principal point's is in percent of the picture's longer side. The other numbers of a lens
+    count as known.
     """
     found = np.zeros((len(cameras), len(PARAMETERS)))
     for sigma, camera in zip(found, cameras, strict=True):
         sigma[:3], sigma[3 : len(POSE)] = np.radians(rotation_deg), position_m
         of_lens = {"f_px": focal_percent / 100 * camera.K[1, 1], "k1": k1}
-        of_lens |= dict.fromkeys(("cx_px", "cy_px"), principal_point_percent / 100 * camera.size[0])
+        centre_px = principal_point_percent / 100 * max(camera.size)
+        of_lens |= dict.fromkeys(("cx_px", "cy_px"), centre_px)
         for name, value in of_lens.items():
             sigma[len(POSE) + LENS.index(name)] = value
     return CameraCovariance([c.name for c in cameras], np.diag(found.ravel() ** 2))

@@ -17,7 +17,7 @@ from courtside.calibration.planning import cameras
 from courtside.geometry.camera import Camera, in_picture, project
 
 CHUNK = 4000  # points tried at once, which bounds the memory
-WIDTH_PX = 1280  # of the pictures in which textures were measured
+LONG_PX = 1280  # longer side of the pictures in which textures were measured
 # Lives begin up to this many longest mean lives before the path: 0.25 % of earlier ones would last.
 BEFORE = 6.0
 # ASSUME: of a point to an image: nearer ones are out of focus and soon out of the picture.
@@ -28,8 +28,8 @@ NEAREST_M = 1.0
 class Texture:
     """How much there is to see in a hall."""
 
-    # Features in a picture 1280 px wide that are found again from exactly the same place; in
-    # proportion to the width.
+    # Features in a picture of `LONG_PX` that are found again from exactly the same place; in
+    # proportion to the longer side.
     n_alive: float
     lives_deg: tuple[float, ...]  # mean lives, exponentially distributed, of two kinds of features
     shares: tuple[float, ...]  # of the kinds among the features of one picture
@@ -68,7 +68,7 @@ def network(
         xyz = points_on_surfaces(hall_m, CHUNK, texture.floor, rng)
         seen, n_alive = _seen(images, order, xyz, texture, rng)
         if not tried and n_alive:
-            full = max(camera.size[0] for camera in images) / WIDTH_PX
+            full = max(max(camera.size) for camera in images) / LONG_PX
             wanted = CHUNK * texture.n_alive * full / n_alive
         tried += CHUNK
         use = seen.sum(axis=1) >= 2
@@ -104,15 +104,15 @@ def points_on_surfaces(
 
 
 def _seen(images, order, xyz, texture, rng) -> tuple[NDArray, float]:
-    """Return which image sees which point, (N, V) bool, and how many a widest picture sees."""
+    """Return which image sees which point, (N, V) bool, and how many a largest picture sees."""
     angle_deg = _along(np.array([images[at].centre_in_world for at in order]), xyz)
     alive = np.zeros(angle_deg.shape, dtype=bool)
     alive[:, order] = _alive(angle_deg, texture, rng)
     for at, camera in enumerate(images):
         alive[alive[:, at], at] = _in_view(camera, xyz[alive[:, at]])
-    width_px = np.array([camera.size[0] for camera in images])
-    n_alive = alive[:, width_px == width_px.max()].sum(axis=0).mean()
-    fine = rng.random(alive.shape) < width_px / width_px.max()
+    long_px = np.array([max(camera.size) for camera in images])
+    n_alive = alive[:, long_px == long_px.max()].sum(axis=0).mean()
+    fine = rng.random(alive.shape) < long_px / long_px.max()
     return alive & fine, n_alive
 
 

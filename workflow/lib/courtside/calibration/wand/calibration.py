@@ -30,7 +30,7 @@ LEAST_PATH = 0.5  # ASSUME: path of a wand over its length, both in a picture
 # ASSUME: least extents of the path along its second and third axes, relative to the first.
 LEAST_EXTENTS = {"on a line": 0.1, "in a plane": 0.03}
 # ASSUME: of a lens from ten good chessboards, standard deviations: share of the focal length and
-# of the width, k1. In simulation (0.15 px) focal lengths are 0.21 % wrong, and with these
+# of the longer side, k1. In simulation (0.15 px) focal lengths are 0.21 % wrong, and with these
 # numbers errors of joints and cameras are as large as stated (1.50 and 11.5 mm; 1.47 and 12.8 mm).
 BOARD_SIGMA = {"f_px": 0.002, "cx_px": 0.001, "cy_px": 0.001, "k1": 0.01}
 MIDDLE_SHARE, MIDDLE_SIGMAS = 0.01, 5.0  # ASSUME: error of the middle marker, over the length
@@ -385,7 +385,7 @@ def _with_boards(
         unit = {"f_px": cameras[c].K[1, 1], "k1": 1.0}
         for key, share in BOARD_SIGMA.items():
             at = IMAGE * len(cameras) + len(LENS) * c + LENS.index(key)
-            sigma[at] = share * unit.get(key, cameras[c].size[0])
+            sigma[at] = share * unit.get(key, max(cameras[c].size))
     return adjustment.with_lens_errors(found, _active(found.state, cameras, lenses), sigma)
 
 

@@ -47,7 +47,7 @@ class Plan:
     walk: PlannedWalk | None  # None: points are clicked, and nobody walks
     n_images: tuple  # numbers of bridging images, increasing
     texture: str = TEXTURE  # a key of `courtside.calibration.planning.tie_points.TEXTURES`
-    # Scatter of a click per axis at a width of 3840 px, where it is not the study's
+    # Scatter of a click per axis at a longer side of 3840 px, where it is not the study's
     click_sigma_px: float | None = None
     target_cm: float | None = None  # error that is wanted
 
