@@ -2,6 +2,7 @@ import tracemalloc
 from dataclasses import replace
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from courtside.body_model import fit, take
 from courtside.records.devices import hierarchy
@@ -29,6 +30,21 @@ def test_joints_get_constant_bones_near_where_they_were():
     before, after = (np.linalg.norm(one.xyz - true, axis=-1) for one in (points, found))
     assert np.median(after) < 0.9 * np.median(before)
     assert np.linalg.eigvalsh(found.covariance[0]).min() > 0
+
+
+def test_an_arm_whose_plane_turns_once_by_errors_of_a_few_frames_does_not_turn_with_it():
+    points = moving_model.points(moving_model.moving(), noise_m=0.02)
+    names, xyz = points.joints.tolist(), points.xyz.copy()
+    for at in range(31, 35):
+        start, elbow, wrist = (
+            xyz[0, at, names.index(f"left_{part}")] for part in ("shoulder", "elbow", "wrist")
+        )
+        axis = (elbow - start) / np.linalg.norm(elbow - start)
+        turn = Rotation.from_rotvec(2 * np.pi * (at - 30) / 5 * axis)
+        xyz[0, at, names.index("left_wrist")] = elbow + turn.apply(wrist - elbow)
+    found = fitted(replace(points, xyz=xyz))[0].pose.local[moving_model.NAMES.index("left_humerus")]
+    steps = Rotation.from_matrix(np.swapaxes(found[:-1], 1, 2) @ found[1:]).as_rotvec()
+    assert abs(np.degrees(steps[20:45, 1].sum())) < 60  # but 360 if it turns around itself
 
 
 def test_joints_in_parts_of_a_take_are_the_same_and_need_less_memory(monkeypatch):

@@ -188,6 +188,20 @@ def test_a_largest_acceleration_is_a_change_of_velocity_over_three_tenths_of_a_s
     assert "largest change of velocity over 0.3 s" in row.definition
 
 
+def test_a_largest_acceleration_does_not_depend_on_when_the_take_began(people):
+    """0.3 s at 25 Hz are 7.5 frames."""
+    time_s, point = np.arange(100) / 25, people[0].points["neck"]
+    velocity = np.sin(8 * time_s)[:, None] * [3.0, -4.0, 0]
+    spread = (np.eye(3)[None].repeat(100, axis=0),) * 3
+    point = replace(point, velocity=velocity, covariance=spread, camera_covariance=spread)
+    values = []
+    for start_s in (0.0, 0.37, 7.0, 10.03, 1000.0):
+        person = replace(people[0], time_s=start_s + time_s, points={"neck": point}, angles={})
+        row = measures.summary([person], "filtered").set_index("measure")
+        values.append(row.loc["neck_acceleration_max", "value"])
+    np.testing.assert_allclose(values, values[0], rtol=1e-6)
+
+
 @pytest.mark.parametrize("n", [5, 8])
 def test_a_take_shorter_than_a_change_of_velocity_has_no_largest_acceleration(people, n):
     point = people[0].points["neck"]

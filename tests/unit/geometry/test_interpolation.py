@@ -23,6 +23,13 @@ def test_samples_are_met_and_the_last_is_reached_from_its_neighbour():
     np.testing.assert_allclose(share, [0, 0, 0, 1], atol=1e-12)
 
 
+@pytest.mark.parametrize(("seconds", "rate_hz", "n"), [(0.3, 25, 8), (0.15, 30, 5), (0.3, 30, 9)])
+def test_the_start_of_the_times_does_not_decide_a_window(seconds, rate_hz, n):
+    for start_s in np.random.default_rng(0).uniform(0, 1000, 40):
+        step_s = interpolation.frame_step_s(start_s + np.arange(50) / rate_hz)
+        assert interpolation.window(seconds, 1 / step_s) == n
+
+
 def test_the_nearest_sample_is_found_within_and_beyond_the_samples():
     wanted_s = np.array([-1.0, 0.04, 0.06, 0.19, 0.3, 0.36, 9.0])
     assert interpolation.nearest(TIME_S, wanted_s).tolist() == [0, 0, 1, 1, 2, 3, 3]

@@ -57,6 +57,30 @@ def test_shifted_cameras_are_found_within_8_ms(known, rate_hz):
     assert all(clock.usable for clock in found.values())
 
 
+@pytest.mark.parametrize("offset_s", [0.433, 0.37, 0.38])
+def test_cameras_that_face_each_other_are_found_wherever_the_scan_ends(offset_s):
+    """A calm person whose arm alone is fast: if a clock is wrong by a frame, it looks wrong."""
+    rng, own_s = np.random.default_rng(1), np.arange(600) / 30
+    calm = sync_takes.athlete(rng, 20.0, liveliness=0.1, reach_m=0.5)
+    fast = sync_takes.athlete(rng, 20.0, reach_m=0.0)
+    arm = [sync_takes.JOINTS.index(f"right_{part}") for part in ("elbow", "wrist")]
+
+    def person(time_s):
+        joints = calm(time_s)
+        joints[:, arm] += (fast(time_s) - sync_takes.BODY)[:, arm] - [*sync_takes.CENTRE, 0]
+        return joints
+
+    rig, views = [], []
+    for camera, y_m, shift_s in zip(CAMERAS, (-10, 23), (0.0, offset_s), strict=False):
+        facing = scene.look_at((3.05, y_m, 3), (*sync_takes.CENTRE, 1))
+        rig.append(replace(camera, cam_from_world=facing))
+        errors = {"noise_px": 1.0, "bias_px": 1.0}
+        views.append(sync_takes.seen(rng, rig[-1], [person], own_s, Clock(shift_s), **errors))
+    found = camera_sync.synchronise(views, rig, max_offset_s=2.0)["c1"]
+    assert found.status == "found"
+    assert found.from_reference(10.0) - 10.0 == pytest.approx(offset_s, abs=0.003)
+
+
 @pytest.mark.parametrize("trim_s", [(0.0, 6.0), None])
 def test_a_part_from_zero_of_which_cameras_share_little_is_told(tmp_path, capsys, trim_s):
     """The cameras start up to 5 s apart; whole videos are none of `trim_s`."""

@@ -13,6 +13,7 @@ from courtside.body_model.held import Held
 from courtside.body_model.pose import Pose
 from courtside.body_model.segments import BALL, Model
 from courtside.body_model.shape import Shape
+from courtside.geometry.interpolation import window
 from courtside.geometry.rotations import rodrigues_from_rotation
 from courtside.records.keypoints.skeleton import without_side
 
@@ -148,7 +149,7 @@ def lengthened(model: Model, shape: Shape, data: Data, pose: Pose, rate_hz: floa
     solved = np.linalg.solve(own, cross)
     said = normal[:, n_free:, n_free:] - np.swapaxes(cross, 1, 2) @ solved
     wanted = right[:, n_free:] - np.einsum("tdk,td->tk", solved, right[:, :n_free] + slope)
-    alike = max(round(ALIKE_S * rate_hz), 1)
+    alike = max(window(ALIKE_S, rate_hz), 1)
     known = said.sum(axis=0) / alike + np.diag(1 / shape.length_sigma_m**2)
     grown = np.linalg.solve(known, wanted.sum(axis=0) / alike)
     return replace(shape, offsets=shape.offsets + np.tensordot(grown, shape.by_length, 1))

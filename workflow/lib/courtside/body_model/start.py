@@ -11,6 +11,9 @@ from courtside.body_model.segments import SIDES, Model
 from courtside.geometry.rotations import rotation_from_rodrigues, unit
 
 BENT = np.radians(20)  # ASSUME: a limb that is bent less does not show the plane of its joint
+# Below 90 degrees, or a step from one side to the other could still be shorter by way of the back.
+# On 2-, 3- and 4-camera fits of `players-dev` 60 and 85 degrees remove all full turns.
+MOST_TURNED = np.radians(85)
 
 
 def pose(model: Model, place: Mapping[str, NDArray]) -> Pose:
@@ -41,10 +44,22 @@ def pose(model: Model, place: Mapping[str, NDArray]) -> Pose:
             neutral = turned[above] @ model.rest[at]
             swung = _swung(neutral, -first)
             seen = (bend > BENT)[:, None, None]
-            own = np.where(seen, _frame(-first, normal, keep_first=True), swung)
+            own = _wound(swung, np.where(seen, _frame(-first, normal, keep_first=True), swung))
             local[at] = np.swapaxes(turned[above], 1, 2) @ own
             angle[:, model.first[below]] = sign * bend
     return Pose(hips, poses.hinged(model, angle, local), angle)
+
+
+def _wound(swung: NDArray, own: NDArray) -> NDArray:
+    """Return frames `own` (T, 3, 3), which no error of a joint's plane turns by 360 degrees.
+
+    `own` are `swung`, turned about Y. If the turn passes 180 degrees between two frames, a fit, in
+    which neighbours take the shortest way, cannot undo it: then every turn is limited.
+    """
+    turn = np.arctan2(*(np.einsum("ta,ta->t", own[:, :, 2], swung[:, :, at]) for at in (0, 2)))
+    if np.abs(np.diff(turn)).max(initial=0.0) <= np.pi:
+        return own
+    return swung @ poses.about(1, np.clip(turn, -MOST_TURNED, MOST_TURNED))
 
 
 def _frame(up: NDArray, right: NDArray, keep_first: bool = False) -> NDArray:

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.geometry import rotations
+from courtside.geometry import interpolation, rotations
 from courtside.kinematics import filtering
 from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.devices.events import TPose
@@ -114,7 +114,7 @@ def measure(motion: DeviceMotion) -> dict[str, NDArray]:
     middle = smooth[:, [JOINTS.index(f"{s}_{p}") for p in ("shoulder", "hip") for s in SIDES]].mean(
         axis=1
     )
-    reach = max(1, round(STILL_S / step_s / 2))
+    reach = max(1, interpolation.window(STILL_S / 2, 1 / step_s))
     speeds = [
         _speed((at[f"{side}_wrist"] - middle) / half_m, reach, 2 * reach * step_s) for side in SIDES
     ]

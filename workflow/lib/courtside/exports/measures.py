@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from courtside.geometry.interpolation import window
 from courtside.kinematics import measures, path_length
 from courtside.kinematics.joint_angles import Angle
 from courtside.records.keypoints import missing_reason
@@ -127,10 +128,12 @@ def _peaks(time_s: NDArray, point: measures.Point) -> Iterator[Row]:
     not, and left out: they cancel or add as both velocities have one direction or opposite ones.
     """
     step_s = float(np.median(np.diff(time_s))) if len(time_s) > 1 else PEAK_S
-    inside = _inside(point.velocity, max(1, round(EDGE_S / step_s)))
+    inside = _inside(point.velocity, max(1, window(EDGE_S, 1 / step_s)))
     spread = point.covariance[1], point.camera_covariance[1]
-    yield _peak("speed_max", "m/s", point.velocity, spread, inside, max(3, round(PEAK_S / step_s)))
-    n = max(1, round(CHANGE_S / step_s))
+    yield _peak(
+        "speed_max", "m/s", point.velocity, spread, inside, max(3, window(PEAK_S, 1 / step_s))
+    )
+    n = max(1, window(CHANGE_S, 1 / step_s))
     change = _over(point.velocity, n, -1) / (n * step_s)
     own = _over(spread[0], n, 1) / (n * step_s) ** 2
     both = own, np.zeros_like(own)

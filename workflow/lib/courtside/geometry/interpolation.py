@@ -22,6 +22,11 @@ def frame_step_s(time_s: NDArray) -> float:
     return float(usual if abs(mean - usual) <= EXACT * usual else mean)
 
 
+def window(seconds: float, rate_hz: float) -> int:
+    """Return the frames of a time, halves rounded up: the last digits of times decide nothing."""
+    return int(np.floor(seconds * rate_hz + 0.5 + 1e-3))
+
+
 def shares(time_s: NDArray, wanted_s: NDArray) -> tuple[NDArray, NDArray]:
     """Return the sample before each wanted time (N,) and the share of the way to the next (N,).
 

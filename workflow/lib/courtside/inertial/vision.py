@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from courtside.geometry.interpolation import window
 from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.devices.hierarchy import PosedHierarchy
 from courtside.records.keypoints import skeleton
@@ -134,7 +135,7 @@ def _inflation(white: NDArray, weight: NDArray, seen: NDArray, rate_hz: float) -
     From short lags alone: over long ones the fit has absorbed part of the noise.
     """
     tamed = white * np.sqrt(weight)[..., None]
-    near, far = 1, max(2, round(SHORT_S * rate_hz))
+    near, far = 1, max(2, window(SHORT_S, rate_hz))
     if len(white) <= far:
         return np.ones(white.shape[1])
     power = np.sum(tamed**2, axis=(0, 2)) / np.maximum(seen.sum(axis=0), 1)

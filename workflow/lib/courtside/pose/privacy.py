@@ -7,6 +7,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.geometry.interpolation import window
 from courtside.pose import stick_drawing
 from courtside.records.keypoints.skeleton import TRUNK, Skeleton
 
@@ -58,7 +59,7 @@ def around(time_s: NDArray, xy: NDArray, frame: int) -> NDArray:
     Where a network places a face wrongly in a few frames only, these hide it too.
     """
     step_s = np.median(np.diff(time_s)) if len(time_s) > 1 else JUMP_S
-    apart = max(1, round(JUMP_S / step_s))
+    apart = max(1, window(JUMP_S, 1 / step_s))
     frames = np.unique(np.clip([frame - apart, frame, frame + apart], 0, len(time_s) - 1))
     return xy[:, frames].reshape(-1, *xy.shape[2:])
 

@@ -238,7 +238,7 @@ def find(camera: Camera, table: DataFrame) -> list[Knock]:
     turns = camera_turns(camera, table)
     level = turns * epipolar.focal_px(camera)
     step_s = np.median(np.diff(table.time_s))
-    n, least = (max(2, round(length / step_s)) for length in (WINDOW_S, LEAST_S))
+    n, least = (max(2, interpolation.window(length, 1 / step_s)) for length in (WINDOW_S, LEAST_S))
     sigma_px = np.median(table.sigma_px)
     splits = []
     for _ in range(MOST):
@@ -253,7 +253,7 @@ def find(camera: Camera, table: DataFrame) -> list[Knock]:
         near = level[max(split - n, 0) : split + n]
         spread = np.sqrt(np.mean(np.sum((near - np.median(near, axis=0)) ** 2, axis=1)))
         noise = max(LEAST_PX, LEAST_RATIO * max(rest, sigma_px), LEAST_SPREADS * spread)
-        sudden = _sudden(before, after, step, max(2, round(ABRUPT_S / step_s)))
+        sudden = _sudden(before, after, step, max(2, interpolation.window(ABRUPT_S, 1 / step_s)))
         if not (sudden and np.linalg.norm(step) > noise):
             break
         splits.append(split)

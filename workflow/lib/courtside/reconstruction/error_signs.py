@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from courtside.geometry import epipolar, triangulation
 from courtside.geometry.camera import Camera
+from courtside.geometry.interpolation import window
 from courtside.reconstruction import left_right, resampling
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import keypoints
@@ -182,7 +183,7 @@ def _jumps(points: Keypoints3D) -> NDArray:
 
 
 def _frames(seconds: float, points: Keypoints3D) -> int:
-    return max(1, round(seconds * points.rate_hz)) if len(points.time_s) > 1 else 1
+    return max(1, window(seconds, points.rate_hz)) if len(points.time_s) > 1 else 1
 
 
 def _clear_views(cameras: Sequence[Camera], points: Keypoints3D) -> NDArray:

@@ -9,6 +9,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from courtside.geometry.interpolation import window
 from courtside.strokes.signals import Signals
 
 WINDOW_S = 0.5  # ASSUME: half of the short window of the components
@@ -20,7 +21,7 @@ def times(found: Signals, hand: str, time_s: float) -> dict[str, float]:
     """Return the time that each of `CUES` gives for the stroke near a time; NaN if none."""
     arm = found.arms[hand]
     frame = int(np.argmin(np.abs(found.time_s - time_s)))
-    half = max(3, round(WINDOW_S * found.rate_hz))
+    half = max(3, window(WINDOW_S, found.rate_hz))
     near = slice(max(frame - half, 0), frame + half + 1)
     first, second = _components(found.trunk_path[near])
     speed = arm.wrist.speed[near]

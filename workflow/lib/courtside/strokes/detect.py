@@ -14,6 +14,7 @@ import pandas as pd
 import scipy
 from numpy.typing import NDArray
 
+from courtside.geometry.interpolation import window
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.strokes import STROKE_COLUMNS
 from courtside.strokes import local_fit, signals
@@ -77,7 +78,7 @@ def _timed(
 
 def _swings(found: Signals, arm: Arm) -> list[int]:
     """Return the frames at which a wrist over the head is farthest, in a swing."""
-    apart = max(1, round(APART_S * found.rate_hz))
+    apart = max(1, window(APART_S, found.rate_hz))
     high = np.where(arm.above > OVERHEAD, arm.reach, 0.0)
     peaks, _ = scipy.signal.find_peaks(high, height=FAR["overhead"], distance=apart)
     speed = arm.from_waist.sure_speed
@@ -90,7 +91,7 @@ def _lunges(found: Signals, arm: Arm) -> list[int]:
     speed, rate_hz, chosen = found.trunk.speed, found.rate_hz, []
     sure = found.trunk.sure_speed
     stops, _ = scipy.signal.find_peaks(-np.nan_to_num(speed, nan=np.inf))
-    before, after = (round(part_s * rate_hz) for part_s in REACHED_S)
+    before, after = (window(part_s, rate_hz) for part_s in REACHED_S)
     for at in stops:
         fastest = _most(sure, at, rate_hz, TRAVEL_S, 0.0)
         near = arm.reach[_around(at, before, after, len(speed))]
@@ -116,7 +117,7 @@ def _around(at: int, before: int, after: int, n_frames: int) -> NDArray:
 
 
 def _most(speed: NDArray, at: int, rate_hz: float, before_s: float, after_s: float) -> float:
-    near = speed[_around(at, round(before_s * rate_hz), round(after_s * rate_hz), len(speed))]
+    near = speed[_around(at, window(before_s, rate_hz), window(after_s, rate_hz), len(speed))]
     return float(np.nanmax(near)) if np.isfinite(near).any() else 0.0
 
 
@@ -128,7 +129,7 @@ def _extremum(
     `values` are a distance (order 1) or the square of a speed (order 2). Their second derivative
     determines the shift of the time by an error of the velocity, `sigma_m_s`.
     """
-    half = max(2, round(PEAK_S * found.rate_hz))
+    half = max(2, window(PEAK_S, found.rate_hz))
     near = _around(at, half, half, len(values))
     near = near[np.isfinite(values[near])]
     if len(near) < 4:
@@ -151,11 +152,11 @@ def playing_hand(found: Signals) -> str | None:
     """
     speed, sure, rate_hz = found.trunk.speed, found.trunk.sure_speed, found.rate_hz
     stops, _ = scipy.signal.find_peaks(
-        -np.nan_to_num(speed, nan=9.0), distance=max(1, round(0.5 * rate_hz))
+        -np.nan_to_num(speed, nan=9.0), distance=max(1, window(0.5, rate_hz))
     )
     ahead = dict.fromkeys(HANDS, 0.0)
     for stop in stops:
-        before = _around(stop, round(0.5 * rate_hz), 0, len(speed))
+        before = _around(stop, window(0.5, rate_hz), 0, len(speed))
         fastest = before[np.nanargmax(sure[before])] if np.isfinite(sure[before]).any() else stop
         if not (sure[fastest] >= TRAVEL_M_S and speed[stop] <= STOPPED * sure[fastest]):
             continue
@@ -187,7 +188,7 @@ def table(points: Keypoints3D, hand_of: Mapping[str, str | None]) -> pd.DataFram
 
 def _row(found: Signals, stroke: Stroke) -> dict[str, object]:
     arm, rate_hz = found.arms[stroke.hand], found.rate_hz
-    half = round(SWING_S * rate_hz)
+    half = window(SWING_S, rate_hz)
     swing = _around(stroke.frame, half, half, len(arm.measured))
     speed, quality = arm.speed(rate_hz)[swing], arm.measured[swing].mean()
     is_known = quality >= LEAST_MEASURED and np.isfinite(speed).any()

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.geometry.interpolation import window
+
 ROUNDS = 2  # of new weights
 FEWEST = 4  # frames of a fit: one more than it has parameters
 SIDE, SIDE_SHARE = 2, 1 / 3  # ASSUME: known frames on each side of a sure speed, and their share
@@ -44,7 +46,7 @@ class Fit:
 
 def half_width(rate_hz: float, half_s: float) -> int:
     """Return how many frames a fit uses on each side."""
-    return max(round(half_s * rate_hz), 2)
+    return max(window(half_s, rate_hz), 2)
 
 
 def fit(path: NDArray, rate_hz: float, half_s: float) -> Fit:

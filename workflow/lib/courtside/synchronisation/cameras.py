@@ -3,6 +3,7 @@
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.statistics import autocorrelation
 from courtside.study.errors import InputError
 from courtside.synchronisation import clock_adjustment, clock_doubts, lost_frames, smooth_tracks
-from courtside.synchronisation.epipolar import Epipolar
+from courtside.synchronisation.epipolar import FIRST_FADE, Epipolar
 from courtside.synchronisation.speed import Speeds
 
 MAX_OFFSET_S = 10.0  # ASSUME: cameras are started by hand within this time
@@ -145,13 +146,18 @@ def _connected(pairs: list[tuple[int, int]], known: set[int]) -> set[int]:
 def _adjust(evidence, offset_s, sure, time_s, still) -> clock_adjustment.Adjusted:
     """Adjust the clocks of the sure cameras; offsets alone where a drift cannot be determined.
 
-    Those of the cameras `still` stay.
+    Those of the cameras `still` stay. The step of the scan is so coarse that two cameras which face
+    each other can end in a wrong minimum: offsets alone are adjusted first, with wide weights.
     """
     unknowns = np.array([2 * (camera in sure) for camera in range(len(offset_s))])
     unknowns[[0, *still]] = 0
     drift = np.array(
         [1e-6 * still[c].drift_ppm if c in still else 0.0 for c in range(len(unknowns))]
     )
+    if isinstance(evidence, Epipolar):
+        wide = partial(evidence.terms, fade=FIRST_FADE)
+        first = clock_adjustment.adjust(wide, offset_s, time_s, np.minimum(unknowns, 1), drift)
+        offset_s = first.offset_s
     while True:
         adjusted = clock_adjustment.adjust(evidence.terms, offset_s, time_s, unknowns, drift)
         spread = np.sqrt(np.diag(adjusted.covariance)[1::2])

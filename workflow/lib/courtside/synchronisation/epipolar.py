@@ -21,6 +21,9 @@ FINER = 0.5  # scale of the remaining errors, relative to the first scale
 LARGEST_MATCH = 0.55  # mean loss up to which two tracklets may show one person
 BLOCK_S = 20.0  # tracklets are matched anew in each: a row of a long take shows one after another
 FADE = 4.0  # standard deviations at which an error has a quarter of its weight
+# The same for clocks as the scan leaves them: weights by `FADE` hide errors of many milliseconds.
+# On takes of `players-dev` and `cross-dev` 10 and 20 serve alike.
+FIRST_FADE = 20.0
 SMALLEST_PX = 0.3  # no network is more precise
 WINDOW_S = 3.0  # slower errors are the network's, not the clock's
 
@@ -114,7 +117,7 @@ class Epipolar:
         loss = _mean_loss(distance, scale)
         return np.nanmean(loss) if np.isfinite(loss).any() else np.nan
 
-    def terms(self, own: NDArray) -> dict[tuple[int, int], tuple[NDArray, ...]]:
+    def terms(self, own: NDArray, fade: float = FADE) -> dict[tuple[int, int], tuple[NDArray, ...]]:
         """Return the terms of each pair for `clock_adjustment.adjust`."""
         sampled = self._sample(own)
         result = {pair: np.zeros((3, own.shape[1])) for pair in self.matches}
@@ -124,7 +127,7 @@ class Epipolar:
                     tuple(part[block] for part in sampled[camera][row])
                     for camera, row in zip(pair, rows, strict=True)
                 )
-                result[pair][:, block] += self._of(pair, first, second, own[:, block])
+                result[pair][:, block] += self._of(pair, first, second, own[:, block], fade)
         return {pair: tuple(found) for pair, found in result.items()}
 
     def _sample(self, own: NDArray) -> list[list[Sample]]:
@@ -134,7 +137,7 @@ class Epipolar:
             for track, time_s in zip(self.tracks, own, strict=True)
         ]
 
-    def _of(self, pair, first, second, own) -> NDArray:
+    def _of(self, pair, first, second, own, fade) -> NDArray:
         miss, slope, bend = self._derivatives(pair, first, second)
         known = np.isfinite(miss) & np.isfinite(slope) & np.isfinite(bend)
         miss, slope, bend = (np.where(known, part, 0.0) for part in (miss, slope, bend))
@@ -144,7 +147,7 @@ class Epipolar:
             left = miss - _slow(miss, weight, window)
             sigma_px = MEDIAN_TO_SIGMA * np.median(np.abs(left[known])) if known.any() else 1.0
             sigma_px = max(sigma_px, SMALLEST_PX)
-            share = (left / (FADE * sigma_px)) ** 2
+            share = (left / (fade * sigma_px)) ** 2
             weight = known / (1 + share) ** 2
         slope, bend = (part - _slow(part, weight, window) for part in (slope, bend))
         steep = weight * slope**2
