@@ -264,6 +264,7 @@ SHOWN = {
         "stated 90 % of": "{row}",
         "hold, raw / filtered / corrected, %": " / ".join(f"{{{stage}}}" for stage in STAGES),
         "of errors above 100 mm, %": " / ".join(f"{{{stage}_large}}" for stage in STAGES),
+        "errors above 100 mm": " / ".join(f"{{{stage}_large.n}}" for stage in STAGES),
         "values, corrected": "{corrected.n}",
     },
 }
