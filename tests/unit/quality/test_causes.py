@@ -62,6 +62,18 @@ def test_two_videos_that_are_exchanged(first, second, rows):
         assert f"its video is given for {names[other]}" in cause.sentence
 
 
+@pytest.mark.parametrize(("first", "second", "at"), [(0, 1, 3), (2, 3, 0), (2, 3, 1)])
+def test_exchanged_videos_of_two_others_that_agree_with_each_other(first, second, at):
+    """Of one person, these cameras seem turned: with the videos of neighbours exchanged."""
+    right = judged.followed(judged.footage(), dict.fromkeys(SAME, (0,)))
+    cameras = list(right)
+    for one, other in ((first, second), (second, first)):
+        cameras[one] = replace(right[other], camera=right[one].camera)
+    cause = found(cameras, at)
+    assert cause.name == causes.EXCHANGED
+    assert f"the videos of c{first} and c{second} are exchanged" in cause.sentence
+
+
 def test_a_stranger_is_followed_and_the_person_never_found():
     cameras = judged.footage()
     view = cameras[2].tracklets

@@ -123,6 +123,23 @@ def test_heights_that_contradict_each_other_give_a_warning():
     assert "1.80 m is 1.91 m tall" in warning
 
 
+@pytest.mark.parametrize("stated", [[[1.66], [1.66, 1.84]], [[1.66], [1.66], [1.66, 1.84]]])
+def test_a_track_and_a_person_that_are_both_left_over_give_a_warning(stated):
+    """The tall person alone, then all of them: the one alone passes for the short one."""
+    *alone, last = range(len(stated))
+    bodies = [body(1.84, take=at) for at in alone]
+    bodies += [body(height, take=last) for height in stated[last]]
+    right = named([*([1.84] for _ in alone), stated[last]])
+    beside = body(1.5, take=last)  # somebody who is no subject
+    for shown in (bodies, [*bodies, beside]):
+        found = metric_scale.by_heights(shown, right)
+        assert found.metres == pytest.approx(2.5) and not found.warnings
+        assert metric_scale.by_heights(shown, named(stated)).warnings
+    warning = metric_scale.by_heights(bodies, named(stated)).warnings[-1]
+    assert warning.startswith(f"stated heights: take t{last + 1} shows a person of 1.5")
+    assert warning.endswith("check the heights, and who is in which take")
+
+
 def test_many_persons_are_ordered_by_length():
     heights = [1.5 + 0.05 * at for at in range(7)]
     bodies = [body(one) for one in heights[::-1]]

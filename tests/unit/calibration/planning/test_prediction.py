@@ -119,7 +119,7 @@ def test_a_camera_that_two_court_points_hardly_place_is_named():
     """Its picture holds two points of the court, and nothing that another camera sees."""
     side, back = hall_plan.fixed()
     aim = hall_plan.COURT.xyz[hall_plan.COURT.indices(["p17", "p18"])].mean(axis=0)
-    narrow = cameras.camera("narrow", (-12, 6.7, 3), aim, hall_plan.SIZE, focal_px=9000)
+    narrow = cameras.camera("narrow", (18, 6.7, 3), aim, hall_plan.SIZE, focal_px=9000)
     shown = prediction.clicks([narrow], hall_plan.COURT)["narrow"]
     assert np.isfinite(shown[:, 0]).sum() == 2
     found = predicted([side, back, narrow])

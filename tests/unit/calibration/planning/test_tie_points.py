@@ -1,12 +1,13 @@
 """Simulated ties: on the hall's surfaces, in the pictures, as many as a session's."""
 
 from dataclasses import replace
+from itertools import permutations
 
 import numpy as np
 import pytest
 
 from courtside.calibration.bundle import problem, selection
-from courtside.calibration.planning import tie_points
+from courtside.calibration.planning import cameras, tie_points
 from courtside.calibration.planning.tie_points import Texture
 from fixtures.cameras import hall_plan, scene
 
@@ -76,9 +77,30 @@ def test_lives_limit_the_angle_under_which_a_point_is_tied():
 
 def test_the_walk_decides_the_order(twenty):
     images, _ = twenty
-    order = tie_points.path_order(images[:2], images[2:])
+    order = tie_points.path_order(images[:2], images[2:], np.mean(hall_plan.HALL_M, axis=0))
     assert order.tolist() == [0, *range(2, 22), 1]
-    assert tie_points.path_order(images[:2], []).tolist() == [0, 1]
+
+
+@pytest.mark.parametrize(
+    "places",
+    [
+        [(-20, 0), (-20, 1), (0, 20), (1, 20)],  # two pairs
+        [(-6, 20), (-2, 20), (2, 20), (6, 20)],  # along one side
+        [(20, -5), (-20, -5), (-20, 5), (20, 5)],
+    ],
+)
+def test_without_a_walk_neighbours_follow_each_other_however_cameras_are_listed(places):
+    aim = (0.0, 0.0, 1.0)
+    fixed = [cameras.camera("c", (*xy, 2.0), aim, (1280, 720), fov_deg=60.0) for xy in places]
+    for listed in permutations(range(4)):
+        order = tie_points.path_order([fixed[at] for at in listed], [], np.zeros(3))
+        path = np.array(places)[[listed[at] for at in order]]
+        steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
+        shortest = min(
+            np.linalg.norm(np.diff(np.array(one), axis=0), axis=1).sum()
+            for one in permutations(places)
+        )
+        assert steps.sum() == pytest.approx(shortest)
 
 
 def test_a_turned_camera_has_as_many_features():

@@ -6,6 +6,7 @@ calibration say of a camera decides where no test does.
 """
 
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 import scipy
@@ -186,7 +187,7 @@ def _by_tests(one: _Camera, absent: float) -> Cause:
         return Cause(DETECTION, _absent(absent))
     shift_s, clock = _best_shift(one, tested)
     angle_deg, turned = _best_turn(one, tested)
-    video, exchanged = _best_video(one)
+    videos, exchanged = _best_exchange(one)
     left = {CLOCK: clock, CALIBRATION: turned, EXCHANGED: exchanged}
     left |= {IDENTITY: nearest} if _is_other(one) else {}
     name = min(left, key=lambda key: np.nan_to_num(left[key], nan=np.inf))
@@ -196,8 +197,7 @@ def _by_tests(one: _Camera, absent: float) -> Cause:
         IDENTITY: "it follows somebody else: with another person found there",
         CLOCK: f"its clock is off: moved by {shift_s:+.3f} s",
         CALIBRATION: f"its calibration is off: turned by {angle_deg:.1f} degrees",
-        EXCHANGED: f"its video is given for {video} (correct the session's file): with the people "
-        "found in that one",
+        EXCHANGED: f"{videos} (correct the session's file): with the people found there",
     }[name]
     fell = f"the error falls from {before:.2f} to {left[name]:.2f} of a person's height"
     return Cause(name, f"{words} {fell}")
@@ -297,14 +297,25 @@ def _later(seen: Seen, frames: int) -> tuple[NDArray, NDArray]:
     return at[inside], inside
 
 
-def _best_video(one: _Camera) -> tuple[str, float]:
-    """Return the other camera whose video leaves the smallest error here, and this error."""
+def _best_exchange(one: _Camera) -> tuple[str, float]:
+    """Return which videos, if exchanged, leave the smallest error here, and this error.
+
+    If no other video fits this camera, those of two cameras may be exchanged that agree with each
+    other all the same, but place everybody wrongly.
+    """
     seen, found = one.seen, [(np.inf, "")]
-    for video in (at for at in range(len(seen.cameras)) if at != one.at):
+    names = [camera.name for camera in seen.cameras]
+    for video in (at for at in range(len(names)) if at != one.at):
         error = one.left(_nearest(seen, one.at, one.expected, video)[0])
-        found.append((np.nan_to_num(error, nan=np.inf), seen.cameras[video].name))
-    error, name = min(found)
-    return name, float(error)
+        found.append((np.nan_to_num(error, nan=np.inf), f"its video is given for {names[video]}"))
+    if min(found)[0] > FITS:
+        for a, b in combinations([at for at in range(len(names)) if at not in seen.out], 2):
+            right = views.with_exchanged(seen, a, b)
+            here = _of_camera(right, one.at, right.expected(one.at))
+            error = np.nan_to_num(here.left(here.nearest), nan=np.inf)
+            found.append((error, f"the videos of {names[a]} and {names[b]} are exchanged"))
+    error, videos = min(found)
+    return videos, float(error)
 
 
 def _best_turn(one: _Camera, tested: NDArray) -> tuple[float, float]:

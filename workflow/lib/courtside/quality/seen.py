@@ -123,6 +123,15 @@ def without(seen: Seen, out: tuple[int, ...]) -> Seen:
     return replace(seen, others=found, out=out)
 
 
+def with_exchanged(seen: Seen, one: int, other: int) -> Seen:
+    """Return the same take with the videos of two cameras exchanged."""
+    order = list(range(len(seen.cameras)))
+    order[one], order[other] = other, one
+    videos = {key: getattr(seen, key)[order] for key in ("xy", "score", "height_px", "filmed")}
+    rows = [seen.rows[at] for at in order]
+    return without(replace(seen, rows=rows, **videos), seen.out)
+
+
 def disagreement(seen: Seen, used: Sequence[int]) -> float:
     """Return the disagreement of some cameras with equal weights, in heights of the person.
 

@@ -263,16 +263,17 @@ def by_heights(bodies: Sequence[Body], heights_m: Heights, share: Share = SEEN) 
     times are of different persons, unless they share a tracklet, because a camera exchanged two
     people. A track may be of no person, and a person may have no track. A take is used if all its
     heights are stated and it has as many tracks. There are warnings if another assignment agrees
-    about as well and gives another scale, and if heights contradict each other. Raises `InputError`
-    if no take can be used.
+    about as well and gives another scale, if heights contradict each other, and if both a track and
+    a person of one take are left over. Raises `InputError` if no take can be used.
     """
-    takes = _takes(bodies, heights_m, share)
-    if not takes:
+    by_name = _takes(bodies, heights_m, share)
+    if not by_name:
         raise InputError(
             "people: expected a take with `height_m` of every person, and as many tracks that show "
             f"legs and trunk, found {'; '.join(_lacking(bodies, heights_m))}; state the heights, "
             "add such a take, or state `known_lengths`: nothing else defines the scale"
         )
+    takes = list(by_name.values())
     starts = np.unique(np.concatenate([take.ratio().ravel() for take in takes]).round(4))
     found = [_converged(takes, scale) for scale in starts[np.isfinite(starts)]]
     cost, scale, ratios = min(found, key=lambda one: one[0])
@@ -283,6 +284,7 @@ def by_heights(bodies: Sequence[Body], heights_m: Heights, share: Share = SEEN) 
     sigma = float(np.linalg.norm([of_height / np.sqrt(persons), learned, BODIES_SIGMA]))
     rivals = [np.expm1(one[1] - scale) for one in found if one[0] < cost + SURE**2]
     warnings = [*_rivals(rivals, sigma), *_disagreeing(ratios, SURE * np.sqrt(2) * of_height)]
+    warnings += _left_over(by_name, scale)
     remarks = (ONE_HEIGHT,) if persons == 1 else ()
     return Scale(float(np.exp(scale)), sigma, HEIGHTS, tuple(warnings), remarks)
 
@@ -301,22 +303,21 @@ class _Assignments:
         """Return the logarithm (W, B) of metres per unit by each track."""
         return np.log(self.height_m / self.stature)
 
-    def best(self, scale: float) -> tuple[float, NDArray, NDArray]:
-        """Return the best assignment: its cost, in variances, heights and ratios (B,)."""
+    def best(self, scale: float) -> tuple[float, int]:
+        """Return the cost of the best assignment, in variances, and its index."""
         own = np.hypot(self.share_sigma, STATED_SIGMA_M / self.height_m)
         off = (self.ratio() - scale) / np.hypot(own, MEASURED_SIGMA)
         cost = np.nan_to_num(off**2, nan=NOBODY**2) @ self.weight + NOBODY**2 * self.n_unseen
-        at = int(cost.argmin())
-        return float(cost[at]), self.height_m[at], self.ratio()[at]
+        return float(cost.min()), int(cost.argmin())
 
 
-def _takes(bodies: Sequence[Body], heights_m: Heights, share: Share) -> list[_Assignments]:
+def _takes(bodies: Sequence[Body], heights_m: Heights, share: Share) -> dict[str, _Assignments]:
     """Return the assignments of all takes that can be used."""
-    each = (
-        _assignments([one for one in bodies if one.take == take], stated.values(), share)
-        for take, stated in enumerate(heights_m.values())
-    )
-    return [found for found in each if found is not None]
+    each = {
+        name: _assignments([one for one in bodies if one.take == take], stated.values(), share)
+        for take, (name, stated) in enumerate(heights_m.items())
+    }
+    return {name: found for name, found in each.items() if found is not None}
 
 
 def _lacking(bodies: Sequence[Body], heights_m: Heights) -> Iterator[str]:
@@ -366,8 +367,9 @@ def _converged(
 ) -> tuple[float, float, dict[float, float]]:
     """Return the cost, the logarithm of the scale, and the same by height, from a first scale."""
     for _ in range(ROUNDS):
-        best = [take.best(scale) for take in takes]
-        height_m, ratio = (np.concatenate(part) for part in list(zip(*best, strict=True))[1:])
+        best = [(take, take.best(scale)[1]) for take in takes]
+        height_m = np.concatenate([take.height_m[at] for take, at in best])
+        ratio = np.concatenate([take.ratio()[at] for take, at in best])
         weight = np.concatenate([take.weight for take in takes])
         ratios = {}
         for one in np.unique(height_m[np.isfinite(height_m)]):
@@ -394,3 +396,16 @@ def _disagreeing(ratios: dict[float, float], most: float) -> Iterator[str]:
             f"stated heights disagree by {100 * apart:.1f} %: if {tall:.2f} m is right, the person "
             f"of {short:.2f} m is {short * np.exp(apart):.2f} m tall; check both heights"
         )
+
+
+def _left_over(takes: Mapping[str, _Assignments], scale: float) -> Iterator[str]:
+    """Yield a warning for each take in which a track fits nobody and somebody has no track."""
+    for name, take in takes.items():
+        at = take.best(scale)[1]
+        nobody = take.stature[np.isnan(take.height_m[at])]
+        if len(nobody) and take.n_unseen[at]:
+            yield (
+                f"stated heights: take {name} shows a person of {nobody[0] * np.exp(scale):.2f} m, "
+                "whom no stated height fits, and a person of the take has no track; check the "
+                "heights, and who is in which take"
+            )

@@ -62,7 +62,7 @@ def network(
     the hall. `lens_prior` is mean and sigma of the lenses, (C + 1, 8) each.
     """
     images = [*fixed, *walked]
-    order = path_order(fixed, walked)
+    order = path_order(fixed, walked, np.asarray(hall_m).mean(axis=0))
     found, tried, wanted = [], 0, float(CHUNK)
     while tried < wanted:
         xyz = points_on_surfaces(hall_m, CHUNK, texture.floor, rng)
@@ -78,11 +78,18 @@ def network(
     return _network_of(images, len(fixed), xyz, seen, lens_prior)
 
 
-def path_order(fixed: Sequence[Camera], walked: Sequence[Camera]) -> NDArray:
-    """Return the indices of all images, fixed ones first, in the order of the walk."""
+def path_order(fixed: Sequence[Camera], walked: Sequence[Camera], middle_m: NDArray) -> NDArray:
+    """Return the indices of all images, fixed ones first, in the order of the walk.
+
+    Without a walk it is that around the hall's middle (3,) m, from behind the widest gap.
+    """
     places = np.array([camera.centre_in_world for camera in [*fixed, *walked]])
     if not walked:
-        return np.arange(len(fixed))
+        x, y, _ = (places - middle_m).T
+        azimuth = np.arctan2(y, x)
+        order = np.argsort(azimuth)
+        gap = np.diff(azimuth[order], append=azimuth[order[0]] + 2 * np.pi)
+        return np.roll(order, -int(gap.argmax()) - 1)
     return cameras.path_order(places, np.arange(len(places)) < len(fixed))
 
 
