@@ -76,13 +76,22 @@ def test_one_row_that_goes_over_to_somebody_of_another_size_is_told():
         "cam-rgb: expected one person throughout, found one of 200 px and within"
     )
     assert "one of 50 px, at 1.3 s" in said
-    later = view([[NEAR] * 35 + [nobody] * 20 + [FAR] * 15])
+    later = view([[NEAR] * 35 + [nobody] * 35 + [FAR] * 15])
     assert single_view.doubt_of_one("cam-rgb", later) is None
     squats = [[[100, 300 - height], [100, 300]] for height in np.linspace(200, 80, 15)]
     alone = view([[NEAR] * 20 + squats + squats[::-1] + [NEAR] * 20])
     assert single_view.doubt_of_one("cam-rgb", alone) is None
     wrong_once = view([[NEAR] * 20 + [FAR] * 2 + [NEAR] * 20])
     assert single_view.doubt_of_one("cam-rgb", wrong_once) is None
+
+
+def test_who_is_partly_outside_the_picture_is_of_no_known_size():
+    """The feet are below the picture, and the arms that were the widest part are lowered."""
+    wide = view([[NEAR] * 20 + [FAR] * 20])
+    assert single_view.doubt_of_one("cam-rgb", wide)
+    cut = np.zeros_like(wide.reason)
+    cut[..., 0] = missing_reason.OUT_OF_IMAGE
+    assert single_view.doubt_of_one("cam-rgb", replace(wide, reason=cut)) is None
 
 
 def test_landmarks_become_a_motion():

@@ -17,7 +17,7 @@ LEAST_SCORE = 0.5
 # bystander 0.5 m behind a player who squats it was 0.38; where nobody else is there it is 0.
 MOST_OTHERS = 0.02
 # ASSUME: nobody becomes so many times as large or small within so many frames and seconds.
-SUDDEN, SUDDEN_FRAMES, SUDDEN_S = 1.5, 5, 0.5
+SUDDEN, SUDDEN_FRAMES, SUDDEN_S = 1.5, 5, 1.0
 FIELDS = ("xy", "score", "reason", "xyz_in_body", "clothing")  # of each tracklet
 
 
@@ -55,7 +55,9 @@ def doubt_of_one(source: str, view: Keypoints2D) -> str | None:
     """
     spans = _spans(view)
     if len(spans) < 2:
-        return _doubt_of_size(source, view.time_s, spans.max(axis=0, initial=-1.0))
+        whole = (view.reason != missing_reason.OUT_OF_IMAGE).all(axis=2)
+        spans = np.where(whole, spans, -1.0).max(axis=0, initial=-1.0)
+        return _doubt_of_size(source, view.time_s, spans)
     seen = spans > 0
     who = np.where(seen.any(axis=0), spans.argmax(axis=0), -1)
     usual = np.bincount(who[who >= 0], minlength=1).argmax()
