@@ -94,7 +94,7 @@ def steps(folder, given):
     yield (
         "synchronise_cameras",
         (given.cameras, pose2d, sync),
-        {"synchronised": False, "stated": {}, **parameters["synchronise_cameras"]},
+        {"synchronised": False, "stated": {}, "trim_s": None} | parameters["synchronise_cameras"],
     )
     who = {"several": False, "calibration": given.cameras.parent.name}
     yield "associate_people", (paths, made["people"]), who

@@ -74,6 +74,14 @@ def test_exchanged_videos_of_two_others_that_agree_with_each_other(first, second
     assert f"the videos of c{first} and c{second} are exchanged" in cause.sentence
 
 
+@pytest.mark.parametrize("late_s", [1.0, 2.0])
+@pytest.mark.parametrize("at", [0, 2])
+def test_a_clock_that_is_far_off_is_no_exchange_of_videos(late_s, at):
+    cameras = judged.footage(60, offset_s={2: late_s})
+    cause = found(judged.followed(cameras, dict.fromkeys(SAME, (0,))), at)
+    assert cause.name != causes.EXCHANGED
+
+
 def test_a_stranger_is_followed_and_the_person_never_found():
     cameras = judged.footage()
     view = cameras[2].tracklets

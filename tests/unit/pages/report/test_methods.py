@@ -36,6 +36,7 @@ def test_methods_state_the_configuration(study):
         "within 0.05 of the person's height",
         "6 Hz (head), 10 Hz (arms)",
         "nothing is filtered again",
+        "less 0.35 (&plusmn; 0.5) of the length",
     ):
         assert words in html, words
 

@@ -122,6 +122,16 @@ def test_two_who_were_exchanged_met_each_other_not_in_an_occlusion_of_one_before
             assert changes(row) == (values, [pytest.approx(3.0)])
 
 
+def test_two_who_came_back_exchanged_did_it_out_of_sight_not_at_a_meeting():
+    found = crossing()  # they meet at 3 s
+    found.path[:, (named_takes.TIMES > 3.25) & (named_takes.TIMES < 5.55)] = np.nan
+    marked = [mark(0, 0, 1.0), mark(1, 1, 1.0), mark(1, 0, 5.8), mark(0, 1, 5.8)]
+    owner, used = marks.timelines(found, marked, 2)
+    for rows in (owner, used):
+        for row, values in zip(rows, ([0, 1], [1, 0]), strict=True):
+            assert changes(row) == (values, [pytest.approx(4.4, abs=0.15)])
+
+
 def test_pieces_of_one_person_are_joined():
     found = named_takes.take(3, gone=[(0, slice(20, None)), (2, slice(0, 25))]).found
     owner, used = marks.timelines(found, [mark(0, 0, 1.0), mark(0, 2, 5.0)], 1)

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from markupsafe import Markup
 
+from courtside.kinematics import measures
 from courtside.kinematics.cutoffs import RESIDUAL
 from courtside.pages import page
 from courtside.study.methods import Calibration, Fusion
@@ -88,6 +89,7 @@ def paragraphs(
     return page.render(
         "report_methods.html",
         step=parameters,
+        bias=measures.MODEL_BIAS,
         real=[session["name"] for session in sessions if not session["virtual"]],
         simulated=[session["name"] for session in sessions if session["virtual"]],
         calibrations=_calibrations(sessions),

@@ -20,6 +20,7 @@ Change = Callable[["Mark", "Mark"], float]  # when what one mark says gives way 
 # ASSUME: how exactly somebody points at a person in a paused video.
 AROUND = 0.15  # of the person's height in the picture: a pixel this far outside the body is on it
 AROUND_S = 0.3  # frames this near count, where the person was not detected in the frame itself
+AWAY_S = 2.0  # ASSUME: two who are out of sight for so long may come back in each other's place
 ONE_MOMENT_S = 0.2  # marks of two subjects closer in time than this are a contradiction
 
 
@@ -143,8 +144,8 @@ def timelines(found: People, marks: Sequence[Mark], n_subjects: int) -> tuple[ND
     """Return the subject of each person (K, N), the person of each subject (S, N); -1 for none.
 
     Several marks of one subject on different persons join these persons: the subject changes from
-    one to the next when the two are nearest. Marks of different subjects on one person split the
-    person where one came near whom these subjects were marked on, else where the person has no
+    one to the next while both are out of sight for long, else when they are nearest. Marks of
+    different subjects on one person split the person likewise, else where the person has no
     position or somebody else came near. Raises `InputError` if neither happened. Marks with
     `from_s` or `to_s` hold within these; there, other marks do not.
     """
@@ -202,7 +203,8 @@ def _split_of(found: People, marks: Sequence[Mark]) -> Change:
 def _exchange_s(found: People, before: Mark, after: Mark, theirs: Sequence[int]) -> float:
     """Return when a person may have become another between two marks, best one of `theirs`.
 
-    That is where they met, else in a gap or where somebody else came near.
+    That is while both were out of sight, else where they met, else while this one was out of sight
+    or where somebody else came near.
     """
     person = before.person
     between = (found.time_s >= before.time_s) & (found.time_s <= after.time_s)
@@ -210,14 +212,17 @@ def _exchange_s(found: People, before: Mark, after: Mark, theirs: Sequence[int])
     apart = np.linalg.norm(path - path[person], axis=-1)
     apart[person] = np.inf
     apart = np.nan_to_num(apart, nan=np.inf)
-    known = at[np.isfinite(path[person, :, 0])]
-    bounds = np.concatenate([[before.time_s], known, [after.time_s]])
-    gap = int(np.argmax(np.diff(bounds)))
+    seen = np.isfinite(path[..., 0])
+    bounds = before.time_s, after.time_s
+    of_both = [_longest_gap(at[seen[person] | seen[one]], *bounds) for one in theirs]
+    alone = _longest_gap(at[seen[person]], *bounds)
     if after.time_s - before.time_s >= ONE_MOMENT_S:
+        if max(of_both, default=(0.0, 0.0))[0] > AWAY_S:
+            return max(of_both)[1]
         if apart[theirs].min(initial=np.inf) <= MEET_M:
             return float(at[int(np.argmin(apart[theirs].min(axis=0)))])
-        if bounds[gap + 1] - bounds[gap] > GAP_S:
-            return float(bounds[gap] + bounds[gap + 1]) / 2
+        if alone[0] > GAP_S:
+            return alone[1]
         if apart.min(initial=np.inf) <= MEET_M:
             return float(at[int(np.argmin(apart.min(axis=0)))])
     raise InputError(
@@ -225,6 +230,13 @@ def _exchange_s(found: People, before: Mark, after: Mark, theirs: Sequence[int])
         "with nobody near in between; correct one of them, or state from_s and to_s in "
         "people.csv"
     )
+
+
+def _longest_gap(known_s: NDArray, start_s: float, stop_s: float) -> tuple[float, float]:
+    """Return the longest time without one of the times `known_s`: how long, and its middle."""
+    edges_s = np.concatenate([[start_s], known_s, [stop_s]])
+    gap = int(np.argmax(np.diff(edges_s)))
+    return float(edges_s[gap + 1] - edges_s[gap]), float(edges_s[gap : gap + 2].mean())
 
 
 def _one_place(found: People, before: Mark, after: Mark) -> None:
@@ -246,7 +258,9 @@ def _join_of(found: People) -> Change:
         at, path = found.time_s[between], found.path[:, between]
         apart = np.linalg.norm(path[before.person] - path[after.person], axis=-1)
         if np.isfinite(apart).any():
-            return float(at[int(np.nanargmin(apart))])
+            seen = np.isfinite(path[[before.person, after.person], :, 0]).any(axis=0)
+            away_s, middle_s = _longest_gap(at[seen], before.time_s, after.time_s)
+            return middle_s if away_s > AWAY_S else float(at[int(np.nanargmin(apart))])
         last = at[np.isfinite(path[before.person, :, 0])]
         return float(last[-1]) if len(last) else (before.time_s + after.time_s) / 2
 

@@ -18,7 +18,7 @@ NUMBERS = ("offset_s", "drift_ppm", "uncertainty_s", "drift_uncertainty_ppm")
 # ASSUME: speed of the wrist in a fast stroke, to turn an error of a clock into one of position.
 WRIST_M_S = 12.0
 FEWEST_FRAMES = 30  # ASSUME: a second of motion; with fewer, a camera's clock is not found
-LEAST_SHARED = 0.9  # ASSUME: of a part: cameras that share less of it were not meant to
+LEAST_SHARED = 0.5  # ASSUME: of a part: cameras that share less of it were not meant to
 ON_OWN_CLOCK = "`trim_s` cuts each video at the times of its own camera's clock"
 NEEDED = {  # to find a clock, by what it is of
     "camera": "film a clap that all cameras see",
