@@ -14,7 +14,7 @@ from courtside.events import contact_time, tpose
 from courtside.geometry import interpolation
 from courtside.kinematics import filtering
 from courtside.records.devices.device_motion import DeviceMotion
-from courtside.records.devices.events import MOST_S, Clap, NoClap, TPose
+from courtside.records.devices.events import CLAP_WITHIN_S, Clap, NoClap, TPose
 
 # ASSUME: this block has no source but the development takes (CONTRIBUTING.md). "Span" is the wrist
 # distance in the T-pose.
@@ -55,7 +55,7 @@ def find(motion: DeviceMotion, spells: Sequence[TPose]) -> tuple[list[Clap], lis
     after, taken = [], []
     bend_deg = tpose.measure(motion)["bend_deg"]
     for number, spell in enumerate(spells):
-        stop_s = spell.stop_s + MOST_S
+        stop_s = spell.stop_s + CLAP_WITHIN_S
         if number + 1 < len(spells):
             stop_s = min(stop_s, spells[number + 1].start_s)
         judged = _after(motion, spell, number, stop_s, bend_deg)
@@ -79,8 +79,9 @@ def none_counts(source: str, no_claps: Sequence[NoClap]) -> str:
         f"hands together only at {times}" if times else "no time at which the hands come together"
     )
     return (
-        f"{source}: expected a clap with straight arms within {MOST_S:g} s of a T-pose, found "
-        f"{seen}; clap after the T-pose, or give the device's offset_s under clocks of the take"
+        f"{source}: expected a clap with straight arms within {CLAP_WITHIN_S:g} s of a T-pose, "
+        f"found {seen}; clap after the T-pose, or give the device's offset_s under clocks of the "
+        "take"
     )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from courtside.records.devices.events import MOST_S
+from courtside.records.devices.events import CLAP_WITHIN_S
 from courtside.records.keypoints.body_motion import BodyMotion
 from courtside.study.errors import InputError
 
@@ -61,8 +61,8 @@ def missing(body: BodyMotion) -> str:
     if not len(_claps_s(body)):
         claps = ", ".join(f"{time_s:.2f}" for time_s in body.clap_s) or "no time"
         return (
-            f"{body.source}: expected a clap within {MOST_S:g} s of the T-pose of {start_s:.2f} to "
-            f"{stop_s:.2f} s, found claps at {claps}; clap after each T-pose"
+            f"{body.source}: expected a clap within {CLAP_WITHIN_S:g} s of the T-pose of "
+            f"{start_s:.2f} to {stop_s:.2f} s, found claps at {claps}; clap after each T-pose"
         )
     return ""
 
@@ -89,7 +89,7 @@ def arcs(body: BodyMotion) -> list[Arc]:
 def _claps_s(body: BodyMotion) -> NDArray:
     """Return the claps that belong to the T-pose: later ones end other movements."""
     after_s = body.clap_s - body.tpose_s[1]
-    return body.clap_s[(after_s > 0) & (after_s <= MOST_S)]
+    return body.clap_s[(after_s > 0) & (after_s <= CLAP_WITHIN_S)]
 
 
 def paths(found: Sequence[Arc]) -> pd.DataFrame:

@@ -102,8 +102,8 @@ def every(
     """Return all vectors (T, 3) m of one person's joint, by name: `of_body`, and `of_views`.
 
     `xyz` (T, J, 3) m; `accepted` (T, J, C) tells which views of the C `cameras` were used. Without
-    cameras there are none of the second kind. The vectors are those of an adult: the
-    person's own are `size` times as long (`size_of`).
+    cameras there are none of the second kind. The vectors are those of an adult: the person's own
+    are `size` times as long (`size_of`).
     """
     found = of_body(xyz / size, joints, side, joint, sex)
     if cameras and accepted is not None:

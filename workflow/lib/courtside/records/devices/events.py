@@ -8,7 +8,7 @@ from courtside.study.errors import DAMAGED, InputError, StrPath, reading, requir
 from courtside.study.execution.files import read_json, write_json
 
 FORM = "courtside events 1"
-MOST_S = 3.0  # ASSUME: from a T-pose to its clap; no source but the development takes
+CLAP_WITHIN_S = 3.0  # ASSUME: from a T-pose to its clap; no source but the development takes
 Row = TypeVar("Row")
 
 
