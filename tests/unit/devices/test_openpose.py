@@ -264,6 +264,19 @@ def test_points_of_alphapose_are_read_if_all_are_there(tmp_path, count, known):
             openpose.skeletons(tmp_path / "j")
 
 
+def test_unlimited_scores_keep_their_ratios(tmp_path, caplog):
+    """RTMW's scores reach 5 and more (Tau-J/rtmlib#42); cut at 1, most joints would be certain."""
+    caplog.set_level("INFO")
+    person = np.reshape(keypoints(), (17, 3))
+    person[:, 2] = np.linspace(0.4, 5.0, 17)
+    for name in ("0.json", "1.json"):
+        write(tmp_path / "j", name, person.ravel().tolist())
+    score = read(tmp_path / "j").score[0, 0]
+    assert np.allclose(score[:15] / score[0], person[:15, 2] / 0.4)
+    assert score.max() == 1 and score[14] < 1
+    assert "scores are not limited to 1" in caplog.text
+
+
 def test_scores_above_one_are_one(tmp_path):
     high = keypoints()
     high[2] = 1.7

@@ -191,6 +191,19 @@ def test_big_endian_depth_is_swapped():
     assert np.array_equal(rosbag.depth(message(swapped, "mono16", is_bigendian=1)), DEPTH)
 
 
+def test_rows_in_zstandard_are_read_as_the_sdk_packs_them():
+    """pyrealsense2 2.59.1 records YUYV so; 128 in both differences is grey, luma 235 is white."""
+    stored = np.full((4, 10, 2), 128, dtype=np.uint8)
+    stored[:, :8, 0] = 235
+    data = np.frombuffer(rosbag.zstd.compress(stored.tobytes()), dtype=np.uint8)
+    found = SimpleNamespace(format="YUYV; zstd; 8x4 step=20", data=data)
+    picture = rosbag.colour(found)
+    assert picture.shape == (4, 8, 3)
+    assert np.abs(picture.astype(int) - 255).max() <= 1
+    with pytest.raises(ValueError, match="found rows of 20 and 80 bytes"):
+        rosbag.colour(SimpleNamespace(format="YUYV; zstd; 8x5 step=20", data=data))
+
+
 def test_compressed_pictures_are_decoded():
     png = cv2.imencode(".png", BGR)[1].ravel()
     found = SimpleNamespace(format="rgb8; png compressed bgr8", data=png)

@@ -68,6 +68,7 @@ def read(
     _check_order(folder, skeleton.name, people)
     _check_size(folder, np.concatenate(people), size, video)
     tracks = link([people[at] for at in kept])
+    tracks[..., 2] = _up_to_one(folder, tracks[..., 2])
     return _keypoints(tracks, skeleton, camera, model, size, times[kept])
 
 
@@ -104,6 +105,20 @@ def _check_size(
             f"{how if video else 'declare `scale` or `crop_px` of the camera'}, or the "
             "folder of this camera"
         )
+
+
+# ASSUME: networks that score from 0 to 1 score one point in twenty no higher than this.
+LOGIT = 1.2
+
+
+def _up_to_one(folder: StrPath, score: NDArray) -> NDArray:
+    """Return scores from 0 to 1; the largest of unlimited ones, such as RTMW's, count as 1."""
+    high = float(np.percentile(seen, 95)) if (seen := score[np.isfinite(score)]).size else 0.0
+    if high > LOGIT:
+        message = "%s: scores are not limited to 1: divided by %.2f, which 5 %% of them exceed"
+        log.logger.info(message, folder, high)
+        score = score / high
+    return np.clip(score, 0, 1)
 
 
 # Skeletons by their number of points.
@@ -219,7 +234,7 @@ def _keypoints(
     size: tuple[int, int],
     times: NDArray,
 ) -> Keypoints2D:
-    xy, score = tracks[..., :2], np.clip(tracks[..., 2], 0, 1)
+    xy, score = tracks[..., :2], tracks[..., 2]
     reason = np.where(np.isfinite(score), missing_reason.OK, missing_reason.UNSEEN)
     with np.errstate(invalid="ignore"):
         outside = ((xy < -0.5) | (xy > np.array(size) - 0.5)).any(axis=-1)

@@ -2,11 +2,13 @@
 
 import contextlib
 import itertools
+import re
 import struct
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import apsw
@@ -166,7 +168,10 @@ def colour(message: Any) -> NDArray:
     Raises `ValueError` if its encoding is not supported or it is damaged.
     """
     if hasattr(message, "format"):
-        return _unpacked(message, message.data, cv2.IMREAD_COLOR)
+        rows = _decompressed(message)
+        if rows is None:
+            return _unpacked(message, message.data, cv2.IMREAD_COLOR)
+        message = rows
     encoding = message.encoding.lower()
     if encoding == "mjpeg":
         return _unpacked(message, message.data, cv2.IMREAD_COLOR)
@@ -206,6 +211,21 @@ def _rows(message: Any, n_bytes: int) -> NDArray:
             f"{data.size} bytes"
         )
     return data.reshape(height, step)[:, : width * n_bytes].reshape(height, width, n_bytes)
+
+
+# SDK 2.58 and later pack pictures that no image format holds: "YUYV; zstd; 640x480 step=1280".
+ROWS_IN_ZSTD = re.compile(r"(\w+); zstd; (\d+)x(\d+) step=(\d+)")
+
+
+def _decompressed(message: Any) -> SimpleNamespace | None:
+    """Return a picture whose rows are in Zstandard as a plain message, None of other formats."""
+    found = ROWS_IN_ZSTD.fullmatch(message.format)
+    if not found:
+        return None
+    raw = zstd.ZstdDecompressor().decompress(bytes(message.data), LARGEST_MESSAGE_BYTES)
+    width, height, step = map(int, found.groups()[1:])
+    data = np.frombuffer(raw, dtype=np.uint8)
+    return SimpleNamespace(encoding=found[1], width=width, height=height, step=step, data=data)
 
 
 def _unpacked(message: Any, packed: Any, flags: int) -> NDArray:
