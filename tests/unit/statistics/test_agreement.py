@@ -59,6 +59,17 @@ def test_three_subjects_are_not_sure():
     assert "as far as 3 subjects tell" in row["sentence"]
 
 
+def test_networks_that_may_be_exchanged_are_not_said_to_differ():
+    """Limits of 0.8 smallest detectable changes, by three subjects: at most 5 % are a `no`."""
+    noise = 0.8 * np.sqrt(2)
+    table = compared({f"m{at}": (1.0, 0.0, noise) for at in range(150)}, subjects=3, repeats=5)
+    assert (table["verdict"] == "no").mean() <= 0.05
+    unsure = table[(table["verdict"] == "unsure") & (table["upper"] > table["detectable"])]
+    assert len(unsure) > 20
+    assert unsure["sentence"].str.startswith("unsure for m").all()
+    assert unsure["sentence"].str.contains("exceed the smallest detectable change").all()
+
+
 def test_independent_errors_of_one_size_have_limits_as_wide_as_the_smallest_change():
     rng = np.random.default_rng(5)
     rows = values({"equal": (0.0, 0.0, 0.0)}, subjects=300, repeats=10)

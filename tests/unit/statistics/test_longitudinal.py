@@ -75,6 +75,18 @@ def test_a_large_change_is_real_and_one_take_each_tells_nothing():
     assert np.isnan(row["detectable"])
 
 
+def test_counts_whose_repeats_are_all_equal_tell_nothing():
+    """Six takes of 4 steps do not say that 5 are a change: the next count may differ."""
+    equal = rows([("a", [4.0] * 3, {}), ("b", [4.0] * 3, {}), ("c", [5.0], {})], measure="steps")
+    changes = compared(equal)[1]
+    assert changes["verdict"].tolist() == ["untold"] * 2
+    assert changes["detectable"].isna().all()
+    study = pd.DataFrame({"measure": ["steps"], "detectable": [0.0], "freedom": [12]})
+    assert compared(equal, study)[1]["verdict"].tolist() == ["untold"] * 2
+    study["detectable"] = 3.0
+    assert compared(equal, study)[1]["verdict"].tolist() == ["within"] * 2
+
+
 def test_a_study_of_repeats_stands_in_for_missing_ones():
     single = rows([("a", [8.0], {}), ("b", [9.0], {})])
     sem = 0.3

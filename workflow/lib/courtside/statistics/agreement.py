@@ -54,10 +54,11 @@ def compare(
 ) -> pd.DataFrame:
     """Compare two networks, one row per measure of the `pairs` of `pair`.
 
-    Columns: `agreement.table.csv` of `docs/results.md`. A verdict is `unsure` if the limits lie
-    within the change, their intervals do not; `unknown` for too few values. Takes of one subject
-    in one session are repeats; what differs between sessions is not counted as their spread.
-    `InputError` if no measure has `min_subjects` subjects with `min_repeats` repeats each.
+    Columns: `agreement.table.csv` of `docs/results.md`. A verdict is `unsure` if the 95 %
+    intervals of the limits contain the smallest detectable change; `unknown` for too few values.
+    Takes of one subject in one session are repeats; what differs between sessions is not counted as
+    their spread. `InputError` if no measure has `min_subjects` subjects with `min_repeats` repeats
+    each.
     """
     table = [
         _row(name, unit, part, networks, min_subjects, min_repeats)
@@ -121,7 +122,7 @@ def _with_interval(name: str, value: float, ends: tuple[float, float]) -> dict[s
 def verdict(row: Mapping[str, Any], networks: tuple[str, str]) -> dict[str, str]:
     """Say whether two networks may be exchanged for one measure: verdict and sentence.
 
-    `row` holds measure, unit, lower, upper, lower_from, upper_to, detectable, n_subjects,
+    `row` holds measure, unit, the limits and their intervals, detectable, n_subjects,
     definitions_differ.
 
     Two networks without bias, with independent errors as large as the repeats', have limits of
@@ -135,14 +136,15 @@ def verdict(row: Mapping[str, Any], networks: tuple[str, str]) -> dict[str, str]
     mark = (
         f"; defined differently: {row['definitions_differ']}" if row["definitions_differ"] else ""
     )
-    if max(-row["lower"], row["upper"]) > row["detectable"]:
-        return {"verdict": NO, "sentence": f"not for {what}: {span} exceed {change}{mark}"}
-    words, within = f"{both} may be exchanged for {what}", f"{span} lie within {change}"
-    reach = max(-row["lower_from"], row["upper_to"])
-    if reach > row["detectable"]:
-        words += f" as far as {row['n_subjects']} subjects tell: {within}, but their 95 % intervals"
-        return {"verdict": UNSURE, "sentence": f"{words} reach {reach:.3g} {unit}{mark}"}
-    return {"verdict": YES, "sentence": f"{words}: {within}, with their 95 % intervals{mark}"}
+    exceed = max(-row["lower"], row["upper"]) > row["detectable"]
+    limits = f"{span} {'exceed' if exceed else 'lie within'} {change}"
+    if max(-row["lower_to"], row["upper_from"]) > row["detectable"]:
+        return {"verdict": NO, "sentence": f"not for {what}: {limits}{mark}"}
+    if max(-row["lower_from"], row["upper_to"]) > row["detectable"]:
+        words = f"unsure for {what}, as far as {row['n_subjects']} subjects tell: {limits}, but"
+        return {"verdict": UNSURE, "sentence": f"{words} their 95 % intervals contain it{mark}"}
+    words = f"{both} may be exchanged for {what}: {limits}, with their 95 % intervals"
+    return {"verdict": YES, "sentence": words + mark}
 
 
 @dataclass(frozen=True)

@@ -114,8 +114,9 @@ def errors_of_measurement(
     """Return each measure's standard error of measurement: sem and freedom, by measure.
 
     From `detectable` where it has the measure, and else from the takes of `of_subject` within one
-    session: NaN where there are none. `detectable` (measure, detectable, freedom) holds smallest
-    detectable changes of single takes from a study of repeats.
+    session: NaN where there are none, or where they are all equal, as counts often are: how far
+    others may lie from these is unknown, not 0. `detectable` (measure, detectable, freedom) holds
+    smallest detectable changes of single takes from a study of repeats.
     """
     keys = ["measure", "session", *CONDITIONS, "definition"]
     own = rows.dropna(subset=["value"]).groupby(keys, sort=False)["value"]
@@ -125,9 +126,10 @@ def errors_of_measurement(
     pooled = spread.groupby("measure", sort=False)[["squares", "freedom"]].sum()
     with np.errstate(invalid="ignore"):
         found = pd.DataFrame({"sem": np.sqrt(pooled["squares"] / pooled["freedom"])})
+    found["sem"] = found["sem"].where(found["sem"] > 0)
     found["freedom"] = pooled["freedom"].astype(int)
     if detectable is not None:
-        known = detectable.dropna(subset=["detectable"]).set_index("measure")
+        known = detectable[detectable["detectable"] > 0].set_index("measure")
         for measure in found.index.intersection(known.index):
             row = known.loc[measure]
             sem = row["detectable"] / (FACTOR * np.sqrt(2))
@@ -141,8 +143,8 @@ def changes(values: pd.DataFrame, errors: pd.DataFrame) -> pd.DataFrame:
     `CHANGES`, one row per measure and later value. `detectable` is the smallest detectable change
     of means over so many takes, t SEM sqrt(1/n + 1/n'), with Student's t (1.96 for many degrees of
     freedom): 5 % of those who did not change exceed it. `verdict`: `real` beyond it, `within` it,
-    `untold` without repeats, `mixed` where the way of measuring changed, as `mixed` says: such a
-    change may be the network's or the calibration's.
+    `untold` without repeats or where they are all equal, `mixed` where the way of measuring
+    changed, as `mixed` says: such a change may be the network's or the calibration's.
 
     Repeats within a session do not contain what differs between sessions only (a new calibration,
     another hall): the smallest detectable change is a lower bound then.

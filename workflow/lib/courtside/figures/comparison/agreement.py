@@ -12,7 +12,7 @@ from courtside.study.errors import StrPath
 COLOURS = {"yes": "#009E73", "unsure": "#E69F00", "no": "#D55E00"}
 WORDS = {
     "yes": "may be exchanged",
-    "unsure": "limits within, their 95 % intervals not",
+    "unsure": "unsure, by the 95 % intervals of the limits",
     "no": "not to be exchanged",
 }
 MARKERS = "os^Dv<>P*X"  # one for each subject

@@ -14,7 +14,7 @@ LOOKS = {  # verdict: colour, marker, filled, words
     "first": ("black", "o", True, "first session"),
     "within": ("#666666", "o", True, "within the smallest detectable change"),
     "real": ("#D55E00", "o", True, "real change"),
-    "untold": ("#666666", "o", False, "untold: no repeats"),
+    "untold": ("#666666", "o", False, "untold: no repeats, or all equal"),
     "mixed": ("#CC79A7", "D", False, "measured in another way: not to be compared"),
 }
 BESIDE = ["change", "detectable", "freedom", "verdict", "mixed"]
