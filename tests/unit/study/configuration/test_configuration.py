@@ -682,6 +682,24 @@ def test_a_session_that_waits_for_clicks_has_no_calibration_yet(folder):
     assert study.sessions["hall"].calibrations() == []
 
 
+def test_a_session_waits_with_another_whose_cameras_it_uses(folder):
+    for name in ("empty.mp4", "walk.mp4"):
+        (folder.parent / name).touch()
+    first = changed("cameras", value={key: {"static": "empty.mp4"} for key in ("left", "right")})
+    first |= {"court": "badminton", "court_points": "c.csv", "walks": {"w": {"video": "walk.mp4"}}}
+    del first["calibration"]
+    (folder / "sessions" / "first.yaml").write_text(yaml.safe_dump(first))
+    later = changed("calibration", "file", value="results/first/calibration/sfm-n40/cameras.toml")
+    sessions = load(folder, later, sessions=["hall", "first"]).sessions
+    assert [sessions[name].calibrations() for name in ("first", "hall")] == [[], []]
+    other = changed("calibration", "file", value="results/first/calibration/sfm-n12/cameras.toml")
+    (line,) = faults(folder, other, sessions=["hall", "first"])
+    assert line.endswith("add sfm-n12 to them, or put the files there")
+    (folder.parent / "c.csv").touch()
+    sessions = load(folder, later, sessions=["hall", "first"]).sessions
+    assert sessions["hall"].calibrations() == ["file"]
+
+
 def changed_step(step, **change):
     return {step: yaml_files.read(CONFIG / "config.yaml")[step] | change}
 

@@ -144,6 +144,8 @@ def _take_faults(study: Study, root: Path) -> Iterator[str]:
 
 def unmeasured(study: Study, session: Session) -> Iterator[str]:
     """Yield why nothing of a session's takes is measured, unless its lists are empty for that."""
+    if session.waits:
+        return
     takes = [take for take in session.takes.values() if len(take.cameras) > 1]
     ways, named = session.calibrations(), session.parameters["calibrations"]
     wanted = session.parameters["take_calibrations"]
@@ -196,11 +198,8 @@ def _impossible(study: Study, session: Session) -> str:
 def _unmade_cameras(study: Study, root: Path) -> Iterator[str]:
     """Yield a fault for each session that uses cameras of another one that nothing makes."""
     for session in study.sessions.values():
-        file = session.calibration_file or ""
-        made = session_files.MADE.fullmatch(file)
-        needed = filter(None, [file, session.file_covariance])
-        missing = [path for path in needed if not session_files.is_there(root / path)]
-        if made is None or not missing:
+        made, missing = _borrowed(session, root)
+        if made is None or not missing or session.waits:
             continue
         base = study.sessions.get(made["session"])
         ways = base.calibrations() if base else []
@@ -216,6 +215,24 @@ def _unmade_cameras(study: Study, root: Path) -> Iterator[str]:
             f"{session.file}: calibration.file: expected {' and '.join(missing)}, or a session of "
             f"the study that makes them, found neither: {why}; {advice}, or put the files there"
         )
+
+
+def _borrowed(session: Session, root: Path) -> tuple[re.Match[str] | None, list[str]]:
+    """Return whose cameras a session uses, None of no session, and which of their files lack."""
+    file = session.calibration_file or ""
+    needed = filter(None, [file, session.file_covariance])
+    missing = [path for path in needed if not session_files.is_there(root / path)]
+    return session_files.MADE.fullmatch(file), missing
+
+
+def _waits(session: Session, there: dict[str, Session], root: Path) -> bool:
+    """Say whether a session's cameras are made as soon as points of another one are clicked."""
+    made, missing = _borrowed(session, root)
+    base = there.get(made["session"]) if made and missing else None
+    if made is None or base is None or not base.unclicked:
+        return False
+    clicked = replace(base, court_points=base.unclicked, unclicked=None)
+    return made["calibration"] in set(clicked.calibrations()) - set(base.calibrations())
 
 
 def _device_faults(study: Study) -> Iterator[str]:
@@ -280,6 +297,8 @@ def _sessions(config: Content, found: dict[str, tuple], root: StrPath) -> dict[s
         name: session_files.session(name, file, content, config, root)
         for name, (file, content) in found.items()
     }
+    waiting = [name for name in made if _waits(made[name], made, Path(root))]
+    made |= {name: replace(made[name], waits=True) for name in waiting}
     for name in config["variations"]:
         condition = config["conditions"][name]
         made |= session_files.variations(made[condition["session"]], name, condition)
