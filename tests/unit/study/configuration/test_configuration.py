@@ -578,6 +578,17 @@ def test_takes_that_nothing_measures_are_told_where_the_value_stands(folder, ses
     assert " of session hall, " in line
 
 
+def test_a_study_that_lists_its_sessions_alone_has_no_variations_of_others(folder):
+    """The default file names variations of a session of its own."""
+    (folder / "sessions" / "hall.yaml").write_text(yaml.safe_dump(SESSION))
+    config = yaml_files.read(folder / "config.yaml") | {"sessions": ["hall"]}
+    study = configuration.load(config, "mine.yaml", folder, root=folder.parent)
+    assert list(study.sessions) == ["hall"] and study.parameters["variations"] == []
+    own = config | {"variations": ["capture-speed"]}
+    with pytest.raises(InputError, match=r"capture-speed.session: expected one of \['hall'\]"):
+        configuration.load(own, "mine.yaml", folder, root=folder.parent)
+
+
 def test_another_number_of_bridging_images_is_told_with_the_line_to_write(folder):
     """The fault stands in the default file, which a user leaves as it is."""
     for override, own, advice in (

@@ -80,9 +80,7 @@ def _study(config: Content, config_file: str, folder: Path, root: StrPath) -> St
     models = _checked(folder / "models.yaml", "models", faults)
     detectors = _checked(folder / "detectors.yaml", "detectors", faults)
     faults += schemas.faults(config, "config", config_file)
-    known = None
-    if external is not None:
-        known = {name: Artefact(name, **entry) for name, entry in external.items()}
+    known = None if external is None else {k: Artefact(k, **v) for k, v in external.items()}
     faults += model_faults.find(folder, models, detectors, known)
     if models is not None:
         faults += take_faults.unknown(f"{config_file}: models", _names(config, "models"), models)
@@ -98,6 +96,7 @@ def _study(config: Content, config_file: str, folder: Path, root: StrPath) -> St
             faults += _unknown_models(file, content, models)
             found[name] = (file, content)
     if not faults:
+        config = _without_absent(config, config_file, folder / sessions.DEFAULT)
         faults += _step_faults(config, config_file, models or {}, found)
         faults += model_faults.absent(folder, Path(root), models, detectors, _used(config, found))
     if faults or known is None or models is None or detectors is None:
@@ -114,6 +113,15 @@ def _study(config: Content, config_file: str, folder: Path, root: StrPath) -> St
     if faults := [*faults, *named_faults.find(config_file, study)]:
         raise InputError(*faults)
     return study
+
+
+def _without_absent(config: Content, own: str, default: Path) -> Content:
+    """Return a configuration without the default file's variations of sessions that are not run."""
+    if yaml_files.file_of("variations", config, own, default) == own:
+        return config
+    known, there = config["conditions"], config["sessions"]
+    run = [name for name in config["variations"] if known.get(name, {}).get("session") in there]
+    return config | {"variations": run}
 
 
 def _step_faults(
