@@ -457,6 +457,17 @@ def test_keypoints_of_other_programs_are_checked(root, take, override, parts):
     assert [part for part in parts if part not in line] == []
 
 
+def test_a_file_of_two_persons_is_told(root):
+    (root / "skeletons").mkdir()
+    (root / "skeletons" / "body25b.yaml").touch()
+    take = {"videos": {"a": "a.mp4", "b": "b.mp4"}, "pose3d": {"body25b": {"p1": "a.mp4"}}}
+    content = RECORDED | {"subjects": {"p1": {}, "p2": {}}}
+    assert find(root, content | {"takes": {"t": take}}) == []
+    take["pose3d"]["body25b"]["p2"] = "a.mp4"
+    (line,) = find(root, content | {"takes": {"t": take}})
+    assert "takes.t.pose3d.body25b: expected a file of each person, found a.mp4 twice" in line
+
+
 def test_a_take_without_the_keypoints_that_its_session_wants_is_named(root):
     (root / "skeletons").mkdir()
     (root / "skeletons" / "body25b.yaml").touch()

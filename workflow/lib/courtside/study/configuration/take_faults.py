@@ -36,7 +36,8 @@ def of_other_programs(folder: Path, file: Path, content: Content) -> Iterator[st
             strange = unknown(where, take.get(key, {}), there)
             for skeleton, files in take.get(key, {}).items():
                 strange += unknown(f"{where}.{skeleton}", files, known)
-            yield from strange or (_without_a_folder(where, take) if key == "pose2d" else ())
+            checked = _without_a_folder if key == "pose2d" else _twice
+            yield from strange or checked(where, take)
         if "pose2d" in take and "videos" not in take:
             yield from _unfilmed(f"{file}: takes.{name}", take, content)
         missing = wanted & set(imported(content)) - set(take.get("pose2d", {}))
@@ -61,6 +62,17 @@ def _without_a_folder(where: str, take: Content) -> Iterator[str]:
             yield (
                 f"{where}.{skeleton}: expected a folder of each camera of the take, found none of "
                 f"{', '.join(missing)}; name it, or remove the camera from the take"
+            )
+
+
+def _twice(where: str, take: Content) -> Iterator[str]:
+    """Yield the files of skeletons that are given for two persons."""
+    for skeleton, files in take.get("pose3d", {}).items():
+        paths = [*files.values()]
+        for path in sorted({path for path in paths if paths.count(path) > 1}):
+            yield (
+                f"{where}.{skeleton}: expected a file of each person, found {path} twice; correct "
+                "one path"
             )
 
 
