@@ -457,6 +457,28 @@ def test_keypoints_of_other_programs_are_checked(root, take, override, parts):
     assert [part for part in parts if part not in line] == []
 
 
+@pytest.mark.parametrize(
+    ("name", "other", "file"),
+    [
+        ("d415", "d415-depth", "d.bag"),
+        ("d415", "d415-rgb", "d.bag"),
+        ("web", "web-rgb", "w.mp4"),
+        ("suit", "suit-corrected", "s.bvh"),
+    ],
+)
+def test_a_device_may_not_have_the_name_of_a_source_of_another(root, name, other, file):
+    def said(other):
+        for path in (file, "n.json"):
+            (root / path).touch()
+        devices = {name: {"file": file}, other: {"file": "n.json"}}
+        take = {"t": {"devices": devices}}
+        return find(root, RECORDED | {"subjects": {"p1": {}}, "takes": take})
+
+    (line,) = said(other)
+    assert f"expected names that no source of another device has, found {other!r}" in line
+    assert said(f"{name}-nuitrack") == []
+
+
 def test_a_file_of_two_persons_is_told(root):
     (root / "skeletons").mkdir()
     (root / "skeletons" / "body25b.yaml").touch()
