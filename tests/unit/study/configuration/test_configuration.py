@@ -552,6 +552,36 @@ def test_takes_that_nothing_measures_are_a_fault(folder, override, parts):
     assert all(part in found for part in ["hall.yaml: ", *parts])
 
 
+@pytest.mark.parametrize(
+    ("key", "names", "found"),
+    [
+        (
+            "take_calibrations",
+            ["file", "file-people"],
+            "`calibrations`, ['file'], found file-people",
+        ),
+        ("fusions", ["all-robust", "lc-robust"], "['all', 'left_centre'], found lc-robust"),
+        ("compared_fusions", ["halfbody"], "['all', 'left_centre'], found halfbody"),
+    ],
+)
+def test_a_name_that_nothing_has_is_told_in_a_sessions_own_list(folder, key, names, found):
+    session = SESSION | {"views": {"left_centre": ["left", "right"]}}
+    override = {"calibrations": ["file"], key: names}
+    (line,) = faults(folder, session | {"override": override})
+    assert f"hall.yaml: override.{key}: expected " in line and found in line
+    # The lists of a study serve all its sessions.
+    load(folder, session | {"override": {"calibrations": ["file"]}}, **{key: names})
+    override[key] = {"take_calibrations": ["file"]}.get(key, ["all-robust", "left_centre-dlt"])
+    load(folder, session | {"override": override})
+
+
+def test_a_variation_is_not_asked_for_the_calibrations_of_takes(folder):
+    own = {"calibrations": ["known18"], "take_calibrations": ["known18"]}
+    condition = {"session": "hall", "vary": {"seed": [4]}}
+    changes = {"variations": ["speed"], "conditions": {"speed": condition}}
+    assert "speed-0" in load(folder, VIRTUAL | {"override": own}, **changes).sessions
+
+
 def load_own(folder, session, own):
     """Load a study of which a user's file `mine.yaml` states some keys, the others config.yaml."""
     (folder / "sessions" / "hall.yaml").write_text(yaml.safe_dump(session))

@@ -25,6 +25,7 @@ from courtside.study.execution.artefacts import Artefact
 RESERVED = ("external", "networks", "run", "figures", "virtual", "plans")
 # Calibrations that need different things, one of each.
 USUAL_WAYS = ("file", "sfm-n40", "known", "board", "wand", "people")
+FUSED = ("fusions", "compared_fusions")  # lists of ways to fuse views
 OF_SESSION = {"description", "court", "cameras"}  # keys of every session, and of no study
 
 # Names of folders and files: none leaves its folder, is an option, or a device of Windows; and none
@@ -145,7 +146,7 @@ def _unknown_models(file: Path, content: Content, models: Content | None) -> lis
 def _take_faults(study: Study, root: Path) -> Iterator[str]:
     """Yield why takes cannot be measured as their sessions and the study together ask."""
     for session in study.sessions.values():
-        yield from unmeasured(study, session)
+        yield from [*unmeasured(study, session)] or _unknown_names(session)
     yield from _unmade_cameras(study, root)
     yield from _device_faults(study)
 
@@ -175,6 +176,26 @@ def unmeasured(study: Study, session: Session) -> Iterator[str]:
             f"{session.name}, found {session.parameters['fusions']}; add all-robust, or its set of "
             "cameras to the session's `views`"
         )
+
+
+def _unknown_names(session: Session) -> Iterator[str]:
+    """Yield what a session's own lists name and nothing has; a list of the study may name more."""
+    own = {} if session.condition else session.override  # a variation is without takes
+    known = session.parameters["calibrations"]
+    for name in own.get("take_calibrations", []):
+        if name not in known:
+            yield (
+                f"{session.file}: override.take_calibrations: expected names of `calibrations`, "
+                f"{known}, found {name}; name it in both lists, or remove it"
+            )
+    named = [(key, name) for key in FUSED for name in own.get(key, [])]
+    for key, name in named if session.cameras else ():
+        if not session.fused_cameras(name):
+            yield (
+                f"{session.file}: override.{key}: expected sets of cameras of the session, "
+                f"{['all', *session.views]}, found {name}; correct the name, or state its cameras "
+                "(`views`, `halfbody`)"
+            )
 
 
 def _measuring(study: Study, session: Session, ways: list[str]) -> str:
