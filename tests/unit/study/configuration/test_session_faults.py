@@ -727,6 +727,14 @@ def test_a_good_condition_has_no_fault():
             ["speed: virtual.baseline_deg of session narrow: expected it with layout a only"],
         ),
         (
+            {"session": "still", "vary": {"zoom": [1, 2]}},
+            ["speed.session: expected one with a walk, as its figure needs, found none"],
+        ),
+        (
+            {"vary": {"size_px": [[640, 360], [640, 480]]}},
+            ["speed.vary.size_px: expected widths that differ", "found [640, 640]"],
+        ),
+        (
             {
                 "vary": {
                     key: [2, 3] for key in ("speed_kmh", "walk_frames", "seed", "static_frames")
