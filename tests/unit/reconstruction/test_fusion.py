@@ -96,6 +96,18 @@ def test_sides_swapped_in_one_camera_are_recorded_there_and_nowhere_else():
         assert not left.swapped.any()
 
 
+@pytest.mark.parametrize("rule", ["robust", "dlt"])
+def test_all_of_fewer_cameras_than_views_asked_for_are_enough(rule):
+    cameras, time_s = scene.ring(3)[:2], np.arange(30) / 60
+    views = [view(camera, time_s) for camera in cameras]
+    strict = OPTIONS | {"min_views": 3}
+    points = fusion.triangulate_take(cameras, views, SKELETON, ["p1"], rule=rule, **strict)
+    np.testing.assert_allclose(points.xyz[0], body(points.time_s), atol=1e-3)
+    views[1].score[0, 5:20, 0] = np.nan
+    points = fusion.triangulate_take(cameras, views, SKELETON, ["p1"], rule=rule, **strict)
+    assert points.reason[0, 12, 0] == missing_reason.ONE_VIEW
+
+
 def test_every_missing_point_says_why():
     nan = np.nan
     score = np.array([[nan, 0.1, 0.9, 0.9, 0.9], [nan, 0.9, nan, 0.9, 0.9]])

@@ -1,7 +1,10 @@
 """Times and pixels that do not lie in the videos: each is one line, before any job."""
 
+from dataclasses import replace
+
 import pytest
 
+from courtside.validation import stated_times
 from fixtures.recordings import rooms_filmed
 
 
@@ -114,5 +117,41 @@ def test_one_video_in_two_takes_is_told_unless_each_has_a_part_of_it(hall, one, 
         takes[name] |= {"trim_s": trim_s} if trim_s else {}
     faults, remarks = hall.said()
     assert faults == []
-    said = "takes.serve and takes.lob: the same video of camera left, right, back, and their times"
+    videos = "videos.left, videos.right, videos.back"
+    said = f"hall.yaml: takes.serve and takes.lob: the same {videos}, and their times overlap"
     assert [said in line for line in remarks] == [True] * is_told
+
+
+@pytest.mark.parametrize(
+    ("key", "recording", "named"),
+    [
+        ("devices", {"suit": {"file": "suit.bvh"}}, "devices.suit"),
+        ("pose2d", {"body25b": {"left": "left_json"}}, "pose2d.body25b.left"),
+        ("pose3d", {"body25b": {"p1": "p1.trc"}}, "pose3d.body25b.p1"),
+    ],
+)
+def test_other_recordings_in_two_takes_are_told(hall, key, recording, named):
+    assert list(stated_times.repeated([hall.session()])) == []
+    for take in hall.content["takes"].values():
+        take[key] = recording
+    (line,) = stated_times.repeated([hall.session()])
+    assert f"takes.serve and takes.lob: the same {named}, and their times overlap" in line
+
+
+def test_recordings_in_two_sessions_are_told_once(hall):
+    one = hall.session()
+    other = replace(one, name="gym", file="gym.yaml")
+    (line,) = stated_times.repeated([one, other])
+    videos = "videos.left, videos.right, videos.back"
+    assert f"hall.yaml: takes.serve and takes.serve of gym.yaml: the same {videos}, and" in line
+    lob = {"lob": one.takes["lob"]}
+    assert len(list(stated_times.repeated([one, replace(other, takes=lob)]))) == 1
+
+
+def test_sessions_may_share_what_is_no_take(hall):
+    hall.content |= {"walks": {"w": {"video": "walk.mp4"}}, "board": {"videos": {"left": "b.mp4"}}}
+    hall.content["cameras"]["left"] = {"static": "left.mp4"}
+    one = hall.session()
+    takes = {"serve": replace(one.takes["serve"], videos={"left": "later.mp4"})}
+    other = replace(one, name="gym", file="gym.yaml", takes=takes)
+    assert list(stated_times.repeated([one, other])) == []

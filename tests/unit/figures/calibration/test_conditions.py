@@ -44,6 +44,16 @@ def test_the_scored_points_are_left_out_where_they_can_be(numbers):
     assert at(numbers, paper, 1, False)["in_sample"]
 
 
+def test_points_of_any_court_are_control_points():
+    settings = {"condition": "speed", "speed_kmh": 1, "session": "s", "n_bridging": 20}
+    of = trials_made.structure({("sfm", 9, False): [4.0], PAPER: [9.0]}, **settings)
+    numbers = conditions.table(calibration.tidy(of), "speed_kmh")
+    assert numbers[["way", "median"]].to_numpy().tolist() == [
+        ["control points", 4.0],
+        ["paper's eq 2-5", 9.0],
+    ]
+
+
 def test_failures_are_counted_and_written(numbers):
     paper = list(conditions.METHODS)[1]
     lost = at(numbers, paper, 4, False)

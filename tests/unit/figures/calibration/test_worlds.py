@@ -42,6 +42,15 @@ def test_errors_are_of_clicks_that_are_all_used(numbers):
     assert at(numbers, "walk, 3 clicks", "lens", 1)["coverage90"] == pytest.approx(80)
 
 
+def test_the_points_of_another_court_have_its_ways():
+    found = rows().replace({"n_clicks": {18: 9}})
+    assert list(dict.fromkeys(worlds.table(found, {})["way"])) == [
+        "walk, 9 clicks",
+        "walk, 3 clicks",
+        "9 clicks, no walk",
+    ]
+
+
 def test_failures_and_warnings_are_counted(numbers):
     lost = at(numbers, "walk, 18 clicks", "court", 1)
     assert (lost["n"], lost["n_failed"]) == (0, 2)

@@ -43,9 +43,10 @@ def test_methods_state_the_configuration(study):
 
 def test_methods_follow_another_configuration(study):
     study["parameters"]["filter_motion"]["cutoff_hz"] = {"head": 3}
-    study["parameters"]["triangulate"]["max_error_px"] = 9
+    study["parameters"]["triangulate"] |= {"max_error_px": 9, "min_views": 3}
     study["sessions"][0] |= {"mapper": "incremental", "n_images": 12}
     html = methods_text(study)
+    assert "by 3 cameras or more (by all, where fewer were used) were" in html
     assert "3 Hz (head)" in html and "within 9 px" in html and "from 12 pictures" in html
     assert "incremental, Schönberger" in html and "Global structure-from-motion" not in html
 

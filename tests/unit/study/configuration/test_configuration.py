@@ -552,6 +552,36 @@ def test_takes_that_nothing_measures_are_a_fault(folder, override, parts):
     assert all(part in found for part in ["hall.yaml: ", *parts])
 
 
+@pytest.mark.parametrize(
+    ("key", "names", "found"),
+    [
+        (
+            "take_calibrations",
+            ["file", "file-people"],
+            "`calibrations`, ['file'], found file-people",
+        ),
+        ("fusions", ["all-robust", "lc-robust"], "['all', 'left_centre'], found lc-robust"),
+        ("compared_fusions", ["halfbody"], "['all', 'left_centre'], found halfbody"),
+    ],
+)
+def test_a_name_that_nothing_has_is_told_in_a_sessions_own_list(folder, key, names, found):
+    session = SESSION | {"views": {"left_centre": ["left", "right"]}}
+    override = {"calibrations": ["file"], key: names}
+    (line,) = faults(folder, session | {"override": override})
+    assert f"hall.yaml: override.{key}: expected " in line and found in line
+    # The lists of a study serve all its sessions.
+    load(folder, session | {"override": {"calibrations": ["file"]}}, **{key: names})
+    override[key] = {"take_calibrations": ["file"]}.get(key, ["all-robust", "left_centre-dlt"])
+    load(folder, session | {"override": override})
+
+
+def test_a_variation_is_not_asked_for_the_calibrations_of_takes(folder):
+    own = {"calibrations": ["known18"], "take_calibrations": ["known18"]}
+    condition = {"session": "hall", "vary": {"seed": [4]}}
+    changes = {"variations": ["speed"], "conditions": {"speed": condition}}
+    assert "speed-0" in load(folder, VIRTUAL | {"override": own}, **changes).sessions
+
+
 def load_own(folder, session, own):
     """Load a study of which a user's file `mine.yaml` states some keys, the others config.yaml."""
     (folder / "sessions" / "hall.yaml").write_text(yaml.safe_dump(session))
@@ -576,6 +606,17 @@ def test_takes_that_nothing_measures_are_told_where_the_value_stands(folder, ses
     (line,) = caught.value.lines
     assert line.startswith(stands.format(folder=folder, sessions=folder / "sessions"))
     assert " of session hall, " in line
+
+
+def test_a_study_that_lists_its_sessions_alone_has_no_variations_of_others(folder):
+    """The default file names variations of a session of its own."""
+    (folder / "sessions" / "hall.yaml").write_text(yaml.safe_dump(SESSION))
+    config = yaml_files.read(folder / "config.yaml") | {"sessions": ["hall"]}
+    study = configuration.load(config, "mine.yaml", folder, root=folder.parent)
+    assert list(study.sessions) == ["hall"] and study.parameters["variations"] == []
+    own = config | {"variations": ["capture-speed"]}
+    with pytest.raises(InputError, match=r"capture-speed.session: expected one of \['hall'\]"):
+        configuration.load(own, "mine.yaml", folder, root=folder.parent)
 
 
 def test_another_number_of_bridging_images_is_told_with_the_line_to_write(folder):
@@ -680,6 +721,24 @@ def test_a_session_that_waits_for_clicks_has_no_calibration_yet(folder):
     study = load(folder, session)
     assert study.sessions["hall"].unclicked == "clicks.csv"
     assert study.sessions["hall"].calibrations() == []
+
+
+def test_a_session_waits_with_another_whose_cameras_it_uses(folder):
+    for name in ("empty.mp4", "walk.mp4"):
+        (folder.parent / name).touch()
+    first = changed("cameras", value={key: {"static": "empty.mp4"} for key in ("left", "right")})
+    first |= {"court": "badminton", "court_points": "c.csv", "walks": {"w": {"video": "walk.mp4"}}}
+    del first["calibration"]
+    (folder / "sessions" / "first.yaml").write_text(yaml.safe_dump(first))
+    later = changed("calibration", "file", value="results/first/calibration/sfm-n40/cameras.toml")
+    sessions = load(folder, later, sessions=["hall", "first"]).sessions
+    assert [sessions[name].calibrations() for name in ("first", "hall")] == [[], []]
+    other = changed("calibration", "file", value="results/first/calibration/sfm-n12/cameras.toml")
+    (line,) = faults(folder, other, sessions=["hall", "first"])
+    assert line.endswith("add sfm-n12 to them, or put the files there")
+    (folder.parent / "c.csv").touch()
+    sessions = load(folder, later, sessions=["hall", "first"]).sessions
+    assert sessions["hall"].calibrations() == ["file"]
 
 
 def changed_step(step, **change):

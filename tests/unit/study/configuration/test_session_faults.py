@@ -457,6 +457,39 @@ def test_keypoints_of_other_programs_are_checked(root, take, override, parts):
     assert [part for part in parts if part not in line] == []
 
 
+@pytest.mark.parametrize(
+    ("name", "other", "file"),
+    [
+        ("d415", "d415-depth", "d.bag"),
+        ("d415", "d415-rgb", "d.bag"),
+        ("web", "web-rgb", "w.mp4"),
+        ("suit", "suit-corrected", "s.bvh"),
+    ],
+)
+def test_a_device_may_not_have_the_name_of_a_source_of_another(root, name, other, file):
+    def said(other):
+        for path in (file, "n.json"):
+            (root / path).touch()
+        devices = {name: {"file": file}, other: {"file": "n.json"}}
+        take = {"t": {"devices": devices}}
+        return find(root, RECORDED | {"subjects": {"p1": {}}, "takes": take})
+
+    (line,) = said(other)
+    assert f"expected names that no source of another device has, found {other!r}" in line
+    assert said(f"{name}-nuitrack") == []
+
+
+def test_a_file_of_two_persons_is_told(root):
+    (root / "skeletons").mkdir()
+    (root / "skeletons" / "body25b.yaml").touch()
+    take = {"videos": {"a": "a.mp4", "b": "b.mp4"}, "pose3d": {"body25b": {"p1": "a.mp4"}}}
+    content = RECORDED | {"subjects": {"p1": {}, "p2": {}}}
+    assert find(root, content | {"takes": {"t": take}}) == []
+    take["pose3d"]["body25b"]["p2"] = "a.mp4"
+    (line,) = find(root, content | {"takes": {"t": take}})
+    assert "takes.t.pose3d.body25b: expected a file of each person, found a.mp4 twice" in line
+
+
 def test_a_take_without_the_keypoints_that_its_session_wants_is_named(root):
     (root / "skeletons").mkdir()
     (root / "skeletons" / "body25b.yaml").touch()
@@ -692,6 +725,14 @@ def test_a_good_condition_has_no_fault():
         (
             {"session": "narrow", "vary": {"layout": ["a", "b"]}},
             ["speed: virtual.baseline_deg of session narrow: expected it with layout a only"],
+        ),
+        (
+            {"session": "still", "vary": {"zoom": [1, 2]}},
+            ["speed.session: expected one with a walk, as its figure needs, found none"],
+        ),
+        (
+            {"vary": {"size_px": [[640, 360], [640, 480]]}},
+            ["speed.vary.size_px: expected widths that differ", "found [640, 640]"],
         ),
         (
             {

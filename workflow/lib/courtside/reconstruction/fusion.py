@@ -50,7 +50,7 @@ def triangulate_take(
     leaves out joints that their views leave open; "dlt" uses all
     (`triangulation.triangulate_plain`). `max_error_share` and `fade_share` are in heights of the
     person in each picture (`person_height.in_pictures`); `max_error_px` and `fade_px`, the same
-    everywhere, have precedence.
+    everywhere, have precedence. A point needs `min_views` views, or all where there are fewer.
 
     The keypoints' standard deviation is measured per joint from the residuals of the accepted
     views, three degrees of freedom less per point: in heights of the person in each picture, as the
@@ -61,6 +61,7 @@ def triangulate_take(
     time_s = resampling.common_times(views, clocks) if time_s is None else time_s
     xy, score = resampling.resample_all(views, clocks, time_s)
     swapped = np.zeros(score.shape, dtype=bool)
+    min_views = min(min_views, max(len(cameras), 2))
     options: dict[str, Any] = {"min_views": min_views, "min_score": min_score}
     solve: Callable[..., triangulation.Triangulated] = triangulation.triangulate_plain
     if rule == "robust":

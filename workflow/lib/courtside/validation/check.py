@@ -35,12 +35,13 @@ def check(study: Study, remembered: Remembered) -> list[str]:
     """
     faults = [*_court_faults(study)]
     remarks: list[str] = []
-    for session in study.sessions.values():
-        if not session.virtual:
-            found = _Session(session, study, remembered)
-            faults += found.faults()
-            remarks += found.remarks()
-    remarks += bodies.unlike(one for one in study.sessions.values() if not one.virtual)
+    recorded = [one for one in study.sessions.values() if not one.virtual]
+    for session in recorded:
+        found = _Session(session, study, remembered)
+        faults += found.faults()
+        remarks += found.remarks()
+    remarks += stated_times.repeated(recorded)
+    remarks += bodies.unlike(recorded)
     remarks += bodies.compared(study)
     remembered.save()
     if faults:
@@ -224,9 +225,8 @@ class _Session:
         return sum(int(s / every_s) + 1 for s in known_s) if len(known_s) == len(walks) else None
 
     def _of_session(self) -> Iterator[str]:
-        """Yield lenses that are not used, takes of one video, why a walk's cameras measure none."""
+        """Yield lenses that are not used, and why a walk's cameras measure no take."""
         yield from boards.unread_lenses(self._session)
-        yield from stated_times.repeated(self._session)
         filmed = any(len(take.cameras) > 1 for take in self._session.takes.values())
         if filmed and self._session.unscaled() and not self._session.take_calibrations():
             yield f"court: {NEEDS_COURT}"

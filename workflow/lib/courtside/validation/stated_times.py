@@ -1,8 +1,9 @@
 """Times and pixels that a session states of its videos, against the videos."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import combinations
 from math import inf
+from os.path import normpath
 from pathlib import Path
 
 from courtside.records.devices import clocks
@@ -47,17 +48,36 @@ def named(session: Session, looks: Mapping[str, Looks]) -> Iterator[str]:
         yield from error.lines
 
 
-def repeated(session: Session) -> Iterator[str]:
-    """Yield takes that use the same part of a camera's video, as copied lines of a file do."""
-    for one, other in combinations(session.takes.values(), 2):
-        same = [name for name, path in one.videos.items() if other.videos.get(name) == path]
+def repeated(sessions: Iterable[Session]) -> Iterator[str]:
+    """Yield takes that use the same part of a recording, as copied lines of a file do.
+
+    Of takes of two sessions only the first: a session may be measured twice on purpose.
+    """
+    takes = [(one, take, _recordings(take)) for one in sessions for take in one.takes.values()]
+    told = set()
+    for (here, one, own), (there, other, others) in combinations(takes, 2):
+        same = [key for key, path in own.items() if path in others.values()]
         (start_s, stop_s), (begin_s, end_s) = (t.trim_s or (0.0, inf) for t in (one, other))
-        if same and max(start_s, begin_s) < min(stop_s, end_s):
+        if not same or max(start_s, begin_s) >= min(stop_s, end_s):
+            continue
+        if here is there or (here.name, there.name) not in told:
+            where = "" if here is there else f" of {there.file}"
             yield (
-                f"takes.{one.name} and takes.{other.name}: the same video of camera "
+                f"{here.file}: takes.{one.name} and takes.{other.name}{where}: the same "
                 f"{', '.join(same)}, and their times overlap: if they are two recordings, correct "
                 "one path; if one video has both, state a `trim_s` of each"
             )
+        told.add((here.name, there.name))
+
+
+def _recordings(take: Take) -> dict[str, str]:
+    """Return the paths of all recordings of a take by their keys."""
+    recordings = {f"videos.{name}": path for name, path in take.videos.items()}
+    recordings |= {f"devices.{name}": device.file for name, device in take.devices.items()}
+    for key, imported in (("pose2d", take.pose2d), ("pose3d", take.pose3d)):
+        for skeleton, files in imported.items():
+            recordings |= {f"{key}.{skeleton}.{name}": path for name, path in files.items()}
+    return {key: normpath(path) for key, path in recordings.items()}
 
 
 def remarks(take: Take, looks: Looks) -> Iterator[str]:

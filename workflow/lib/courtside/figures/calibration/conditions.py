@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from courtside.evaluation.tables import calibration
 from courtside.figures.style import bars, style
 
-METHODS = {  # [method, mapper, clicks]: as the study names them
-    "control points": ("sfm", "global", 18),
+METHODS = {  # [method, mapper, clicks]: as the study names them; None: all points of the court
+    "control points": ("sfm", "global", None),
     "paper's eq 2-5": ("paper", "global", 3),  # of the same structure from motion
 }
 WORDS = {
@@ -40,6 +40,7 @@ def table(
     settings = [x] if group is None else [x, group]
     parts = []
     for way, (method, mapper, clicks) in METHODS.items():
+        clicks = clicks or rows["n_clicks"].max()
         of = calibration.pick(rows, method=method, mapper=mapper, n_clicks=clicks)
         of = of[of[x].notna()]
         of = of[of["in_sample"] == of["in_sample"].min()] if len(of) else of

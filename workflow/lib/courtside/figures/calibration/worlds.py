@@ -10,11 +10,7 @@ from matplotlib.figure import Figure
 from courtside.evaluation.tables import calibration
 from courtside.figures.style import bars, style
 
-WAYS = {  # method, clicks, words
-    ("sfm", 18): "walk, 18 clicks",
-    ("sfm", 3): "walk, 3 clicks",
-    ("known", 18): "18 clicks, no walk",
-}
+FEW = 3  # clicks, beside all of a court
 SETTING = ["effect", "strength"]
 COLUMNS = ["way", *SETTING, "n", "p05", "median", "p95", "n_failed", "coverage90", "n_warnings"]
 NONE, TOGETHER = "none", "together"
@@ -40,8 +36,13 @@ def table(rows: pd.DataFrame, warnings: Mapping[str, int]) -> pd.DataFrame:
         With the columns `COLUMNS`: errors in cm; `coverage90`, the mean share of points inside of
         their 90 % ellipsoids, in percent; `n_warnings`, the sum over sessions, NaN without a walk.
     """
-    parts = []
-    for (method, n_clicks), words in WAYS.items():
+    parts, most = [], rows["n_clicks"].max()
+    ways = {
+        ("sfm", most): f"walk, {most:g} clicks",
+        ("sfm", FEW): f"walk, {FEW} clicks",
+        ("known", most): f"{most:g} clicks, no walk",
+    }
+    for (method, n_clicks), words in ways.items():
         of = calibration.pick(rows, method=method, n_clicks=n_clicks, in_sample=True)
         if of.empty:
             continue

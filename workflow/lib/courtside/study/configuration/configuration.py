@@ -25,6 +25,7 @@ from courtside.study.execution.artefacts import Artefact
 RESERVED = ("external", "networks", "run", "figures", "virtual", "plans")
 # Calibrations that need different things, one of each.
 USUAL_WAYS = ("file", "sfm-n40", "known", "board", "wand", "people")
+FUSED = ("fusions", "compared_fusions")  # lists of ways to fuse views
 OF_SESSION = {"description", "court", "cameras"}  # keys of every session, and of no study
 
 # Names of folders and files: none leaves its folder, is an option, or a device of Windows; and none
@@ -80,9 +81,7 @@ def _study(config: Content, config_file: str, folder: Path, root: StrPath) -> St
     models = _checked(folder / "models.yaml", "models", faults)
     detectors = _checked(folder / "detectors.yaml", "detectors", faults)
     faults += schemas.faults(config, "config", config_file)
-    known = None
-    if external is not None:
-        known = {name: Artefact(name, **entry) for name, entry in external.items()}
+    known = None if external is None else {k: Artefact(k, **v) for k, v in external.items()}
     faults += model_faults.find(folder, models, detectors, known)
     if models is not None:
         faults += take_faults.unknown(f"{config_file}: models", _names(config, "models"), models)
@@ -98,6 +97,7 @@ def _study(config: Content, config_file: str, folder: Path, root: StrPath) -> St
             faults += _unknown_models(file, content, models)
             found[name] = (file, content)
     if not faults:
+        config = _without_absent(config, config_file, folder / sessions.DEFAULT)
         faults += _step_faults(config, config_file, models or {}, found)
         faults += model_faults.absent(folder, Path(root), models, detectors, _used(config, found))
     if faults or known is None or models is None or detectors is None:
@@ -114,6 +114,15 @@ def _study(config: Content, config_file: str, folder: Path, root: StrPath) -> St
     if faults := [*faults, *named_faults.find(config_file, study)]:
         raise InputError(*faults)
     return study
+
+
+def _without_absent(config: Content, own: str, default: Path) -> Content:
+    """Return a configuration without the default file's variations of sessions that are not run."""
+    if yaml_files.file_of("variations", config, own, default) == own:
+        return config
+    known, there = config["conditions"], config["sessions"]
+    run = [name for name in config["variations"] if known.get(name, {}).get("session") in there]
+    return config | {"variations": run}
 
 
 def _step_faults(
@@ -137,13 +146,15 @@ def _unknown_models(file: Path, content: Content, models: Content | None) -> lis
 def _take_faults(study: Study, root: Path) -> Iterator[str]:
     """Yield why takes cannot be measured as their sessions and the study together ask."""
     for session in study.sessions.values():
-        yield from unmeasured(study, session)
+        yield from [*unmeasured(study, session)] or _unknown_names(session)
     yield from _unmade_cameras(study, root)
     yield from _device_faults(study)
 
 
 def unmeasured(study: Study, session: Session) -> Iterator[str]:
     """Yield why nothing of a session's takes is measured, unless its lists are empty for that."""
+    if session.waits:
+        return
     takes = [take for take in session.takes.values() if len(take.cameras) > 1]
     ways, named = session.calibrations(), session.parameters["calibrations"]
     wanted = session.parameters["take_calibrations"]
@@ -165,6 +176,26 @@ def unmeasured(study: Study, session: Session) -> Iterator[str]:
             f"{session.name}, found {session.parameters['fusions']}; add all-robust, or its set of "
             "cameras to the session's `views`"
         )
+
+
+def _unknown_names(session: Session) -> Iterator[str]:
+    """Yield what a session's own lists name and nothing has; a list of the study may name more."""
+    own = {} if session.condition else session.override  # a variation is without takes
+    known = session.parameters["calibrations"]
+    for name in own.get("take_calibrations", []):
+        if name not in known:
+            yield (
+                f"{session.file}: override.take_calibrations: expected names of `calibrations`, "
+                f"{known}, found {name}; name it in both lists, or remove it"
+            )
+    named = [(key, name) for key in FUSED for name in own.get(key, [])]
+    for key, name in named if session.cameras else ():
+        if not session.fused_cameras(name):
+            yield (
+                f"{session.file}: override.{key}: expected sets of cameras of the session, "
+                f"{['all', *session.views]}, found {name}; correct the name, or state its cameras "
+                "(`views`, `halfbody`)"
+            )
 
 
 def _measuring(study: Study, session: Session, ways: list[str]) -> str:
@@ -196,11 +227,8 @@ def _impossible(study: Study, session: Session) -> str:
 def _unmade_cameras(study: Study, root: Path) -> Iterator[str]:
     """Yield a fault for each session that uses cameras of another one that nothing makes."""
     for session in study.sessions.values():
-        file = session.calibration_file or ""
-        made = session_files.MADE.fullmatch(file)
-        needed = filter(None, [file, session.file_covariance])
-        missing = [path for path in needed if not session_files.is_there(root / path)]
-        if made is None or not missing:
+        made, missing = _borrowed(session, root)
+        if made is None or not missing or session.waits:
             continue
         base = study.sessions.get(made["session"])
         ways = base.calibrations() if base else []
@@ -216,6 +244,24 @@ def _unmade_cameras(study: Study, root: Path) -> Iterator[str]:
             f"{session.file}: calibration.file: expected {' and '.join(missing)}, or a session of "
             f"the study that makes them, found neither: {why}; {advice}, or put the files there"
         )
+
+
+def _borrowed(session: Session, root: Path) -> tuple[re.Match[str] | None, list[str]]:
+    """Return whose cameras a session uses, None of no session, and which of their files lack."""
+    file = session.calibration_file or ""
+    needed = filter(None, [file, session.file_covariance])
+    missing = [path for path in needed if not session_files.is_there(root / path)]
+    return session_files.MADE.fullmatch(file), missing
+
+
+def _waits(session: Session, there: dict[str, Session], root: Path) -> bool:
+    """Say whether a session's cameras are made as soon as points of another one are clicked."""
+    made, missing = _borrowed(session, root)
+    base = there.get(made["session"]) if made and missing else None
+    if made is None or base is None or not base.unclicked:
+        return False
+    clicked = replace(base, court_points=base.unclicked, unclicked=None)
+    return made["calibration"] in set(clicked.calibrations()) - set(base.calibrations())
 
 
 def _device_faults(study: Study) -> Iterator[str]:
@@ -280,6 +326,8 @@ def _sessions(config: Content, found: dict[str, tuple], root: StrPath) -> dict[s
         name: session_files.session(name, file, content, config, root)
         for name, (file, content) in found.items()
     }
+    waiting = [name for name in made if _waits(made[name], made, Path(root))]
+    made |= {name: replace(made[name], waits=True) for name in waiting}
     for name in config["variations"]:
         condition = config["conditions"][name]
         made |= session_files.variations(made[condition["session"]], name, condition)

@@ -427,15 +427,20 @@ def _varied_faults(where: str, base: Content, condition: Content) -> list[str]:
     return list(faults)
 
 
-def _too_many_axes(where: str, vary: Content) -> list[str]:
-    """Return a fault if a condition varies more than the axis and the lines of its figure show."""
-    several = [key for key, values in vary.items() if len(values) > 1 and not key.endswith("seed")]
-    if "world" in vary or len(several) <= 2:
-        return []
-    return [
-        f"{where}.vary: expected at most two keys with several values besides seeds, because its "
-        f"figure shows no more, found {', '.join(several)}; write further conditions"
-    ]
+def _figure_faults(where: str, base: Content, vary: Content) -> Iterator[str]:
+    """Yield why there is no figure of a condition, or one that does not show what varies."""
+    drawn = [key for key in vary if not key.endswith("seed")]
+    several = [key for key in drawn if len(vary[key]) > 1]
+    if "world" not in vary and len(several) > 2:
+        yield (
+            f"{where}.vary: expected at most two keys with several values besides seeds, because "
+            f"its figure shows no more, found {', '.join(several)}; write further conditions"
+        )
+    if drawn and not base.get("walks"):
+        yield f"{where}.session: expected one with a walk, as its figure needs, found none"
+    widths = [width for width, _ in vary.get("size_px", [])]
+    if len(set(widths)) < len(widths):
+        yield f"{where}.vary.size_px: expected widths that differ, for its figure, found {widths}"
 
 
 def conditions(config_file: str, config: Content, found: dict[str, tuple]) -> list[str]:
@@ -450,11 +455,11 @@ def conditions(config_file: str, config: Content, found: dict[str, tuple]) -> li
             faults.append(f"{where}.session: expected a virtual session, found {base!r}; name one")
         elif base in found:
             faults += _varied_faults(where, found[base][1], condition)
+            faults += _figure_faults(where, found[base][1], condition["vary"])
         faults += [
             f"{where}: expected {key} in either `set` or `vary`, found it in both; remove one"
             for key in sorted(set(condition.get("set", {})) & set(condition["vary"]))
         ]
-        faults += _too_many_axes(where, condition["vary"])
         # Variations are sessions named after their condition.
         faults += [
             f"{where}: expected a name that no session has, found session {own!r}; rename it"

@@ -137,6 +137,7 @@ class Session:
     # Whether cameras are calibrated from points alone, too, where there are better ways
     also_known: bool = False
     unclicked: str | None = None  # where court points that nobody has clicked yet are to be saved
+    waits: bool = False  # whether it uses the cameras of another session that waits for clicks
     # Of `calibration`, where numbers of the file are replaced: `principal_point_px` and `reason`
     calibration_override: dict[str, Any] = field(default_factory=dict)
     board: dict[str, Any] | None = None  # what several cameras see, and where they do
@@ -188,7 +189,7 @@ class Session:
                 alone if way.name == "known" else possible[way.kind] and (boards or not way.board)
             )
 
-        ways = map(Calibration.parse, self.parameters["calibrations"])
+        ways = map(Calibration.parse, [] if self.waits else self.parameters["calibrations"])
         return [way.name for way in ways if allowed(way)]
 
     def chessboards_of(self, way: str) -> list[str]:

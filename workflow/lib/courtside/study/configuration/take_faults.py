@@ -1,6 +1,7 @@
 """Faults of a take beyond its schema: recordings, devices, simulation, imported keypoints."""
 
 from collections.abc import Collection, Iterable, Iterator
+from itertools import product
 from pathlib import Path
 
 from courtside.study.configuration.session_files import KINDS, kind_of
@@ -10,6 +11,7 @@ from courtside.study.errors import nearest
 from courtside.study.methods import STAGE_WORDS
 
 MEANT_FOR = {"unit": ("inertial", "nuitrack"), "angles": ("inertial",)}  # keys of devices
+OWN_SOURCES = {"rgbd": ("depth", "rgb"), "rgb": ("rgb",), "inertial": ("corrected",)}  # endings
 OF_VIRTUAL_SUITS = ("strength",)  # keys of virtual devices; the others are of depth cameras
 RECORDINGS = ("videos", "pose2d", "devices")  # keys of a take that was recorded
 
@@ -36,7 +38,8 @@ def of_other_programs(folder: Path, file: Path, content: Content) -> Iterator[st
             strange = unknown(where, take.get(key, {}), there)
             for skeleton, files in take.get(key, {}).items():
                 strange += unknown(f"{where}.{skeleton}", files, known)
-            yield from strange or (_without_a_folder(where, take) if key == "pose2d" else ())
+            checked = _without_a_folder if key == "pose2d" else _twice
+            yield from strange or checked(where, take)
         if "pose2d" in take and "videos" not in take:
             yield from _unfilmed(f"{file}: takes.{name}", take, content)
         missing = wanted & set(imported(content)) - set(take.get("pose2d", {}))
@@ -61,6 +64,17 @@ def _without_a_folder(where: str, take: Content) -> Iterator[str]:
             yield (
                 f"{where}.{skeleton}: expected a folder of each camera of the take, found none of "
                 f"{', '.join(missing)}; name it, or remove the camera from the take"
+            )
+
+
+def _twice(where: str, take: Content) -> Iterator[str]:
+    """Yield the files of skeletons that are given for two persons."""
+    for skeleton, files in take.get("pose3d", {}).items():
+        paths = [*files.values()]
+        for path in sorted({path for path in paths if paths.count(path) > 1}):
+            yield (
+                f"{where}.{skeleton}: expected a file of each person, found {path} twice; correct "
+                "one path"
             )
 
 
@@ -234,13 +248,21 @@ def _device_faults(
                     f"{where}.devices.{name}.{key}: expected it of a file {', '.join(endings)} "
                     f"only, found {device['file']}; remove it"
                 )
-        if name in {*cameras, "cameras"}:
-            yield f"{where}.devices: expected names that no camera has, found {name!r}; rename it"
-        if name in STAGE_WORDS.values():
-            yield (
-                f"{where}.devices: expected names that no stage of skeletons has, found {name!r}; "
-                "rename it"
-            )
+    yield from _device_names(where, devices, cameras)
+
+
+def _device_names(where: str, devices: Content, cameras: Content) -> Iterator[str]:
+    """Yield the devices whose names mean something else."""
+    sources = {
+        f"{name}-{ending}"
+        for name, device in devices.items()
+        for ending in OWN_SOURCES.get(device.get("kind") or _kind(device), ())
+    }
+    taken = {"camera": {*cameras, "cameras"}, "stage of skeletons": {*STAGE_WORDS.values()}}
+    taken["source of another device"] = sources
+    for name, (what, names) in product(devices, taken.items()):
+        if name in names:
+            yield f"{where}.devices: expected names that no {what} has, found {name!r}; rename it"
 
 
 def _virtual_faults(
