@@ -18,7 +18,7 @@ from courtside.records.keypoints.people import People
 from courtside.records.keypoints.sightings import Sighting
 from courtside.study.errors import LONGEST, InputError
 
-# ASSUME: further beyond the court's lines for most of the take, somebody is no player on it.
+# ASSUME: who plays is this near the court's lines for a tenth of the take.
 BESIDE_M = 2.0
 Spans = list[tuple[float, float]]  # from and to, s
 Free = dict[int, Spans]  # by person: the times of it that no subject uses
@@ -44,7 +44,7 @@ def name(
     """Return the subjects (S,) among the persons found, with the rows that show each one.
 
     Sightings assign persons to subjects (`marks`). If one subject has no sighting, it is the only
-    person without a name who was tracked for a tenth of the take and is not beside the `court`.
+    person without a name who was tracked for a tenth of the take, near the `court` if there is one.
     Raises a one-line `InputError` if a subject is ambiguous or a sighting is wrong.
     """
     if not (found.placed > 0).any():
@@ -137,15 +137,12 @@ def gaps_s(time_s: NDArray, path: NDArray) -> Spans:
 
 def _candidates(found: People, taken: set[int], court: Court | None) -> list[int]:
     """Return the persons without a name who count, by how often they were placed."""
-    count = [k for k in np.flatnonzero(found.placed >= COUNTS).tolist() if k not in taken]
-    return [k for k in count if not _beside(found.path[k], court)]
-
-
-def _beside(path: NDArray, court: Court | None) -> bool:
-    if court is None:
-        return False
-    middle = np.nanmedian(path[:, :2], axis=0)
-    return bool((middle < -BESIDE_M).any() or (middle > court.size_m + BESIDE_M).any())
+    count = found.placed >= COUNTS
+    if court is not None:
+        xy = found.path[..., :2]
+        near = (xy >= -BESIDE_M) & (xy <= court.size_m + BESIDE_M)
+        count &= near.all(axis=-1).mean(axis=-1) >= COUNTS
+    return [k for k in np.flatnonzero(count).tolist() if k not in taken]
 
 
 def _ambiguous(
