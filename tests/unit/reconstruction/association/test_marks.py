@@ -139,6 +139,28 @@ def test_pieces_of_one_person_are_joined():
     assert (owner[[0, 2]] == 0).all() and (owner[1] == -1).all()
 
 
+def test_two_who_are_there_and_never_near_are_not_joined():
+    found = named_takes.take().found
+    marked = [mark(0, 0, 1.0), mark(0, 1, 5.0)]
+    said = r"line 5: expected the person of line 1, found another one, never nearer than 3\.0 m"
+    with pytest.raises(InputError, match=said):
+        marks.timelines(found, marked, 1)
+    bounded = [mark(0, 0, 1.0, to_s=2.0), mark(0, 1, 5.0, from_s=2.0)]
+    _, used = marks.timelines(found, bounded, 1)
+    assert changes(used[0]) == ([0, 1], [pytest.approx(2.0, abs=0.11)])
+
+
+@pytest.mark.parametrize(
+    ("gone", "change_s"),
+    [([(0, slice(23, None)), (1, slice(0, 20))], 2.0), ([(k, slice(20, 30)) for k in (0, 1)], 2.4)],
+    ids=["pieces that overlap", "both out of sight"],
+)
+def test_pieces_of_one_person_are_joined_also_where_nothing_is_near(gone, change_s):
+    found = named_takes.take(gone=gone).found
+    _, used = marks.timelines(found, [mark(0, 0, 1.0), mark(0, 1, 5.0)], 1)
+    assert changes(used[0]) == ([0, 1], [pytest.approx(change_s, abs=0.11)])
+
+
 def test_stated_bounds_split_where_nothing_else_does():
     marked = [mark(0, 0, 1.0, to_s=2.0), mark(1, 0, 5.0, from_s=4.0)]
     owner, used = marks.timelines(named_takes.take().found, marked, 2)

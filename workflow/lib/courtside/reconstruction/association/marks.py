@@ -146,8 +146,9 @@ def timelines(found: People, marks: Sequence[Mark], n_subjects: int) -> tuple[ND
     Several marks of one subject on different persons join these persons: the subject changes from
     one to the next while both are out of sight for long, else when they are nearest. Marks of
     different subjects on one person split the person likewise, else where the person has no
-    position or somebody else came near. Raises `InputError` if neither happened. Marks with
-    `from_s` or `to_s` hold within these; there, other marks do not.
+    position or somebody else came near. Raises `InputError` if neither happened, or if persons to
+    be joined were both there and never near. Marks with `from_s` or `to_s` hold within these;
+    there, other marks do not.
     """
     count, n = found.path.shape[:2]
     owner, used = np.full((count, n), -1), np.full((n_subjects, n), -1)
@@ -257,10 +258,20 @@ def _join_of(found: People) -> Change:
         between = (found.time_s >= before.time_s) & (found.time_s <= after.time_s)
         at, path = found.time_s[between], found.path[:, between]
         apart = np.linalg.norm(path[before.person] - path[after.person], axis=-1)
-        if np.isfinite(apart).any():
+        both_s = at[np.isfinite(apart)]
+        if len(both_s):
             seen = np.isfinite(path[[before.person, after.person], :, 0]).any(axis=0)
             away_s, middle_s = _longest_gap(at[seen], before.time_s, after.time_s)
-            return middle_s if away_s > AWAY_S else float(at[int(np.nanargmin(apart))])
+            met = np.nanmin(apart) <= MEET_M
+            if away_s > (AWAY_S if met else GAP_S):
+                return middle_s
+            if not met and np.ptp(both_s) > GAP_S:
+                raise InputError(
+                    f"{after.where}: expected the person of {before.where}, found another one, "
+                    f"never nearer than {np.nanmin(apart):.1f} m in between; correct one of them, "
+                    "or state from_s and to_s in people.csv"
+                )
+            return float(at[int(np.nanargmin(apart))])
         last = at[np.isfinite(path[before.person, :, 0])]
         return float(last[-1]) if len(last) else (before.time_s + after.time_s) / 2
 
