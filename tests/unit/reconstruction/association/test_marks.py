@@ -194,6 +194,26 @@ def test_one_subject_ends_and_the_next_begins_at_a_bound():
         assert changes(owner[0]) == ([0, 1], [pytest.approx(3.0, abs=0.11)])
 
 
+@pytest.mark.parametrize(
+    ("other", "what"),
+    [((1, 0), "two subjects for one person"), ((0, 1), "one subject at two places")],
+)
+def test_bounds_that_contradict_each_other_are_refused(other, what):
+    said = rf"line 5: expected times apart from those of line 1, found {what} from 2\.0 to 4\.0 s"
+    first, second = mark(0, 0, 1.0, 0.0, 4.0), mark(*other, 5.0, 2.0, 6.0)
+    with pytest.raises(InputError, match=said):
+        marks.timelines(named_takes.take().found, [first, second], 2)
+    with pytest.raises(InputError, match="expected times apart"):
+        marks.timelines(named_takes.take().found, [second, first], 2)
+
+
+def test_bounds_of_one_subject_may_overlap_where_its_persons_are_not_both_there():
+    found = named_takes.take(gone=[(0, slice(30, None)), (1, slice(0, 28))]).found
+    marked = [mark(0, 0, 1.0, 0.0, 4.0), mark(0, 1, 5.0, 2.0, 6.0)]
+    owner, _ = marks.timelines(found, marked, 1)
+    assert changes(owner[0]) == ([0, -1], [pytest.approx(4.0)])
+
+
 def test_somebody_between_two_others_needs_bounds_alone():
     marked = [mark(0, 0, 1.0), mark(1, 0, 3.0, 2.0, 4.0), mark(2, 0, 5.0)]
     owner, _ = marks.timelines(named_takes.take().found, marked, 3)

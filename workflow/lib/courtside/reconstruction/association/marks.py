@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -148,10 +148,12 @@ def timelines(found: People, marks: Sequence[Mark], n_subjects: int) -> tuple[ND
     different subjects on one person split the person likewise, else where the person has no
     position or somebody else came near. Raises `InputError` if neither happened, or if persons to
     be joined were both there and never near. Marks with `from_s` or `to_s` hold within these;
-    there, other marks do not.
+    there, other marks do not, and two of them must not contradict each other.
     """
     count, n = found.path.shape[:2]
     owner, used = np.full((count, n), -1), np.full((n_subjects, n), -1)
+    for before, after in combinations([mark for mark in marks if mark.bounded], 2):
+        _one_statement(found, before, after)
     for person in sorted({mark.person for mark in marks}):
         own = sorted((m for m in marks if m.person == person), key=lambda m: m.time_s)
         owner[person] = _runs(found.time_s, own, lambda m: m.subject, _split_of(found, marks))
@@ -179,10 +181,33 @@ def _runs(time_s: NDArray, own: Sequence[Mark], value: Value, change: Change) ->
         change_s = _bound_s(stated[0]) if stated else change(before, after)
         found[time_s > change_s] = value(after)
     for mark in within:
-        start_s = -np.inf if mark.from_s is None else mark.from_s
-        stop_s = np.inf if mark.to_s is None else mark.to_s
-        found[(time_s >= start_s) & (time_s <= stop_s)] = value(mark)
+        found[_within(time_s, mark)] = value(mark)
     return found
+
+
+def _within(time_s: NDArray, mark: Mark) -> NDArray:
+    """Return whether times (N,) are within the bounds of a mark."""
+    start_s = -np.inf if mark.from_s is None else mark.from_s
+    stop_s = np.inf if mark.to_s is None else mark.to_s
+    return (time_s >= start_s) & (time_s <= stop_s)
+
+
+def _one_statement(found: People, before: Mark, after: Mark) -> None:
+    """Check that two marks with bounds do not say two things of one person or one subject."""
+    same = before.person == after.person
+    if same == (before.subject == after.subject):
+        return
+    both = _within(found.time_s, before) & _within(found.time_s, after)
+    if not same:
+        apart = np.linalg.norm(found.path[before.person] - found.path[after.person], axis=-1)
+        both &= apart > MEET_M
+    both_s = found.time_s[both]
+    if len(both_s) and np.ptp(both_s) > GAP_S:
+        what = "two subjects for one person" if same else "one subject at two places"
+        raise InputError(
+            f"{after.where}: expected times apart from those of {before.where}, found {what} from "
+            f"{both_s[0]:.1f} to {both_s[-1]:.1f} s; correct from_s and to_s"
+        )
 
 
 def _bound_s(mark: Mark) -> float:
