@@ -118,6 +118,15 @@ def test_the_last_subject_is_the_last_person():
         name(named_takes.take(3), [sighting("b", 0)], ("a", "b"))
 
 
+def test_who_is_there_for_a_third_as_long_as_a_stranger_may_be_the_last_subject():
+    """A coach is there for 15 of 61 instants, player b for 5 of them: 8 %."""
+    take = named_takes.take(3, gone=[(1, slice(15, None)), (2, slice(5, None))])
+    with pytest.raises(InputError, match=r"who is b, found person-2 .* person-3"):
+        name(take, [sighting("a", 0)], ("a", "b"))
+    take = named_takes.take(3, gone=[(1, slice(15, None)), (2, slice(4, None))])
+    assert (name(take, [sighting("a", 0)], ("a", "b")).index["c0"][1] == 1).all()
+
+
 @pytest.mark.parametrize("n_people", [1, 2])
 def test_several_subjects_need_names(n_people):
     with pytest.raises(

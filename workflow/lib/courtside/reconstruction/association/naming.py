@@ -44,8 +44,8 @@ def name(
     """Return the subjects (S,) among the persons found, with the rows that show each one.
 
     Sightings assign persons to subjects (`marks`). If one subject has no sighting, it is the only
-    person without a name who was tracked for a tenth of the take, near the `court` if there is one.
-    Raises a one-line `InputError` if a subject is ambiguous or a sighting is wrong.
+    person without a name who counts: tracked for a tenth of the take, near a `court`. Raises a
+    one-line `InputError` if a subject is ambiguous or a sighting is wrong.
     """
     if not (found.placed > 0).any():
         raise InputError(nowhere(found.index))
@@ -136,13 +136,18 @@ def gaps_s(time_s: NDArray, path: NDArray) -> Spans:
 
 
 def _candidates(found: People, taken: set[int], court: Court | None) -> list[int]:
-    """Return the persons without a name who count, by how often they were placed."""
-    count = found.placed >= COUNTS
+    """Return the persons without a name who count, by how often they were placed.
+
+    They are near the court in a tenth of the take, or a third as long as one who is.
+    """
+    share = found.placed
     if court is not None:
         xy = found.path[..., :2]
         near = (xy >= -BESIDE_M) & (xy <= court.size_m + BESIDE_M)
-        count &= near.all(axis=-1).mean(axis=-1) >= COUNTS
-    return [k for k in np.flatnonzero(count).tolist() if k not in taken]
+        share = np.minimum(share, near.all(axis=-1).mean(axis=-1))
+    share = np.where(np.isin(np.arange(len(share)), list(taken)), 0.0, share)
+    least = min(COUNTS, share.max() / 3) if share.max() >= COUNTS else COUNTS
+    return np.flatnonzero(share >= least).tolist()
 
 
 def _ambiguous(
