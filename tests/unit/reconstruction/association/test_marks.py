@@ -27,6 +27,17 @@ def test_a_pixel_on_the_body_is_the_person_at_the_reference_time():
     assert (other.person, other.time_s, other.from_s, other.to_s) == (0, 1.0, 0.5, 1.5)
 
 
+def test_the_middle_of_a_body_is_its_own_where_somebody_elses_hip_is():
+    """The middle of a trunk is farther from its own joints than a limb of who stands behind."""
+    take = named_takes.take()
+    (x, y), tracklets = named_takes.place_px(1), take.seen[0].tracklets
+    tracklets.xy[0] += [184, 0]  # a hip is 4 px beside the middle of person 1
+    assert located(take, xy=(x, y)).person == 1
+    with pytest.raises(InputError, match=r"expected one person at \(302, 150\) px .* found two"):
+        located(take, xy=(x + 2, y))
+    assert located(take, xy=(x + 20, y)).person == 1
+
+
 def test_a_person_who_was_missed_in_the_very_frame_is_found_beside_it():
     take = named_takes.take()
     take.seen[0].tracklets.xy[1, 9:12] = np.nan

@@ -19,6 +19,8 @@ Change = Callable[["Mark", "Mark"], float]  # when what one mark says gives way 
 
 # ASSUME: how exactly somebody points at a person in a paused video.
 AROUND = 0.15  # of the person's height in the picture: a pixel this far outside the body is on it
+CLOSE = 0.05  # of it: two bodies are not told apart if one is nearer by less
+EXACT = 0.01  # of it: pixels from the page are the middle of a body
 AROUND_S = 0.3  # frames this near count, where the person was not detected in the frame itself
 AWAY_S = 2.0  # ASSUME: two who are out of sight for so long may come back in each other's place
 ONE_MOMENT_S = 0.2  # marks of two subjects closer in time than this are a contradiction
@@ -95,9 +97,20 @@ def _person(sighting: Sighting, index: NDArray, view: Keypoints2D) -> int:
                 break
             persons = np.flatnonzero(index[:, frame] == row)
             if len(persons):
+                _alone(sighting, off, index[:, frame], int(row))
                 return int(persons[0])
             unconfirmed = True
     raise InputError(_nobody(sighting, view, unconfirmed))
+
+
+def _alone(sighting: Sighting, off: NDArray, rows: NDArray, row: int) -> None:
+    """Check that no other person, of the `rows` of persons, is as near to the pixel as a row."""
+    near = np.flatnonzero(off <= min(off[row] + CLOSE, AROUND))
+    if off[row] > EXACT and (np.isin(rows, near) & (rows != row)).any():
+        raise InputError(
+            f"{sighting.where}: expected one person at {_px(sighting.xy)} px of {sighting.camera} "
+            f"at {sighting.time_s:g} s, found two; choose another pixel, time or camera"
+        )
 
 
 def _nobody(sighting: Sighting, view: Keypoints2D, unconfirmed: bool) -> str:
@@ -124,8 +137,8 @@ def _px(xy: Sequence[float] | NDArray) -> str:
 def off_body(xy: NDArray, at_px: tuple[float, float]) -> NDArray:
     """Return how far a pixel is from bodies (P, J, 2) px, in shares of their size; inf without one.
 
-    It is the distance from the nearest joint; inside the box around the joints it is at most the
-    least that counts as on the body.
+    It is the distance from the nearest joint or the middle of the body; inside the box around the
+    joints it is at most the least that counts as on the body.
     """
     off = np.full(len(xy), np.inf)
     for row, joints in enumerate(xy):
@@ -134,7 +147,8 @@ def off_body(xy: NDArray, at_px: tuple[float, float]) -> NDArray:
             continue
         low, high = known.min(axis=0), known.max(axis=0)
         size = max(float((high - low).max()), 1.0)
-        share = float(np.linalg.norm(known - at_px, axis=1).min()) / size
+        points = np.vstack([known, np.median(known, axis=0)])
+        share = float(np.linalg.norm(points - at_px, axis=1).min()) / size
         inside = bool((np.array(at_px) >= low).all() and (np.array(at_px) <= high).all())
         off[row] = min(share, AROUND) if inside else share
     return off
