@@ -37,10 +37,10 @@ def test_a_camera_that_was_switched_on_later_is_good():
     assert {row.verdict for row in rows.values()} == {GOOD}
 
 
-def absent(person, frames, found):
+def absent(person, frames, found, n_frames=150):
     """Return the cameras where the association loses a person, or nobody is found there."""
     cameras = []
-    for one in judged.footage():
+    for one in judged.footage(n_frames):
         one.people.index[one.camera.name][person, frames] = -1
         view = one.tracklets
         for values in () if found else (view.xy, view.score):
@@ -71,6 +71,37 @@ def test_who_is_lost_by_all_cameras_in_the_middle_is_doubtful_or_failed(found, c
         assert rows[camera, ALL].verdict == DOUBTFUL and rows[camera, ALL].cause == cause
         assert words in rows[camera, ALL].sentence and "poor" not in rows[camera, ALL].sentence
     rows, _ = wholes(absent(1, slice(15, 135), found=found))
+    assert rows[ALL, "p2"].verdict == rows[ALL, ALL].verdict == FAILED
+
+
+LONG = slice(60, 330)  # 5.4 of 8 s
+
+
+def test_who_is_away_in_between_makes_nothing_doubtful():
+    rows, table = wholes(absent(1, LONG, found=False, n_frames=400))
+    assert set(table["verdict"]) == {GOOD}
+    agree = "the cameras agree from 0.0 to 1.2 s and 6.6 to 8.0 s of the take."
+    assert rows[ALL, "p2"].sentence == f"p2: {agree}"
+
+
+def test_a_camera_that_finds_nobody_meanwhile_is_doubtful():
+    cameras = absent(1, LONG, found=False, n_frames=400)
+    cameras[2].tracklets.xy[:, LONG] = np.nan
+    rows, _ = wholes(cameras)
+    assert rows["c2", ALL].verdict != GOOD and rows["c2", ALL].cause == causes.DETECTION
+    assert {rows[f"c{k}", ALL].verdict for k in (0, 1, 3)} == {GOOD}
+    assert rows[ALL, ALL].verdict == DOUBTFUL
+
+
+@pytest.mark.parametrize("lost", ["found in one camera", "nobody anywhere"])
+def test_who_is_lost_for_long_is_not_away(lost):
+    cameras = absent(1, LONG, found=False, n_frames=400)
+    if lost == "nobody anywhere":
+        for one in cameras:
+            one.tracklets.xy[:, LONG] = np.nan
+    else:
+        cameras[2].tracklets.xy[1] = judged.footage(400)[2].tracklets.xy[1]
+    rows, _ = wholes(cameras)
     assert rows[ALL, "p2"].verdict == rows[ALL, ALL].verdict == FAILED
 
 

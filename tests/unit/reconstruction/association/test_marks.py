@@ -27,6 +27,17 @@ def test_a_pixel_on_the_body_is_the_person_at_the_reference_time():
     assert (other.person, other.time_s, other.from_s, other.to_s) == (0, 1.0, 0.5, 1.5)
 
 
+def test_the_middle_of_a_body_is_its_own_where_somebody_elses_hip_is():
+    """The middle of a trunk is farther from its own joints than a limb of who stands behind."""
+    take = named_takes.take()
+    (x, y), tracklets = named_takes.place_px(1), take.seen[0].tracklets
+    tracklets.xy[0] += [184, 0]  # a hip is 4 px beside the middle of person 1
+    assert located(take, xy=(x, y)).person == 1
+    with pytest.raises(InputError, match=r"expected one person at \(302, 150\) px .* found two"):
+        located(take, xy=(x + 2, y))
+    assert located(take, xy=(x + 20, y)).person == 1
+
+
 def test_a_person_who_was_missed_in_the_very_frame_is_found_beside_it():
     take = named_takes.take()
     take.seen[0].tracklets.xy[1, 9:12] = np.nan
@@ -139,6 +150,28 @@ def test_pieces_of_one_person_are_joined():
     assert (owner[[0, 2]] == 0).all() and (owner[1] == -1).all()
 
 
+def test_two_who_are_there_and_never_near_are_not_joined():
+    found = named_takes.take().found
+    marked = [mark(0, 0, 1.0), mark(0, 1, 5.0)]
+    said = r"line 5: expected the person of line 1, found another one, never nearer than 3\.0 m"
+    with pytest.raises(InputError, match=said):
+        marks.timelines(found, marked, 1)
+    bounded = [mark(0, 0, 1.0, to_s=2.0), mark(0, 1, 5.0, from_s=2.0)]
+    _, used = marks.timelines(found, bounded, 1)
+    assert changes(used[0]) == ([0, 1], [pytest.approx(2.0, abs=0.11)])
+
+
+@pytest.mark.parametrize(
+    ("gone", "change_s"),
+    [([(0, slice(23, None)), (1, slice(0, 20))], 2.0), ([(k, slice(20, 30)) for k in (0, 1)], 2.4)],
+    ids=["pieces that overlap", "both out of sight"],
+)
+def test_pieces_of_one_person_are_joined_also_where_nothing_is_near(gone, change_s):
+    found = named_takes.take(gone=gone).found
+    _, used = marks.timelines(found, [mark(0, 0, 1.0), mark(0, 1, 5.0)], 1)
+    assert changes(used[0]) == ([0, 1], [pytest.approx(change_s, abs=0.11)])
+
+
 def test_stated_bounds_split_where_nothing_else_does():
     marked = [mark(0, 0, 1.0, to_s=2.0), mark(1, 0, 5.0, from_s=4.0)]
     owner, used = marks.timelines(named_takes.take().found, marked, 2)
@@ -170,6 +203,26 @@ def test_one_subject_ends_and_the_next_begins_at_a_bound():
     ):
         owner, _ = marks.timelines(found, [mark(0, 0, 1.0, **first), mark(1, 0, 5.0, **second)], 2)
         assert changes(owner[0]) == ([0, 1], [pytest.approx(3.0, abs=0.11)])
+
+
+@pytest.mark.parametrize(
+    ("other", "what"),
+    [((1, 0), "two subjects for one person"), ((0, 1), "one subject at two places")],
+)
+def test_bounds_that_contradict_each_other_are_refused(other, what):
+    said = rf"line 5: expected times apart from those of line 1, found {what} from 2\.0 to 4\.0 s"
+    first, second = mark(0, 0, 1.0, 0.0, 4.0), mark(*other, 5.0, 2.0, 6.0)
+    with pytest.raises(InputError, match=said):
+        marks.timelines(named_takes.take().found, [first, second], 2)
+    with pytest.raises(InputError, match="expected times apart"):
+        marks.timelines(named_takes.take().found, [second, first], 2)
+
+
+def test_bounds_of_one_subject_may_overlap_where_its_persons_are_not_both_there():
+    found = named_takes.take(gone=[(0, slice(30, None)), (1, slice(0, 28))]).found
+    marked = [mark(0, 0, 1.0, 0.0, 4.0), mark(0, 1, 5.0, 2.0, 6.0)]
+    owner, _ = marks.timelines(found, marked, 1)
+    assert changes(owner[0]) == ([0, -1], [pytest.approx(4.0)])
 
 
 def test_somebody_between_two_others_needs_bounds_alone():

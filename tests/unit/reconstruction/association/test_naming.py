@@ -50,6 +50,17 @@ def test_who_stays_beside_the_court_does_not_count():
         name(take)
 
 
+def test_a_player_who_rests_beside_the_court_for_most_of_the_take_still_counts():
+    """Who stands on the court meanwhile is a coach; nothing but a statement says so."""
+    paths = np.stack([np.tile(at, (61, 1)) for at in ([-2.8, 6.5], [5.0, 9.0])])
+    paths[0, :20] = 3.0, 5.0
+    take = named_takes.take(2, paths=paths, gone=[(1, slice(25))])
+    with pytest.raises(InputError, match=r"who is p1, found person-1 .* person-2 \("):
+        name(take, court=COURT)
+    paths[0, 5:] = -2.8, 6.5  # for less than a tenth: he passes by
+    assert (name(named_takes.take(2, paths=paths), court=COURT).index["c0"] == 1).all()
+
+
 def test_one_subject_among_several_is_not_guessed():
     with pytest.raises(InputError) as fault:
         name(named_takes.take(2))
@@ -105,6 +116,15 @@ def test_the_last_subject_is_the_last_person():
         InputError, match=r"expected a statement who is a, found person-2 .*person-3"
     ):
         name(named_takes.take(3), [sighting("b", 0)], ("a", "b"))
+
+
+def test_who_is_there_for_a_third_as_long_as_a_stranger_may_be_the_last_subject():
+    """A coach is there for 15 of 61 instants, player b for 5 of them: 8 %."""
+    take = named_takes.take(3, gone=[(1, slice(15, None)), (2, slice(5, None))])
+    with pytest.raises(InputError, match=r"who is b, found person-2 .* person-3"):
+        name(take, [sighting("a", 0)], ("a", "b"))
+    take = named_takes.take(3, gone=[(1, slice(15, None)), (2, slice(4, None))])
+    assert (name(take, [sighting("a", 0)], ("a", "b")).index["c0"][1] == 1).all()
 
 
 @pytest.mark.parametrize("n_people", [1, 2])

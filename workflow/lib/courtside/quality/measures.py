@@ -40,8 +40,8 @@ def of_camera(seen: Seen, camera: int) -> dict[str, float]:
 def of_person(seen: Seen, person: int) -> dict[str, float]:
     """Return the quality measures of a person over all cameras; NaN if unknown.
 
-    `views_2`, `views_3`: share of the limb joints that rest on two and three cameras or more, from
-    the person's first to last frame in two cameras;
+    `views_2`, `views_3`: share of the limb joints that rest on two and three cameras or more, while
+    the person is there;
     `accepted` and `reprojection` as of a camera, from the joints as all cameras place them;
     `limb_length`: how far the length of a limb varies, as a share of it (robust standard deviation,
     median over the limbs).

@@ -8,12 +8,14 @@ all cameras, including wrong ones.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from courtside.geometry import triangulation
 from courtside.geometry.camera import Camera, project
+from courtside.kinematics.filtering import runs
 from courtside.reconstruction import person_height, resampling
 from courtside.records.cameras.footage import Footage
 from courtside.records.keypoints import skeleton as limbs
@@ -26,6 +28,8 @@ MIN_SCORE = 0.05  # of a keypoint that counts, as `triangulate.min_score`
 HALF = 0.5  # of the middles: fewer do not show a person
 ROUNDING_S = 1e-6  # of times that are converted between clocks
 MARGIN = 0.05  # of the picture: somebody nearer to its border may be cut off
+AWAY_S = 5.0  # ASSUME: no network misses somebody for so long in all pictures, but finds others
+MORE = 0.2  # bodies: one more in a fifth of the frames may be the person who is missed
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,18 +53,20 @@ class Seen:
         """Whether each camera follows each person, (C, P, T)."""
         return shown(self.xy)
 
-    @property
+    @cached_property
     def present(self) -> NDArray:
         """Whether each person is there, (P, T): from the first to the last frame in two cameras.
 
         Who is followed in two cameras at no time is there all the time: lost, as far as is known.
+        Who is away in between is not there.
         """
-        return while_there(self.followed.sum(axis=0) >= 2)
+        followed = self.followed.sum(axis=0) >= 2
+        return while_there(followed) & ~(_away(self) & followed.any(axis=1, keepdims=True))
 
     def expected(self, camera: int) -> NDArray:
         """Return whether a person is expected in a picture, (P, S): inside, or position unknown.
 
-        Nobody is where the camera did not run, nor before a person comes and after one has left.
+        Nobody is where the camera did not run, nor while a person is away.
         """
         middle = np.ma.median(np.ma.masked_invalid(self.others[camera]), axis=2).filled(np.nan)
         unknown = np.isnan(middle).any(axis=-1)
@@ -74,6 +80,25 @@ class Seen:
         """Return keypoints (P, S, K, 2) minus the others' projections, heights."""
         there = project(model or self.cameras[camera], self.others[camera])
         return (xy - there) / self.height_px[camera][:, self.at, None, None]
+
+
+def _away(seen: Seen) -> NDArray:
+    """Return when persons are away, (P, T): for long in no picture, while pictures show others.
+
+    Not if a camera then shows more bodies who are nobody: one of them may be the person, lost.
+    """
+    followed, time_s = seen.followed, seen.points.time_s
+    bodies = np.stack([shown(rows).sum(axis=0) for rows in seen.rows])
+    nobody = bodies - followed.sum(axis=1)
+    away = np.zeros(followed.shape[1:], bool)
+    for person, there in enumerate(np.any(followed, axis=0)):
+        for start, stop in runs(~there) if there.any() else ():
+            part = slice(start, stop)
+            more = nobody[:, part].mean(axis=1) - nobody[:, there].mean(axis=1)
+            others = bodies[:, part].any(axis=0).mean() >= HALF
+            long = np.ptp(time_s[part]) > AWAY_S
+            away[person, part] = long and others and more.max() < MORE
+    return away
 
 
 def shown(xy: NDArray) -> NDArray:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import pandas as pd
 
+from courtside.kinematics.filtering import runs
 from courtside.quality import causes, measures
 from courtside.quality.calibration_doubts import Doubts
 from courtside.quality.seen import Seen, disagreement, shown, without
@@ -279,9 +280,9 @@ def _person(seen: Seen, at: int) -> list[dict]:
 
 def _when(seen: Seen, at: int) -> str:
     """Return between which times a person is judged; empty: in the whole take."""
-    present = seen.present[at]
-    first_s, last_s = seen.points.time_s[present][[0, -1]]
-    return "" if present.all() else f" from {first_s:.1f} to {last_s:.1f} s of the take"
+    present, time_s = seen.present[at], seen.points.time_s
+    parts = [f"{time_s[a]:.1f} to {time_s[b - 1]:.1f} s" for a, b in runs(present)]
+    return "" if present.all() else f" from {' and '.join(parts)} of the take"
 
 
 def _together(rows: list[dict]) -> list[str]:

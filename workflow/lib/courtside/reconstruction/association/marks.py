@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,8 @@ Change = Callable[["Mark", "Mark"], float]  # when what one mark says gives way 
 
 # ASSUME: how exactly somebody points at a person in a paused video.
 AROUND = 0.15  # of the person's height in the picture: a pixel this far outside the body is on it
+CLOSE = 0.05  # of it: two bodies are not told apart if one is nearer by less
+EXACT = 0.01  # of it: pixels from the page are the middle of a body
 AROUND_S = 0.3  # frames this near count, where the person was not detected in the frame itself
 AWAY_S = 2.0  # ASSUME: two who are out of sight for so long may come back in each other's place
 ONE_MOMENT_S = 0.2  # marks of two subjects closer in time than this are a contradiction
@@ -95,9 +97,20 @@ def _person(sighting: Sighting, index: NDArray, view: Keypoints2D) -> int:
                 break
             persons = np.flatnonzero(index[:, frame] == row)
             if len(persons):
+                _alone(sighting, off, index[:, frame], int(row))
                 return int(persons[0])
             unconfirmed = True
     raise InputError(_nobody(sighting, view, unconfirmed))
+
+
+def _alone(sighting: Sighting, off: NDArray, rows: NDArray, row: int) -> None:
+    """Check that no other person, of the `rows` of persons, is as near to the pixel as a row."""
+    near = np.flatnonzero(off <= min(off[row] + CLOSE, AROUND))
+    if off[row] > EXACT and (np.isin(rows, near) & (rows != row)).any():
+        raise InputError(
+            f"{sighting.where}: expected one person at {_px(sighting.xy)} px of {sighting.camera} "
+            f"at {sighting.time_s:g} s, found two; choose another pixel, time or camera"
+        )
 
 
 def _nobody(sighting: Sighting, view: Keypoints2D, unconfirmed: bool) -> str:
@@ -124,8 +137,8 @@ def _px(xy: Sequence[float] | NDArray) -> str:
 def off_body(xy: NDArray, at_px: tuple[float, float]) -> NDArray:
     """Return how far a pixel is from bodies (P, J, 2) px, in shares of their size; inf without one.
 
-    It is the distance from the nearest joint; inside the box around the joints it is at most the
-    least that counts as on the body.
+    It is the distance from the nearest joint or the middle of the body; inside the box around the
+    joints it is at most the least that counts as on the body.
     """
     off = np.full(len(xy), np.inf)
     for row, joints in enumerate(xy):
@@ -134,7 +147,8 @@ def off_body(xy: NDArray, at_px: tuple[float, float]) -> NDArray:
             continue
         low, high = known.min(axis=0), known.max(axis=0)
         size = max(float((high - low).max()), 1.0)
-        share = float(np.linalg.norm(known - at_px, axis=1).min()) / size
+        points = np.vstack([known, np.median(known, axis=0)])
+        share = float(np.linalg.norm(points - at_px, axis=1).min()) / size
         inside = bool((np.array(at_px) >= low).all() and (np.array(at_px) <= high).all())
         off[row] = min(share, AROUND) if inside else share
     return off
@@ -146,11 +160,14 @@ def timelines(found: People, marks: Sequence[Mark], n_subjects: int) -> tuple[ND
     Several marks of one subject on different persons join these persons: the subject changes from
     one to the next while both are out of sight for long, else when they are nearest. Marks of
     different subjects on one person split the person likewise, else where the person has no
-    position or somebody else came near. Raises `InputError` if neither happened. Marks with
-    `from_s` or `to_s` hold within these; there, other marks do not.
+    position or somebody else came near. Raises `InputError` if neither happened, or if persons to
+    be joined were both there and never near. Marks with `from_s` or `to_s` hold within these;
+    there, other marks do not, and two of them must not contradict each other.
     """
     count, n = found.path.shape[:2]
     owner, used = np.full((count, n), -1), np.full((n_subjects, n), -1)
+    for before, after in combinations([mark for mark in marks if mark.bounded], 2):
+        _one_statement(found, before, after)
     for person in sorted({mark.person for mark in marks}):
         own = sorted((m for m in marks if m.person == person), key=lambda m: m.time_s)
         owner[person] = _runs(found.time_s, own, lambda m: m.subject, _split_of(found, marks))
@@ -178,10 +195,33 @@ def _runs(time_s: NDArray, own: Sequence[Mark], value: Value, change: Change) ->
         change_s = _bound_s(stated[0]) if stated else change(before, after)
         found[time_s > change_s] = value(after)
     for mark in within:
-        start_s = -np.inf if mark.from_s is None else mark.from_s
-        stop_s = np.inf if mark.to_s is None else mark.to_s
-        found[(time_s >= start_s) & (time_s <= stop_s)] = value(mark)
+        found[_within(time_s, mark)] = value(mark)
     return found
+
+
+def _within(time_s: NDArray, mark: Mark) -> NDArray:
+    """Return whether times (N,) are within the bounds of a mark."""
+    start_s = -np.inf if mark.from_s is None else mark.from_s
+    stop_s = np.inf if mark.to_s is None else mark.to_s
+    return (time_s >= start_s) & (time_s <= stop_s)
+
+
+def _one_statement(found: People, before: Mark, after: Mark) -> None:
+    """Check that two marks with bounds do not say two things of one person or one subject."""
+    same = before.person == after.person
+    if same == (before.subject == after.subject):
+        return
+    both = _within(found.time_s, before) & _within(found.time_s, after)
+    if not same:
+        apart = np.linalg.norm(found.path[before.person] - found.path[after.person], axis=-1)
+        both &= apart > MEET_M
+    both_s = found.time_s[both]
+    if len(both_s) and np.ptp(both_s) > GAP_S:
+        what = "two subjects for one person" if same else "one subject at two places"
+        raise InputError(
+            f"{after.where}: expected times apart from those of {before.where}, found {what} from "
+            f"{both_s[0]:.1f} to {both_s[-1]:.1f} s; correct from_s and to_s"
+        )
 
 
 def _bound_s(mark: Mark) -> float:
@@ -257,10 +297,20 @@ def _join_of(found: People) -> Change:
         between = (found.time_s >= before.time_s) & (found.time_s <= after.time_s)
         at, path = found.time_s[between], found.path[:, between]
         apart = np.linalg.norm(path[before.person] - path[after.person], axis=-1)
-        if np.isfinite(apart).any():
+        both_s = at[np.isfinite(apart)]
+        if len(both_s):
             seen = np.isfinite(path[[before.person, after.person], :, 0]).any(axis=0)
             away_s, middle_s = _longest_gap(at[seen], before.time_s, after.time_s)
-            return middle_s if away_s > AWAY_S else float(at[int(np.nanargmin(apart))])
+            met = np.nanmin(apart) <= MEET_M
+            if away_s > (AWAY_S if met else GAP_S):
+                return middle_s
+            if not met and np.ptp(both_s) > GAP_S:
+                raise InputError(
+                    f"{after.where}: expected the person of {before.where}, found another one, "
+                    f"never nearer than {np.nanmin(apart):.1f} m in between; correct one of them, "
+                    "or state from_s and to_s in people.csv"
+                )
+            return float(at[int(np.nanargmin(apart))])
         last = at[np.isfinite(path[before.person, :, 0])]
         return float(last[-1]) if len(last) else (before.time_s + after.time_s) / 2
 

@@ -18,7 +18,7 @@ from courtside.records.keypoints.people import People
 from courtside.records.keypoints.sightings import Sighting
 from courtside.study.errors import LONGEST, InputError
 
-# ASSUME: further beyond the court's lines for most of the take, somebody is no player on it.
+# ASSUME: who plays is this near the court's lines for a tenth of the take.
 BESIDE_M = 2.0
 Spans = list[tuple[float, float]]  # from and to, s
 Free = dict[int, Spans]  # by person: the times of it that no subject uses
@@ -44,8 +44,8 @@ def name(
     """Return the subjects (S,) among the persons found, with the rows that show each one.
 
     Sightings assign persons to subjects (`marks`). If one subject has no sighting, it is the only
-    person without a name who was tracked for a tenth of the take and is not beside the `court`.
-    Raises a one-line `InputError` if a subject is ambiguous or a sighting is wrong.
+    person without a name who counts: tracked for a tenth of the take, near a `court`. Raises a
+    one-line `InputError` if a subject is ambiguous or a sighting is wrong.
     """
     if not (found.placed > 0).any():
         raise InputError(nowhere(found.index))
@@ -136,16 +136,18 @@ def gaps_s(time_s: NDArray, path: NDArray) -> Spans:
 
 
 def _candidates(found: People, taken: set[int], court: Court | None) -> list[int]:
-    """Return the persons without a name who count, by how often they were placed."""
-    count = [k for k in np.flatnonzero(found.placed >= COUNTS).tolist() if k not in taken]
-    return [k for k in count if not _beside(found.path[k], court)]
+    """Return the persons without a name who count, by how often they were placed.
 
-
-def _beside(path: NDArray, court: Court | None) -> bool:
-    if court is None:
-        return False
-    middle = np.nanmedian(path[:, :2], axis=0)
-    return bool((middle < -BESIDE_M).any() or (middle > court.size_m + BESIDE_M).any())
+    They are near the court in a tenth of the take, or a third as long as one who is.
+    """
+    share = found.placed
+    if court is not None:
+        xy = found.path[..., :2]
+        near = (xy >= -BESIDE_M) & (xy <= court.size_m + BESIDE_M)
+        share = np.minimum(share, near.all(axis=-1).mean(axis=-1))
+    share = np.where(np.isin(np.arange(len(share)), list(taken)), 0.0, share)
+    least = min(COUNTS, share.max() / 3) if share.max() >= COUNTS else COUNTS
+    return np.flatnonzero(share >= least).tolist()
 
 
 def _ambiguous(
