@@ -26,8 +26,8 @@ def test_heights_are_those_above_the_flat_foot_wherever_the_floor_is(points):
 
 def test_the_floor_of_a_foot_that_is_mostly_in_the_air_is_where_it_stands(points):
     xyz = points.xyz.copy()
-    xyz[0, 40:, points.joints.tolist().index("left_heel"), 2] += 0.4
-    xyz[0, 40:, points.joints.tolist().index("left_foot_index"), 2] += 0.4
+    xyz[0, 18:, points.joints.tolist().index("left_heel"), 2] += 0.4
+    xyz[0, 18:, points.joints.tolist().index("left_foot_index"), 2] += 0.4
     floors = [
         tracks.tracks(one, 0, "left", walking_feet.CUTOFFS)[1]
         for one in (points, replace(points, xyz=xyz))

@@ -141,7 +141,7 @@ def test_the_sigma_of_the_trunks_forward_lean_holds_with_a_side_bend(aside, leas
 
 
 def test_who_lies_on_the_side_leans_nowhere_forwards():
-    corners = [[0, 0, 0.28], [0, 0, 0.1], [0.5, 0, 0.36], [0.5, 0.01, 0.02]]
+    corners = [[0.03, 0, 0.28], [0, 0.03, 0.1], [0.5, 0, 0.36], [0.5, 0.01, 0.02]]
     points = [np.array([corner]) for corner in corners]
     lean, forward = joint_angles.trunk(points[:2], points[2:], own(*[NONE] * 4))
     assert lean.degrees[0] == pytest.approx(90, abs=1)
