@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from courtside.body_model import segments, take
 from courtside.exports import opensim, opensim_model
+from courtside.exports.trc import WORLD_AXES
 from courtside.kinematics import centre_of_mass
 from courtside.records.devices import hierarchy
 from fixtures.people import moving_model
@@ -282,6 +283,14 @@ def test_an_arm_that_hangs_again_has_angles_near_zero(path, n_frames, repeats):
     assert np.abs(found[:, 1]).max() <= 90
 
 
+def goes_on(found, turned):
+    """Return whether angles (T, 3) halfway between frames are halfway between rotations, too."""
+    between = Rotation.from_euler("ZXY", (found[1:] + found[:-1]) / 2, degrees=True)
+    step = np.degrees((turned[1:] * turned[:-1].inv()).magnitude())
+    way = np.degrees((between * turned[:-1].inv()).magnitude())
+    return (way <= step + 0.1).all()
+
+
 @pytest.mark.parametrize("path", PATHS)
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_a_swung_arm_has_coordinates_that_a_spline_may_go_through(tmp_path, walking, path, side):
@@ -295,10 +304,27 @@ def test_a_swung_arm_has_coordinates_that_a_spline_may_go_through(tmp_path, walk
     values, mirror = columns(tmp_path / "a.mot"), -1 if side == "left" else 1
     names = [f"glenohumeral_{name}_{side[0]}" for name in ("flexion", "adduction", "rotation")]
     found = np.stack([values[name] for name in names], axis=1) * [1, mirror, mirror]
-    between = Rotation.from_euler("ZXY", (found[1:] + found[:-1]) / 2, degrees=True)
-    step = np.degrees((arms[1:] * arms[:-1].inv()).magnitude())
-    way = np.degrees((between * arms[:-1].inv()).magnitude())
-    assert (way <= step + 0.1).all()
+    assert goes_on(found, arms)
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        [[0, 4, 30], [-1080, 4, 30]],  # three rolls forwards
+        [[0, 0, 30], [0, 80, 30], [20, 110, 50], [0, 180, 30]],  # half a cartwheel
+    ],
+    ids=["rolls", "cartwheel"],
+)
+def test_a_pelvis_that_turns_over_has_coordinates_that_a_spline_may_go_through(
+    tmp_path, walking, path
+):
+    turned = np.concatenate([np.linspace(*ends, 120) for ends in pairwise(path)])
+    motion, turns = anyhow(walking, len(turned)), Rotation.from_euler("ZXY", turned, degrees=True)
+    motion.parent_from_segment[0, :, 0] = turns.as_matrix()[:, np.argsort(WORLD_AXES)]
+    opensim.write_motion(tmp_path / "a.mot", motion, 0)
+    values = columns(tmp_path / "a.mot")
+    found = np.stack([values[f"pelvis_{name}"] for name in ("tilt", "list", "rotation")], axis=1)
+    assert goes_on(found, turns)
 
 
 def test_coordinates_lie_in_the_ranges_of_the_model(tmp_path, walking):

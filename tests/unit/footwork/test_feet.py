@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from courtside.footwork import feet
@@ -20,6 +21,36 @@ def test_a_split_step_of_the_virtual_gym_is_found_and_the_first_step_after_it():
     stands = contacts.probability[0] > 0.5
     assert stands[:20].all()
     assert not stands[27].any()
+
+
+@pytest.mark.parametrize("up_m", [0.4, 2.0])
+def test_feet_in_the_air_all_the_time_do_not_stand(up_m):
+    points, _ = walking_feet.record(walking_feet.hop(), 0.7)
+    lifted = replace(points, xyz=points.xyz + np.array([0, 0, up_m]))
+    contacts, steps, _ = feet.find(lifted, walking_feet.CUTOFFS)
+    assert (contacts.probability < 0.5).all()
+    assert (contacts.held < 0.5).all()
+    assert steps.empty
+
+
+@pytest.mark.parametrize("up_m", [-0.06, 0.06])
+def test_feet_stand_on_a_floor_that_the_calibration_has_some_centimetres_off(up_m):
+    points, _ = walking_feet.record(walking_feet.gait(), 5.0)
+    lifted = replace(points, xyz=points.xyz + np.array([0, 0, up_m]))
+    steps = [feet.find(one, walking_feet.CUTOFFS)[1] for one in (points, lifted)]
+    assert len(steps[0]) > 8
+    pd.testing.assert_frame_equal(*steps)
+
+
+@pytest.mark.parametrize("m_s", [0.25, 0.4])
+def test_feet_on_the_rests_of_a_wheelchair_do_not_stand(m_s):
+    points, _ = walking_feet.record(walking_feet.gait(1), 5.0)
+    standing = points.xyz[:, :1] + np.random.default_rng(0).normal(0, 0.004, points.xyz.shape)
+    ahead = np.array([0, 1, 0]) * m_s * points.time_s[:, None, None]
+    rolling = replace(points, xyz=standing + ahead + np.array([0, 0, 0.1]))
+    contacts, steps, _ = feet.find(rolling, walking_feet.CUTOFFS)
+    assert (contacts.probability < 0.5).all()
+    assert steps.empty
 
 
 def test_a_heel_that_is_hidden_for_a_while_makes_no_lunges():

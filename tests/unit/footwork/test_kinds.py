@@ -42,6 +42,13 @@ def test_both_feet_that_leave_and_land_together(feet, event):
     assert first == feet["left"][1].onset_s
 
 
+@pytest.mark.parametrize("looked", [None, []])
+def test_feet_that_leave_and_land_together_after_a_roll_have_not_jumped(looked):
+    steps, events = kinds.tables({"p1": (together(1.0, 2.0, ahead=2.0), 0.9, looked)})
+    assert steps.kind.tolist() == ["stand", "stand", "step", "step"]
+    assert events.event.tolist() == ["step", "step"]
+
+
 def test_a_hop_is_a_split_step_once_even_where_the_stances_show_it():
     feet, hop = together(1.0, 1.2), Hop(1.0, 0.01, 1.2, 0.01)
     steps, events = kinds.tables({"p1": (feet, 0.9, [hop])})

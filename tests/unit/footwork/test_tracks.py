@@ -24,6 +24,17 @@ def test_heights_are_those_above_the_flat_foot_wherever_the_floor_is(points):
     assert abs(found[0].height[stands]).max() < 0.012
 
 
+def test_the_floor_of_a_foot_that_is_mostly_in_the_air_is_where_it_stands(points):
+    xyz = points.xyz.copy()
+    xyz[0, 18:, points.joints.tolist().index("left_heel"), 2] += 0.4
+    xyz[0, 18:, points.joints.tolist().index("left_foot_index"), 2] += 0.4
+    floors = [
+        tracks.tracks(one, 0, "left", walking_feet.CUTOFFS)[1]
+        for one in (points, replace(points, xyz=xyz))
+    ]
+    np.testing.assert_allclose(*floors, atol=0.02)
+
+
 def test_velocities_are_those_of_the_path(points):
     (track,), _ = tracks.tracks(points, 0, "right", walking_feet.CUTOFFS)
     step_s = track.time_s[1] - track.time_s[0]

@@ -121,6 +121,33 @@ def test_the_sigma_of_the_trunk_holds_ninety_percent():
     assert 0.885 < inside.mean() < 0.915
 
 
+@pytest.mark.parametrize(
+    ("aside", "least", "most"), [(0, 0.885, 0.915), (20, 0.88, 0.92), (45, 0.87, 0.93)]
+)
+def test_the_sigma_of_the_trunks_forward_lean_holds_with_a_side_bend(aside, least, most):
+    """The trunk leans 10 degrees forwards, then bends sideways with hips and shoulders."""
+    rng, lean, n_draws = np.random.default_rng(3), np.radians(10), 20_000
+    tilt = np.radians(aside)
+    axes = np.array([[np.cos(tilt), 0, np.sin(tilt)], [0, 1, 0], [-np.sin(tilt), 0, np.cos(tilt)]])
+    top, wide = 0.5 * np.array([0, np.sin(lean), np.cos(lean)]), np.array([0.18, 0, 0])
+    corners = [-wide / 2, wide / 2, top - wide, top + wide]
+    true = [np.repeat((corner @ axes)[None], n_draws, axis=0) for corner in corners]
+    noisy = [place + rng.normal(0, 0.008, place.shape) for place in true]
+    covariance = np.broadcast_to(0.008**2 * np.eye(3), (n_draws, 3, 3))
+    _, exact = joint_angles.trunk(true[:2], true[2:], own(*[covariance] * 4))
+    _, found = joint_angles.trunk(noisy[:2], noisy[2:], own(*[covariance] * 4))
+    inside = np.abs(found.degrees - exact.degrees) < 1.645 * found.sigma_deg
+    assert least < inside.mean() < most
+
+
+def test_who_lies_on_the_side_leans_nowhere_forwards():
+    corners = [[0.03, 0, 0.28], [0, 0.03, 0.1], [0.5, 0, 0.36], [0.5, 0.01, 0.02]]
+    points = [np.array([corner]) for corner in corners]
+    lean, forward = joint_angles.trunk(points[:2], points[2:], own(*[NONE] * 4))
+    assert lean.degrees[0] == pytest.approx(90, abs=1)
+    assert np.isnan([forward.degrees[0], forward.sigma_deg[0]]).all()
+
+
 def test_a_missing_joint_is_a_missing_angle():
     xyz, _ = footwork.body(np.repeat([[0.0, 0.0, 1.45]], 3, axis=0), np.zeros(3))
     xyz[1, walker.SKELETON.index("left_ankle")] = np.nan

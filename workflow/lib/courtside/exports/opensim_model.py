@@ -59,7 +59,7 @@ LEG = 0.491  # length of thigh and shank, share of the height (Winter 2009, fig.
 FAR_DEG = 240.0
 # Ranges of coordinates: metres; turns of those that count them (ASSUME: never so many); of others
 WIDE_M, COUNTED, OTHERS = 100.0, 1000, 1
-COUNTING = ("pelvis_rotation", "glenohumeral")
+COUNTING = ("pelvis_", "glenohumeral")
 
 
 def body(segment: str) -> str:
@@ -83,8 +83,8 @@ def turns(segment: str) -> list[tuple[int, str, int]]:
 def coordinates(motion: SkeletalMotion, person: int) -> dict[str, NDArray]:
     """Return the coordinates of one person's fitted frames by name, degrees and metres, (T,) each.
 
-    The ground's axes are those of the TRC files. The rotation of the pelvis and the shoulders'
-    coordinates go on beyond 180 degrees over the whole take: OpenSim puts splines through them.
+    The ground's axes are those of the TRC files. The turns of the pelvis and the shoulders go on
+    beyond 180 degrees over the whole take: OpenSim puts splines through them.
     """
     fitted = np.isfinite(motion.root[person]).all(axis=1)
     found: dict[str, NDArray] = {}
@@ -98,9 +98,8 @@ def coordinates(motion: SkeletalMotion, person: int) -> dict[str, NDArray]:
         if len(own) == 2:
             split = _hinges_deg(turned, own[0][0], own[1][0])
         else:
-            split = (continuous_deg if segment.endswith("humerus") else euler_deg)(turned)
-        if motion.parents[at] < 0:
-            split[:, 2] = np.unwrap(split[:, 2], period=360)
+            counts = own[0][1].startswith(COUNTING)
+            split = (continuous_deg if counts else euler_deg)(turned)
         found |= {name: sign * split[:, k] for k, (_, name, sign) in enumerate(own)}
     return found
 

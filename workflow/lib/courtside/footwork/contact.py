@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.footwork.tracks import Track
+from courtside.kinematics import filtering
 
 # Chosen on the takes of players-dev, and on hops that the virtual gym plans. Standard deviations
 # per axis and mean heights, beside what the stated errors add: m/s and m.
@@ -27,6 +28,9 @@ TIPTOE, STRICT = (0.01, 0.02), (0.0, STILL_M)
 SWING_M_S = (0.6, 1.5, 4.0)  # of a swinging point: shuffling, stepping and running alike
 SWING_M, SWING_SD_M = 0.05, 0.05  # its height
 RAISED_M_S, RAISED_M, RAISED_SD_M = 0.9, 0.04, 0.04  # of the other end of a tilted foot
+# ASSUME: a foot that goes further than this without a swing does not stand: it rides on wheels, or
+# is dragged. In the study's takes it goes 0.35 m at most.
+FURTHEST_M = 0.5
 # Mean durations of states, s, and where they go: swing, heel, flat, toe.
 RATES = np.array(
     [
@@ -42,7 +46,8 @@ START = np.array([0.1, 0.1, 0.7, 0.1])
 def probability(track: Track) -> NDArray:
     """Return posterior probabilities (N, 3) of contact of the foot, its heel and its toe.
 
-    By the model `TIPTOE`, and around flights that it alone misses by the model `STRICT`.
+    By the model `TIPTOE`, and around flights that it alone misses by the model `STRICT`; 0 while
+    the foot goes further than `FURTHEST_M`.
     """
     found, strict = _posterior(track, TIPTOE), _posterior(track, STRICT)
     flies = np.concatenate([[False], strict[:, 0] <= 0.5, [False]])
@@ -54,6 +59,9 @@ def probability(track: Track) -> NDArray:
         if (found[start:stop, 0] > 0.5).all():
             around = slice((last[at] + start) // 2, (stop + following[at + 1]) // 2)
             chosen[around] = strict[around]
+    for start, stop in filtering.runs(chosen[:, 0] > 0.5):
+        if np.linalg.norm(np.ptp(track.place[start:stop, :, :2].mean(axis=1), axis=0)) > FURTHEST_M:
+            chosen[start:stop] = 0.0
     return chosen
 
 

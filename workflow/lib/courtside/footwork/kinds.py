@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from courtside.footwork.hops import NEAR_S, Hop
+from courtside.footwork.hops import JUMP_LASTS_S, NEAR_S, Hop
 from courtside.footwork.stances import Stance
 from courtside.records import footwork
 
@@ -123,7 +123,7 @@ def _flights(feet: Feet) -> list[tuple[int, int, str]]:
             if not abs(before[0].end_s - before[1].end_s) <= TOGETHER_S:
                 continue
             lasts = min(landed.onset_s, other.onset_s) - max(one.end_s for one in before)
-            if lasts < LEAST_FLIGHT_S:
+            if not LEAST_FLIGHT_S <= lasts <= JUMP_LASTS_S:
                 continue
             went = (landed.xy + other.xy - before[0].xy - before[1].xy) / 2
             short = lasts <= JUMP_S and np.linalg.norm(went) <= HOP_M

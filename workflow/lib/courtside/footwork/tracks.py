@@ -15,6 +15,10 @@ from courtside.records.keypoints.keypoints import Keypoints3D
 GRID_HZ = 120.0  # of the times between frames at which contact is looked for
 SLOW_M_S = 0.5  # ASSUME: below it a point of the foot may stand
 STANDING_SHARE = 0.25  # ASSUME: quantile of a slow point's heights: a heel often stands raised
+# ASSUME: no higher above z = 0 is the heel or toe of a flat foot seen: in the study's takes at most
+# 0.09 m, and the world may be some centimetres off. Feet that are higher, as of a handstand, are in
+# the air.
+HIGHEST_M = 0.2
 LEAST_FRAMES = 9  # ASSUME: of a run of known frames in which contact is looked for
 UNKNOWN_M = 0.03  # ASSUME: standard deviation per axis where the keypoints state none
 # Standard deviation per axis of the network's error of an ankle, up to which it is that of a foot
@@ -53,8 +57,8 @@ def tracks(
 
     `points` are filtered skeletons with uniform times, `cutoff_hz` (J,) the filter's cut-offs. The
     second value (2,) m is the height of heel and toe above z = 0 while the foot is flat, NaN if the
-    foot is never known. It is a quantile of their heights while they are slow, so it includes the
-    common error of the cameras at the floor.
+    foot is never known. It is a quantile of their heights below `HIGHEST_M` while they are slow, so
+    it includes the common error of the cameras at the floor.
     """
     chosen = skeleton.heel_and_toe(points.joints.tolist(), side)
     if not chosen or len(points.time_s) < 2:
@@ -110,6 +114,6 @@ def _floor(found: Sequence[Track]) -> NDArray:
     speed = np.concatenate([np.linalg.norm(one.velocity, axis=2) for one in found])
     level = np.quantile(height, 0.05, axis=0)  # of feet that are never slow
     for at in range(2):
-        slow = height[speed[:, at] < SLOW_M_S, at]
+        slow = height[(speed[:, at] < SLOW_M_S) & (height[:, at] < HIGHEST_M), at]
         level[at] = np.quantile(slow, STANDING_SHARE) if len(slow) else level[at]
-    return level
+    return np.minimum(level, HIGHEST_M)

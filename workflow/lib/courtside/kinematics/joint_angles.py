@@ -21,6 +21,9 @@ from courtside.kinematics.shared_errors import Errors
 Variance = Callable[[Sequence[NDArray]], NDArray]
 SIDES = ("left_", "right_")
 UP = np.array([0.0, 0.0, 1.0])
+# ASSUME: the line of the hips says where is forwards up to this slope: beyond, its linear errors
+# end (70 degrees: 90 % intervals hold 77 %).
+STEEPEST_DEG = 70.0
 LINES = {  # angle: first, middle, last joint; whether it is measured from the straight line
     "knee_flexion": ("hip", "knee", "ankle", True),
     "elbow_flexion": ("shoulder", "elbow", "wrist", True),
@@ -95,9 +98,8 @@ def trunk(
     """Return the trunk's lean and its forward part, as `DICTIONARY` defines them.
 
     Points (T, 3) m, and what `variance` is of, are the left and right hip, the left and right
-    shoulder. Forwards is level and at right angles to the line of the hips. That line's own
-    uncertainty is left out: turned by 3 degrees, it changes a forward lean of 20 degrees by 0.03,
-    and a sideways lean of 20 degrees reads as 1 degree forward.
+    shoulder. Forwards is level and at right angles to the line of the hips; where this is steeper
+    than `STEEPEST_DEG`, the forward part is NaN.
     """
     along = (shoulders[0] + shoulders[1] - hips[0] - hips[1]) / 2
     length = np.linalg.norm(along, axis=-1, keepdims=True)
@@ -107,11 +109,17 @@ def trunk(
     direction = np.where(flat > 1e-9, level / np.where(flat > 1e-9, flat, 1), [1.0, 0, 0])
     lean_slope = (direction * height - UP * flat) / length**2
     lean = _angle(np.arctan2(flat, height)[:, 0], _of_ends(lean_slope), variance)
-    ahead = np.cross((hips[0] - hips[1]) * [1, 1, 0], UP)
-    ahead /= np.linalg.norm(ahead, axis=-1, keepdims=True)
-    reach = np.sum(along * ahead, axis=-1, keepdims=True)
+    line = hips[0] - hips[1]
+    width = np.linalg.norm(line[:, :2], axis=-1, keepdims=True)
+    steep = np.abs(line[:, 2:]) > np.tan(np.radians(STEEPEST_DEG)) * width
+    left = line * [1, 1, 0] / np.where(steep, np.nan, width)
+    ahead = np.cross(left, UP)
+    reach, aside = (np.sum(along * axis, axis=-1, keepdims=True) for axis in (ahead, left))
     slope = (ahead * height - UP * reach) / (reach**2 + height**2)
-    return lean, _angle(np.arctan2(reach, height)[:, 0], _of_ends(slope), variance)
+    turn = -ahead * aside * height / (reach**2 + height**2) / width  # by the left hip
+    ends = _of_ends(slope)
+    slopes = [ends[0] + turn, ends[1] - turn, *ends[2:]]
+    return lean, _angle(np.arctan2(reach, height)[:, 0], slopes, variance)
 
 
 def _of_ends(slope: NDArray) -> list[NDArray]:
