@@ -136,6 +136,20 @@ def test_places_outside_of_a_picture_are_placed_by_the_other_cameras():
     assert alone.all()
 
 
+def test_a_place_between_two_cameras_that_face_each_other_is_the_least_certain():
+    """On the line between them its depth is open; beside it, errors fall with the angle."""
+    middle = np.array([3.0, 6.7, 2.0])
+    poses = [scene.look_at([side, 6.7, 2.0], middle) for side in (-17, 23)]
+    facing = [replace(scene.ring(1)[0], cam_from_world=pose) for pose in poses]
+    network = conversion.network_of(facing)
+    small = np.diag(np.full(network.n_columns, 1e-8))
+    places = middle + np.array([[0, 0, 0], [5, 0, 0], [0, 0.2, 0], [0, 1, 0], [0, 0, 4]])
+    covariance = point_covariance.point_covariance(network, small, places)
+    on_line, one_beside, *beside = np.sqrt(np.trace(covariance, axis1=1, axis2=2))
+    assert min(on_line, one_beside) > max(beside)
+    assert beside == sorted(beside, reverse=True)
+
+
 def test_certain_cameras_give_certain_points():
     network = pair()
     assert not point_covariance.point_covariance(network, np.zeros((38, 38)), XYZ).any()

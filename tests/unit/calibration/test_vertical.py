@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from courtside.calibration import vertical
+from courtside.geometry import camera as camera_models
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
 from courtside.geometry.similarity import Sim3
@@ -40,3 +41,55 @@ def test_the_error_of_a_vertical_by_pictures_covers_what_it_is_off(sides, pitch_
         off.append(rotation @ np.linalg.solve(frame[:2, :2], rotation))
         assert not frame[2].any()
     assert 0.7 < np.mean(off) < 4  # 2 if it is right
+
+
+def held(places, targets, roll_deg=0.0):
+    """Return cameras at places that look to targets (N, 3)."""
+    rolls = np.radians(np.broadcast_to(roll_deg, len(places)))
+    poses = [camera_models.look_at(*one) for one in zip(places, targets, rolls, strict=True)]
+    return [
+        Camera(f"c{k}", (640, 480), np.eye(3), np.zeros(5), pose) for k, pose in enumerate(poses)
+    ]
+
+
+def off_deg(cameras):
+    return np.degrees(np.arccos(np.clip(vertical.up_in_pictures(cameras)[2], -1, 1)))
+
+
+def around(degrees, height_m=2.8, away_m=4.0):
+    angles = np.radians(degrees)
+    return np.stack([away_m * np.cos(angles), away_m * np.sin(angles), 0 * angles + height_m], 1)
+
+
+@pytest.mark.parametrize("count", [2, 4, 8])
+def test_cameras_along_one_wall_all_look_down(count):
+    """Their common angle is not better known from many."""
+    cameras = held(around(np.linspace(-6, 6, count)), np.tile([0, 0, 1.0], (count, 1)))
+    stated = vertical.sigma_deg(vertical.error_of_pictures(cameras))
+    assert off_deg(cameras) < 2 * stated
+    assert not vertical.is_unknown(cameras)
+
+
+WALL = np.array([[0, 0, 3.0], [1.5, 0, 3], [3, 0, 3], [4.5, 0, 3]])
+QUARTERS = around([0, 90, 180, 270])
+AHEAD, DOWN = np.array([0, 4.3, -2.0]), np.array([0, 0.01, -3])
+MIDDLE = np.tile([0, 0, 1.0], (4, 1))
+
+
+@pytest.mark.parametrize(
+    ("cameras", "unknown"),
+    [
+        (held(WALL, WALL + AHEAD), True),  # in parallel
+        (held(WALL, WALL + DOWN), True),  # straight down
+        (held(QUARTERS, MIDDLE, 90), True),  # all on their side
+        (held(QUARTERS[:2], MIDDLE[:2], [0, 180]), True),  # one upside down
+        (held(QUARTERS[[0, 2]], MIDDLE[:2]), True),  # face to face
+        (held(QUARTERS, MIDDLE, [0, 0, 0, 180]), False),  # one of four upside down
+        (held(QUARTERS, MIDDLE), False),
+        (held(around([0, 90, 180, 270], 12, 3), MIDDLE * 0), False),  # 76 degrees down
+    ],
+)
+def test_pictures_do_not_always_tell_what_is_up(cameras, unknown):
+    assert vertical.is_unknown(cameras) == unknown
+    assert ("do not tell what is up" in vertical.words(cameras)) == unknown
+    assert unknown or off_deg(cameras) < 3

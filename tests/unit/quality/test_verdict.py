@@ -187,6 +187,19 @@ def test_of_three_cameras_that_contradict_each_other_none_is_blamed_for_sure():
     assert rows[ALL, ALL].cause == causes.CALIBRATION
 
 
+def test_a_right_camera_is_not_blamed_where_the_others_are_too_near_each_other_to_check_it():
+    """They leave open how far away people are, and it sees exactly along that."""
+    cameras = judged.footage(n_cameras=3, sides_deg=(0, 5, 90), n_frames=60)
+    rows, _ = wholes(cameras)
+    words = "Camera c2: the other cameras stand too near each other, or face each other, to check"
+    for row in (rows["c2", ALL], rows[ALL, ALL]):
+        assert (row.verdict, row.cause) == (DOUBTFUL, causes.UNKNOWN)
+        assert words in row.sentence
+    assert {rows[name, ALL].verdict for name in ("c0", "c1")} == {GOOD}
+    rows, _ = wholes(judged.turned(cameras, 2, 2.0))  # a wrong one, with people to all sides
+    assert (rows["c2", ALL].verdict, rows["c2", ALL].cause) == (FAILED, causes.CALIBRATION)
+
+
 def test_painted_lines_tell_the_wrong_one_of_three_cameras():
     cameras = judged.turned(judged.footage(n_cameras=3, height_m=1.0), 1, 1.0)
     words = "does not see the court's lines where the others do"

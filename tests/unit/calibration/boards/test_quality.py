@@ -44,6 +44,14 @@ def test_of_good_corners_nothing_is_told_but_numbers():
     (floor,) = report["remarks"]
     assert f"z is up as in the pictures, within {report['vertical_sigma_deg']:.0f} deg" in floor
     assert f"at the board of picture {found.world}, not at the floor" in floor
+    same = found.cameras[0].cam_from_world[:, :3]  # in parallel, whatever their corners say
+    alike = [
+        replace(one, cam_from_world=np.column_stack([same, one.cam_from_world[:, 3]]))
+        for one in found.cameras
+    ]
+    report = quality.summary(replace(found, cameras=alike), seen, BOARD, known=True)
+    assert report["remarks"] == []
+    assert any("the pictures do not tell what is up" in line for line in report["warnings"])
     mean, spread, count = quality.neighbours_mm(found, seen, BOARD)
     assert abs(mean) < 0.2
     assert (spread < 2, count > 100) == (True, True)

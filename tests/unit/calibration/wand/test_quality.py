@@ -32,6 +32,19 @@ def test_numbers_by_camera():
     assert f"within {report['vertical_sigma_deg']:.0f} degrees" in world
 
 
+def test_where_pictures_do_not_tell_what_is_up_there_is_a_warning():
+    found = seen(swung())
+    solved = calibration.calibrate(WAND, found, SIZES, lenses=LENSES)
+    same = solved.cameras[0].cam_from_world[:, :3]  # in parallel, whatever their markers say
+    alike = [
+        replace(one, cam_from_world=np.column_stack([same, one.cam_from_world[:, 3]]))
+        for one in solved.cameras
+    ]
+    report = quality.summary(replace(solved, cameras=alike), WAND, found, set(LENSES))
+    assert report["remarks"] == []
+    assert any("the pictures do not tell what is up" in line for line in report["warnings"])
+
+
 def test_wrong_markers_that_two_cameras_see_are_counted():
     """In two frames of three, two of four cameras see the wand: no wrong marker can be placed."""
     found = seen(swung(seconds=60))

@@ -82,6 +82,21 @@ def test_two_views_are_enough_when_people_pass_at_speed():
     assert np.mean(shares) >= 0.99
 
 
+@pytest.mark.parametrize(("degrees", "away_m", "height_m"), [(10, 8, 2.0), (180, 6, 1.5)])
+def test_two_people_pass_before_cameras_that_hardly_measure_depth(degrees, away_m, height_m):
+    """Side by side or face to face, cameras place people with errors of decimetres along a line."""
+    side = np.radians(degrees)
+    places = [(away_m * np.cos(one), away_m * np.sin(one), height_m) for one in (0, side)]
+    poses = [scene.look_at(place, (0, 0, 1.0)) for place in places]
+    cameras = [replace(one, cam_from_world=p) for one, p in zip(scene.ring(2), poses, strict=True)]
+    time_s, people = walkers(([-1.5, -1], [1.5, 1]), ([1.5, -1.2], [-1.5, 0.8]), seconds=8, seed=2)
+    rng = np.random.default_rng(2)
+    xy, truth = stick_figures.seen(cameras, people, rng, noise_px=4, dropout=0, gap_px=0)
+    found = associate(cameras, xy, time_s)
+    assert (found.placed >= association.COUNTS).sum() == 2
+    assert stick_figures.right(found.index, truth, [0, 1]) > 0.95
+
+
 def walkers(*lines, seconds=6, seed=1):
     rng = np.random.default_rng(seed)
     time_s = np.arange(int(seconds * 30)) / 30

@@ -11,6 +11,6 @@ robust_similarity: `fit`, `triples`: the similarity on which most points agree
 interpolation: `linear`, `between`, `nearest`, `shares`
 boxes: `usual_side`
 epipolar: `straight_px`, `relative_pose`, `fundamental`, `lines`, `distance_px`, `ray_sines`
-triangulation: `triangulate_robust`, `triangulate_plain`, `triangulate_all`, `triangulate`
+triangulation: `triangulate_robust`, `triangulate_plain`, `triangulate_all`, `triangulate`, `spread`
 depth_registration: `rays`, `points_in_colour`
 """

@@ -199,7 +199,7 @@ def _solve(
     seen = np.isfinite(xy).all(axis=-1) & np.isfinite(score) & (score > 0)
     weight = np.where(seen & (score >= min_score), score, 0.0)
     found = _weighted(cameras, xy, weight, min_views, limit_px, fade_px, limit_px)
-    spread_m = _spread_m(found)
+    spread_m = spread(found)
     weak = np.flatnonzero((spread_m > weak_m) & (seen.sum(axis=0) > 2))
     if not len(weak):
         return found
@@ -207,7 +207,7 @@ def _solve(
     wider = np.clip(np.nan_to_num(score[:, weak]), LEAST_SCORE, 1.0) ** -WIDER
     limits_px = limit_px[:, weak] * wider, fade_px[:, weak] * wider
     again = _weighted(cameras, xy[:, weak], root, min_views, *limits_px, limit_px[:, weak])
-    better = _spread_m(again) < BETTER * spread_m[weak]
+    better = spread(again) < BETTER * spread_m[weak]
     return _replaced(found, weak[better], again, better)
 
 
@@ -235,7 +235,7 @@ def _weighted(
     return Triangulated(xyz, covariance, accepted, _reprojection_px(cameras, xy, xyz), weight)
 
 
-def _spread_m(found: Triangulated) -> NDArray:
+def spread(found: Triangulated) -> NDArray:
     """Return the standard deviation (N,) m of points by keypoints of the usual error.
 
     NaN where missing; infinite where the views leave a direction open.

@@ -37,6 +37,7 @@ OTHERS = (
     "it disagrees with cameras whose calibration is off by the check of the calibration file: "
     "correct these first"
 )
+UNCHECKED = "the other cameras stand too near each other, or face each other, to check it"
 
 
 @dataclass(frozen=True)
@@ -214,6 +215,8 @@ def _is_other(one: _Camera) -> bool:
 
 def _unexplained(one: _Camera, before: float, absent: float) -> Cause:
     """Return the cause if no test succeeds: nobody matches, or keypoints are poor or missing."""
+    if one.seen.hardly_placed(one.at):
+        return Cause(UNKNOWN, UNCHECKED, is_shown=False)
     if before > FITS:
         words = "nobody found in it is the person that the other cameras see"
         return Cause(DETECTION, words, is_shown=False)

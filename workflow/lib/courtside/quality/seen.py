@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from courtside.geometry import triangulation
 from courtside.geometry.camera import Camera, project
 from courtside.kinematics.filtering import runs
-from courtside.reconstruction import person_height, resampling
+from courtside.reconstruction import fusion, person_height, resampling
 from courtside.records.cameras.footage import Footage
 from courtside.records.keypoints import skeleton as limbs
 from courtside.records.keypoints.keypoints import Keypoints3D, while_there
@@ -46,6 +46,7 @@ class Seen:
     at: NDArray  # (S,): the frames that are looked at
     # (C, P, S, K, 3) m: middles by all cameras but one and those of `out`; NaN where these disagree
     others: NDArray
+    spread_m: NDArray  # (C, P, S, K): their standard deviation by keypoints of the usual error
     out: tuple[int, ...] = ()  # cameras that place nobody
 
     @property
@@ -75,6 +76,14 @@ class Seen:
             place = project(self.cameras[camera], middle)
             inside = ((place > MARGIN * size) & (place < (1 - MARGIN) * size)).all(axis=-1)
         return (inside | unknown) & self.filmed[camera, self.at] & self.present[:, self.at]
+
+    def hardly_placed(self, camera: int) -> bool:
+        """Return whether the others leave most middles open along a line.
+
+        They stand too near each other, or face each other: the camera may see exactly along it.
+        """
+        spread_m = self.spread_m[camera][np.isfinite(self.others[camera, ..., 0])]
+        return len(spread_m) > 0 and float(np.median(spread_m)) > fusion.WEAK_M
 
     def errors(self, camera: int, xy: NDArray, model: Camera | None = None) -> NDArray:
         """Return keypoints (P, S, K, 2) minus the others' projections, heights."""
@@ -134,18 +143,21 @@ def gather(footage: Sequence[Footage], points: Keypoints3D, skeleton: Skeleton) 
     nowhere = np.full((*xy[:, :, at].shape[:-1], 3), np.nan)
     limb_points = points.some_joints(sides[0] + sides[1])
     ran = np.stack(filmed)
-    return without(Seen(cameras, limb_points, xy, score, rows, height_px, ran, at, nowhere), ())
+    unknown = nowhere, nowhere[..., 0]
+    return without(Seen(cameras, limb_points, xy, score, rows, height_px, ran, at, *unknown), ())
 
 
 def without(seen: Seen, out: tuple[int, ...]) -> Seen:
     """Return the same take with the cameras `out` left out of the triangulation of persons."""
-    found = np.full(seen.others.shape, np.nan)
+    found, spread_m = np.full(seen.others.shape, np.nan), np.full(seen.spread_m.shape, np.nan)
     xy, score = seen.xy[:, :, seen.at], seen.score[:, :, seen.at]
     for camera in range(len(seen.cameras)):
         rest = [at for at in range(len(seen.cameras)) if at != camera and at not in out]
         if len(rest) > 1:
-            found[camera] = _placed(seen, rest, xy, score)
-    return replace(seen, others=found, out=out)
+            placed = _placed(seen, rest, xy, score)
+            found[camera] = placed.xyz.reshape(found[camera].shape)
+            spread_m[camera] = triangulation.spread(placed).reshape(spread_m[camera].shape)
+    return replace(seen, others=found, spread_m=spread_m, out=out)
 
 
 def with_exchanged(seen: Seen, one: int, other: int) -> Seen:
@@ -177,14 +189,13 @@ def disagreement(seen: Seen, used: Sequence[int]) -> float:
     return float(np.sqrt(np.median(left))) if len(left) else float("nan")
 
 
-def _placed(seen: Seen, rest: list[int], xy: NDArray, score: NDArray) -> NDArray:
-    """Return middles (P, S, K, 3) m triangulated by some cameras."""
+def _placed(seen: Seen, rest: list[int], xy: NDArray, score: NDArray) -> triangulation.Triangulated:
+    """Triangulate the middles (P S K) by some cameras."""
     limit_px = AGREED * seen.height_px[rest][:, :, seen.at]
-    placed = triangulation.triangulate_robust(
+    return triangulation.triangulate_robust(
         [seen.cameras[at] for at in rest],
         xy[rest].reshape(len(rest), -1, 2),
         score[rest].reshape(len(rest), -1),
         max_error_px=np.repeat(limit_px.reshape(len(rest), -1), score.shape[-1], axis=1),
         min_score=MIN_SCORE,
     )
-    return placed.xyz.reshape(*score.shape[1:], 3)

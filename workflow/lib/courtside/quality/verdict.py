@@ -259,6 +259,9 @@ def _camera(seen: Seen, at: int, agreed: bool, doubts: Doubts) -> list[dict]:
         return [_whole(name, ALL, GOOD, "", f"Camera {name}: {AGREES}."), *rows]
     limit, others = OF_CAMERA["found"].doubtful, bool(doubts.by_check)
     why = causes.find(seen, at, found_limit=limit, doubt=doubts.of(name), others=others)
+    if why.sentence == causes.UNCHECKED:  # so its distance from the others' joints says little
+        rest = [row["verdict"] for row in counted if row["measure"] != "reprojection"]
+        verdict = worst([DOUBTFUL, *rest])
     return [_whole(name, ALL, verdict, why.name, f"Camera {name}: {why.sentence}."), *rows]
 
 

@@ -46,12 +46,11 @@ def summary(found: Found, seen: Corners, board: Board, *, known: bool) -> dict[s
     report: dict[str, Any] = {"warnings": _warnings(found, seen, rms_px, known)}
     report |= {"remarks": [], "world_of_picture": found.world}
     if not found.stated:
-        vertical_deg = vertical.sigma_deg(found.covariance.frame)
-        report["vertical_sigma_deg"] = vertical_deg
-        report["remarks"].append(
-            f"board: z is up as in the pictures, within {vertical_deg:.0f} degrees (standard "
-            f"deviation), and z = 0 is at the board of picture {found.world}, not at the floor; "
-            "name the picture in which it lies on the floor as `floor`"
+        report["vertical_sigma_deg"] = vertical.sigma_deg(found.covariance.frame)
+        report["warnings" if vertical.is_unknown(found.cameras) else "remarks"].append(
+            f"board: {vertical.words(found.cameras)}, and z = 0 is at the board of picture "
+            f"{found.world}, not at the floor; name the picture in which it lies on the floor as "
+            "`floor`"
         )
     report |= {"sigma_px": found.sigma_px, "covariance_factor": found.factor}
     for c, camera in enumerate(found.cameras):

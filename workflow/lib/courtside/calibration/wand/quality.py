@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.calibration import vertical
 from courtside.calibration.court import place_checks
 from courtside.calibration.wand import timing, world
 from courtside.calibration.wand.adjustment import WRONG_SIGMAS
@@ -59,7 +60,11 @@ def summary(found: Found, wand: Wand, seen: Seen, known: set[str]) -> dict[str, 
             report.setdefault(key, {})[camera.name] = value
     report["warnings"] = _warnings(found, wand) + _late(found, late, *more_of_late)
     report["warnings"] += _often_wrong(report["wrong_percent"]) + _of_pictures(found, seen, known)
-    report["remarks"] = [] if found.stated else [_world(found)]
+    report["remarks"] = []
+    if not found.stated:
+        report["warnings" if vertical.is_unknown(found.cameras) else "remarks"].append(
+            _world(found)
+        )
     if found.vertical_deg is not None:
         report["vertical_sigma_deg"] = found.vertical_deg
     return report
@@ -89,10 +94,9 @@ def _length_mm(found: Found, wand: Wand) -> dict[str, float | int]:
 
 def _world(found: Found) -> str:
     return (
-        "wand: the origin is the middle of the wand's path, z is up as in the pictures, within "
-        f"{found.vertical_deg:.0f} degrees (standard deviation), and x runs from camera "
-        f"{found.cameras[0].name} to {found.cameras[1].name}; set `floor` to frames in which the "
-        "wand lies on the floor, or click court points"
+        f"wand: the origin is the middle of the wand's path, {vertical.words(found.cameras)}, and "
+        f"x runs from camera {found.cameras[0].name} to {found.cameras[1].name}; set `floor` to "
+        "frames in which the wand lies on the floor, or click court points"
     )
 
 

@@ -170,7 +170,8 @@ def nowhere(cameras: Iterable[str]) -> str:
     """Return the line of a take in which nobody was placed."""
     return (
         f"{', '.join(cameras)}: expected people whom two views see at one place, found none; check "
-        "the calibration, the synchronisation and the 2D keypoints"
+        "the calibration, the synchronisation and the 2D keypoints, and that cameras neither stand "
+        "within a few degrees, as seen from the people, nor face each other"
     )
 
 

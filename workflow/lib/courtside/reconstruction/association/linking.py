@@ -188,8 +188,11 @@ def _move_cost(state: _Histories, offered: Candidates, now_s: float) -> NDArray:
     blind = _spread_m(np.maximum(now_s - state.placed_s, 0.0)[..., None]) ** 2 + sigma_m**2
     blind = np.where(np.any(state.ray, axis=-1)[..., None], blind, variance)
     cosine = (state.ray @ offered.direction.T) ** 2
-    # A ray does not measure the position along it.
-    volume = 2 * np.log(variance / PLACE_M**2) + np.log(blind / PLACE_M**2)
+    # Of a place by two views, mostly one direction is uncertain. Not so with more cameras, where
+    # places by two views must cost more than those by all. A ray does not measure along itself.
+    loose = ~offered.is_ray & (offered.row.shape[1] == 2)
+    sure = np.where(loose, _spread_m(gone_s) ** 2, variance)
+    volume = 2 * np.log(sure / PLACE_M**2) + np.log(blind / PLACE_M**2)
     unmeasured = cosine * np.log(blind / PLACE_M**2) + (1 - cosine) * np.log(variance / PLACE_M**2)
     volume = volume - np.where(offered.is_ray, unmeasured, 0.0)
     return 0.5 * (across / variance + along / blind + volume)
