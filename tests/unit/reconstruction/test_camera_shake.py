@@ -354,6 +354,17 @@ def test_a_knocked_camera_is_named_in_plain_lines():
     assert len(camera_shake.say(CAMERA_KNOCKS, table(), PLAYER)) == 1
 
 
+def test_a_zoom_that_steady_leaves_in_is_told():
+    shake = table(tremor_px=0.2)
+    assert "zoom" not in "".join(camera_shake.say(CAMERA_KNOCKS, shake, PLAYER))
+    shake.loc[150:, "zoom_percent"] = -0.5
+    shake.loc[[10, 40], "zoom_percent"] = 3.0  # two bad frames
+    shake.loc[200:210, "zoom_percent"] = np.nan
+    _, zoomed = camera_shake.say(CAMERA_KNOCKS, shake, PLAYER)
+    assert zoomed.startswith("camera mirror: zoomed by -0.50 % against its static picture at 5 s")
+    assert "leave it out" in zoomed and "\n" not in zoomed
+
+
 def test_knocks_are_added_to_shake():
     vectors, turn = turns(30), np.array([0.004, -0.003, 0.002])
     more = [Rotation.from_rotvec(turn * (at >= 15)) for at in range(30)]

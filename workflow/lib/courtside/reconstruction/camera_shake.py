@@ -37,7 +37,8 @@ def camera_turns(camera: Camera, table: DataFrame) -> NDArray:
     It rotates the calibrated camera axes to those of the frame, and is NaN where the shake is
     unknown. The model is a pure rotation: when the picture moves by ten pixels, the camera's centre
     moves by about a millimetre. The rotation is the one that moves the picture's centre, and turns
-    the content there, as measured (Newton's method through the lens). Zoom is ignored.
+    the content there, as measured (Newton's method through the lens). Zoom is ignored; `say` tells
+    of it.
     """
     measured = np.column_stack(
         [table.shift_x_px, table.shift_y_px, np.radians(table.rotation_deg)]
@@ -213,6 +214,7 @@ LEAST_SPREADS = 3.0  # of a knock to the root mean square of the tremor beside i
 # A knock makes this share of its step within this time, s; tremor is slower.
 ABRUPT_S, ABRUPT_SHARE = 0.15, 0.6
 MOST = 30  # knocks reported per take
+LEAST_ZOOM_PERCENT = 0.2  # reported; as `max_zoom_percent` of takes whose cameras must stand still
 
 
 @dataclass(frozen=True)
@@ -282,8 +284,8 @@ def mm_per_px(camera: Camera, xyz: NDArray) -> float:
 def say(camera: Camera, table: DataFrame, xyz: NDArray) -> list[str]:
     """Describe a camera's shake in plain lines, with its size at a player at `xyz` (3,) m in world.
 
-    One line is about tremor, one more if the camera did not stand as in its static picture, and one
-    about each knock. NaN for `xyz` means an unknown place.
+    One line is about tremor, one more if the camera did not stand as in its static picture, one
+    about each knock, and one if it zoomed. NaN for `xyz` means an unknown place.
     """
     knocks, scale = find(camera, table), mm_per_px(camera, xyz)
     tremor = tremor_px(table, knocks)
@@ -308,7 +310,20 @@ def say(camera: Camera, table: DataFrame, xyz: NDArray) -> list[str]:
             f"{name} knocked at {knock.time_s:.1f} s by {size_px:.2g} px ({knock.turn_deg:.2g} deg"
             f"{_at_player(scale * size_px)}): steady its keypoints from then on, or leave it out"
         )
-    return lines
+    return lines + _zoom_lines(name, table)
+
+
+def _zoom_lines(name: str, table: DataFrame) -> list[str]:
+    """Return a line about the second of a take in which a camera's zoom is furthest off, if any."""
+    zoom = table.zoom_percent.groupby(table.time_s // WINDOW_S * WINDOW_S).median()
+    at_s = zoom.abs().idxmax()
+    if abs(zoom[at_s]) <= LEAST_ZOOM_PERCENT:
+        return []
+    return [
+        f"{name} zoomed by {zoom[at_s]:+.2f} % against its static picture at {at_s:.0f} s, which "
+        "`steady` does not take out: calibrate it with the zoom of the take, end the take before "
+        "it zooms with `trim_s`, or leave it out"
+    ]
 
 
 def _at_player(length_mm: float) -> str:
