@@ -1,13 +1,10 @@
 """Find contacts of the feet with the floor: skeletons -> contacts, steps, events, measures."""
 
-import numpy as np
-
 from courtside.calibration.court import court
 from courtside.footwork import feet, measures
 from courtside.kinematics import cutoffs
 from courtside.records import footwork, tables
 from courtside.records.keypoints import keypoints, skeleton
-from courtside.study.execution import log
 from courtside.study.execution.script import run
 
 
@@ -15,13 +12,6 @@ def main(paths, contacts_npz, steps_csv, events_csv, summary_csv):
     points, (chosen, _) = keypoints.read_3d(paths.skeletons), cutoffs.read(paths.cutoffs)
     per_joint = skeleton.read(paths.skeleton).by_group(chosen)
     contacts, steps, events = feet.find(points, per_joint)
-    if np.isnan(contacts.probability).all():
-        log.logger.warning(
-            "%s: expected heels and toes of at least one foot in %d frames in a row, found none: "
-            "no contacts; take a network whose skeleton has them",
-            paths.skeletons,
-            feet.tracks.LEAST_FRAMES,
-        )
     footwork.write_contacts(contacts_npz, contacts)
     footwork.write_steps(steps_csv, steps)
     footwork.write_events(events_csv, events)

@@ -45,7 +45,7 @@ def main(
     covariance = known if is_kept else replace(found.covariance, frame=known.frame)
     report |= {"line": found.line, "warnings": [*(wrong if is_kept else []), *lost]}
     mended = [] if is_kept else [f"put right here, by people alone: {line}" for line in wrong]
-    report["remarks"] = [found.line, *mended, *knocks.lines(rows)]
+    report["remarks"] = [found.line, *mended, *knock_table.lines(rows)]
     for line in report["warnings"] + report["remarks"]:
         log.logger.info("%s", line)
     report |= {"taken": found.taken, "verdicts": found.verdicts, "wrong": found.wrong}

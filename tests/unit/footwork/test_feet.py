@@ -80,6 +80,17 @@ def test_a_skeleton_without_heels_gives_no_contacts():
     assert events.empty
 
 
+@pytest.mark.parametrize(("lacking", "remedy"), [("time", "longer"), ("heel", "network")])
+def test_what_contacts_lack_is_told(caplog, lacking, remedy):
+    """A take of 8 frames is too short with any network."""
+    points, _ = walking_feet.record(walking_feet.hop(), 8 / 30)
+    joints = np.array([name.replace(lacking, "sole") for name in points.joints.tolist()])
+    feet.find(replace(points, joints=joints), walking_feet.CUTOFFS)
+    (line,) = caplog.messages
+    assert "no contacts" in line
+    assert ("longer" in line, "network" in line) == (remedy == "longer", remedy == "network")
+
+
 def test_the_leg_is_thigh_and_shank():
     points, _ = walking_feet.record(walking_feet.hop(), 3.0, sigma_m=0.0)
     assert 0.5 < feet.leg_length(points, 0) < 1.2

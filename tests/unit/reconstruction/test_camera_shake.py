@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 from scipy.spatial.transform import Rotation
 
+from courtside.geometry import camera as cameras
 from courtside.geometry.camera import Camera
 from courtside.reconstruction import camera_shake
 from courtside.reconstruction.association import associate
@@ -162,14 +163,27 @@ def test_skeletons_reproject_onto_the_persons_in_the_shaken_pictures():
     assert np.abs(seen[1].reprojected(record, 9) - moved.xy[:, 9]).max() > 10
 
 
-def test_an_unknown_turn_is_put_back_as_it_was_taken_out_not_at_all():
+def test_an_unknown_turn_is_put_back_as_it_was_taken_out():
     vectors = turns(40)
+    made, *_ = view(vectors)
     table = without(shake(vectors), [0, *range(10, 14), *range(20, 32)])
-    found = camera_shake.frame_turns(CAMERA, table, table.time_s.to_numpy())
-    left = np.isin(np.arange(40), [0, *range(20, 32)])
-    assert not found[left].any()
-    measured = ~left & ~np.isin(np.arange(40), range(10, 14))
-    np.testing.assert_allclose(found[measured], vectors[measured], atol=1e-5)
+    found = camera_shake.frame_turns(CAMERA, table, made.time_s)
+    known = np.isfinite(table.shift_x_px)
+    np.testing.assert_allclose(found[known], vectors[known], atol=1e-5)
+    taken_out = cameras.turned_back(CAMERA, made.xy, found)
+    np.testing.assert_allclose(camera_shake.steady(made, CAMERA, table).xy, taken_out, atol=1e-9)
+
+
+@pytest.mark.parametrize("hidden", [range(60, 90), range(20), range(100, 120)])
+def test_a_knock_does_not_come_back_while_the_background_is_hidden(hidden, caplog):
+    """The pose on either side of the gap, or of its one side, is known."""
+    vectors = np.outer(np.where(np.arange(120) < 40, 0.2, 1.0), [0.01, -0.01, 0.005])
+    made, still, _ = view(vectors)
+    assert np.abs(made.xy - still)[:, hidden].max() > 2
+    with caplog.at_level(logging.WARNING, logger="courtside"):
+        found = camera_shake.steady(made, CAMERA, without(shake(vectors), hidden))
+    assert np.abs(found.xy - still).max() < 0.02
+    assert f"{len(hidden)} of 120" in caplog.text and "tremor" in caplog.text
 
 
 def test_a_camera_that_stands_still_changes_nothing():
@@ -178,15 +192,13 @@ def test_a_camera_that_stands_still_changes_nothing():
     np.testing.assert_allclose(found.xy, still, atol=1e-6)
 
 
-def test_short_gaps_are_bridged_and_long_ones_left_and_said(caplog):
+def test_gaps_are_bridged_and_long_ones_said(caplog):
     vectors = np.linspace([0, 0, 0], [0.01, -0.01, 0.005], 40)  # an even turn, which a line bridges
     made, still, _ = view(vectors)
     table = without(shake(vectors), [0, *range(10, 14), *range(20, 32)])
     with caplog.at_level(logging.WARNING, logger="courtside"):
         found = camera_shake.steady(made, CAMERA, table)
-    left = np.isin(np.arange(40), [0, *range(20, 32)])
-    np.testing.assert_array_equal(found.xy[:, left], made.xy[:, left])
-    assert np.abs(found.xy - still)[:, ~left].max() < 0.02
+    assert np.abs(found.xy - still)[:, 1:].max() < 0.02
     assert "mirror" in caplog.text and "13 of 40" in caplog.text
 
 
@@ -352,6 +364,17 @@ def test_a_knocked_camera_is_named_in_plain_lines():
     assert "was 5.0 px off its static picture at the start of the take" in moved
     assert "mm" not in "".join(camera_shake.say(CAMERA_KNOCKS, off, np.full(3, np.nan)))
     assert len(camera_shake.say(CAMERA_KNOCKS, table(), PLAYER)) == 1
+
+
+def test_a_zoom_that_steady_leaves_in_is_told():
+    shake = table(tremor_px=0.2)
+    assert "zoom" not in "".join(camera_shake.say(CAMERA_KNOCKS, shake, PLAYER))
+    shake.loc[150:, "zoom_percent"] = -0.5
+    shake.loc[[10, 40], "zoom_percent"] = 3.0  # two bad frames
+    shake.loc[200:210, "zoom_percent"] = np.nan
+    _, zoomed = camera_shake.say(CAMERA_KNOCKS, shake, PLAYER)
+    assert zoomed.startswith("camera mirror: zoomed by -0.50 % against its static picture at 5 s")
+    assert "leave it out" in zoomed and "\n" not in zoomed
 
 
 def test_knocks_are_added_to_shake():

@@ -73,6 +73,13 @@ def test_a_knock_in_the_later_half_of_a_take_is_told(after):
         static_picture.check_kept_still("left", "left.mp4", take, **LIMITS)
 
 
+def test_a_camera_that_zooms_in_a_take_is_not_sent_to_steady_alone():
+    """`steady` takes out rotations only."""
+    take = [texture(0)] * 12 + [moved(texture(0), (0, 0), 1.01)] * 13
+    with pytest.raises(InputError, match=r"zoomed by \+.* unless it zoomed, state `steady: true`"):
+        static_picture.check_kept_still("left", "left.mp4", take, **LIMITS)
+
+
 def test_a_take_is_no_knock_where_people_stand_still_for_a_third_or_hide_the_background():
     stands = [texture(0).copy() for _ in range(25)]
     for picture in stands[:9]:

@@ -8,6 +8,7 @@ import pytest
 from courtside.calibration.people import held_out, knocks, prior
 from courtside.calibration.people.views import Limits
 from courtside.geometry import camera as cameras
+from courtside.records.cameras import knock_table
 from courtside.records.devices.clocks import Clock
 from fixtures.cameras import corner_cameras, walkers
 
@@ -65,7 +66,7 @@ def test_a_knock_is_told_in_the_clock_of_its_camera(found):
     row = {"take": "t", **knocks.row(found[0], TRUE, {"c2": Clock(offset_s=1.0)})}
     assert row["time_s"] == pytest.approx(float(Clock(offset_s=1.0).from_reference(AT_S)), abs=0.2)
     assert row["camera"] == "c2" and row["taken"] == 1 and row["joints"] == "better"
-    (line,) = knocks.lines([row, {**row, "taken": 0}])
+    (line,) = knock_table.lines([row, {**row, "taken": 0}])
     assert line.startswith("camera c2 was knocked at ") and "of take t by 0.4" in line
 
 
@@ -86,7 +87,7 @@ def test_a_camera_turned_between_takes_has_a_pose_in_each(knocked, monkeypatch):
     assert (row["take"], row["after"], row["camera"], row["time_s"]) == ("b", "a", "c2", 0.0)
     turn = [row[f"turn_{axis}_deg"] for axis in "xyz"]
     assert row["taken"] == 1 and np.abs(turn - np.degrees(TURN)).max() < 0.04
-    (line,) = knocks.lines([row, {**row, "take": "c"}])
+    (line,) = knock_table.lines([row, {**row, "take": "c"}])
     assert line.startswith("camera c2 was turned between takes a and b by 0.4")
     assert np.median(np.abs(seen.xy - SEEN.xy)) < 0.5 < np.abs(knocked.xy - SEEN.xy).max()
     one, none = knocks.between(TRUE, KNOWN, {"a": SEEN}, LIMITS)
@@ -146,6 +147,16 @@ def test_two_turns_of_one_camera_are_measured_in_a_row():
         assert np.degrees(np.abs(one.turn - turn)[:2]).max() < 0.03
     off = np.linalg.norm(knocks.undone(TRUE, seen, [first, second]).xy - SEEN.xy, axis=-1)
     assert np.median(off) < 1
+
+
+def test_a_camera_that_is_put_back_was_knocked_twice():
+    xy, during = SEEN.xy.copy(), (SEEN.time_s >= 2.5) & (SEEN.time_s < 5.5)
+    xy[2, during] = cameras.turned_back(TRUE[2], xy[2, during], -2 * TURN)
+    found = knocks.find(TRUE, KNOWN, replace(SEEN, xy=xy), LIMITS)
+    there, back = (one for one in found if one.taken)
+    for one, at_s, turn in ((there, 2.5, 2 * TURN), (back, 5.5, -2 * TURN)):
+        assert one.camera == 2 and one.time_s == pytest.approx(at_s, abs=0.2)
+        assert np.degrees(np.abs(one.turn - turn)[:2]).max() < 0.04
 
 
 def test_a_side_of_one_block_does_not_tell_of_a_knock():

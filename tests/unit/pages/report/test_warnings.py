@@ -116,12 +116,13 @@ def test_a_clock_error_is_also_given_as_the_path_of_a_fast_wrist():
     assert "16 ms" in found.text and "20 cm" in found.text  # 12 m/s times 16.45 ms
 
 
-def shake(knock_px=0.0, offset_px=0.0, unknown=0):
-    """Return the lines about a camera that stands off, is knocked and is partly unknown."""
+def shake(knock_px=0.0, offset_px=0.0, unknown=0, zoom_percent=0.0):
+    """Return the lines about a camera that stands off, is knocked, partly unknown and zoomed."""
     (camera,) = scene.ring(1)
     time_s = np.arange(240) / 30
     table = shaken.table(camera, shaken.knock(camera, 240, 120, knock_px, 0.1), time_s)
     table["shift_x_px"] += offset_px
+    table["zoom_percent"] = zoom_percent
     table.loc[: unknown - 1, "shift_x_px"] = np.nan
     return camera_shake.say(camera, table, np.array([0.0, 0.0, 1.0]))
 
@@ -135,6 +136,12 @@ def test_a_bump_is_reported_without_advice_that_was_followed():
     assert off.text.endswith(f" at the player{done}")
     assert bump.text.startswith("Camera c0: knocked at 4.0 s by 15 px (")
     assert bump.text.endswith(f" at the player){done}")
+
+
+def test_a_zoom_is_reported_as_not_corrected():
+    found = warned.shaken(shake(zoom_percent=0.5)[-1])
+    assert found.level == warned.DOUBTFUL and "zoomed by +0.50 %" in found.text
+    assert "corrected" not in found.text and "leave it out" in found.text
 
 
 @pytest.mark.parametrize("unknown", [10, 240])

@@ -7,6 +7,7 @@ import pandas as pd
 
 from courtside.footwork import hops, kinds, stances, tracks
 from courtside.records import footwork
+from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.execution import log
 
@@ -31,12 +32,7 @@ def find(
             feet[side] = hops.cut(stood, own or ())
             probability[at, :, foot] = hops.lifted(points.time_s, known, feet[side], own or ())
         people[person] = feet, leg_length(points, at), own
-    if np.isfinite(floor).any() and points.rate_hz < hops.LEAST_HZ:
-        log.logger.warning(
-            "%.3g frames per second are few for footwork: stances begin too early and end too late,"
-            " by 0.03 s each at 15 frames per second; sigma contains this",
-            points.rate_hz,
-        )
+    _warn(points, known=np.isfinite(floor).any())
     contacts = footwork.Contacts(
         points.person_id,
         np.array(footwork.FEET),
@@ -46,6 +42,27 @@ def find(
         floor,
     )
     return contacts, *kinds.tables(people)
+
+
+def _warn(points: Keypoints3D, *, known: bool) -> None:
+    """Tell why there are no contacts, or why they are inaccurate."""
+    names = points.joints.tolist()
+    if not known:
+        there = any(skeleton.heel_and_toe(names, side) for side in footwork.FEET)
+        log.logger.warning(
+            "expected heels and toes of at least one foot in %d frames in a row, found none: "
+            "no contacts; %s",
+            tracks.LEAST_FRAMES,
+            "film people for longer, with their feet in view of two cameras"
+            if there
+            else "take a network whose skeleton has them",
+        )
+    elif points.rate_hz < hops.LEAST_HZ:
+        log.logger.warning(
+            "%.3g frames per second are few for footwork: stances begin too early and end too late,"
+            " by 0.03 s each at 15 frames per second; sigma contains this",
+            points.rate_hz,
+        )
 
 
 def leg_length(points: Keypoints3D, person: int) -> float:

@@ -6,7 +6,6 @@ which is that of their static picture.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 import scipy
@@ -37,7 +36,8 @@ def camera_turns(camera: Camera, table: DataFrame) -> NDArray:
     It rotates the calibrated camera axes to those of the frame, and is NaN where the shake is
     unknown. The model is a pure rotation: when the picture moves by ten pixels, the camera's centre
     moves by about a millimetre. The rotation is the one that moves the picture's centre, and turns
-    the content there, as measured (Newton's method through the lens). Zoom is ignored.
+    the content there, as measured (Newton's method through the lens). Zoom is ignored; `say` tells
+    of it.
     """
     measured = np.column_stack(
         [table.shift_x_px, table.shift_y_px, np.radians(table.rotation_deg)]
@@ -52,31 +52,36 @@ def camera_turns(camera: Camera, table: DataFrame) -> NDArray:
 def steady(view: Keypoints2D, camera: Camera, table: DataFrame) -> Keypoints2D:
     """Move keypoints from a camera's shaken frames to their place in its static picture.
 
-    `table` has a row for each frame of the view. `xy` and `xyz_in_body` are turned back. Frames
-    whose shake is unknown for longer than 0.2 s are left as they are, and the log reports them;
-    keypoints outside the lens model stay, too. The measured shake is not smoothed: its noise is far
-    below a keypoint's, and smoothing would remove more tremor than noise.
+    `table` has a row for each frame of the view. `xy` and `xyz_in_body` are turned back. Where the
+    shake is unknown, a camera turns evenly from the known frame before to the one after, and stands
+    at the ends of a take: knocks are taken out there, too. The tremor stays where this lasts more
+    than 0.2 s, which the log reports. Keypoints outside the lens model stay. The measured shake is
+    not smoothed: its noise is far below a keypoint's, and smoothing would remove more tremor than
+    noise.
 
     An `InputError` if the camera was calibrated at another size, or a frame is not in the table.
     """
     camera_models.check_size(
         camera, (int(view.size[0]), int(view.size[1])), f"keypoints of camera {view.camera}"
     )
-    turned = _of_frames(camera, table, view.time_s)
-    unknown = np.isnan(turned).any(axis=1)
-    if unknown.any():
+    turned = frame_turns(camera, table, view.time_s)
+    hidden = _hidden(table)[_rows(camera.name, view.time_s, table)]
+    if hidden.any():
         log.logger.warning(
-            "camera %s: shake unknown in %d of %d frames, keypoints left as they are there",
+            "camera %s: shake unknown for longer than %g s, in %d of %d frames: tremor stays there",
             view.camera,
-            unknown.sum(),
-            len(unknown),
+            LONGEST_GAP_S,
+            hidden.sum(),
+            len(hidden),
         )
-    turned = np.where(unknown[:, None], 0.0, turned)
+    if not turned.any():
+        return view
     xy = camera_models.turned_back(camera, view.xy, turned)
     still_from_shaken = rotations.rotation_from_rodrigues(-turned)
-    kept = unknown[:, None, None] | np.isnan(xy)
     return replace(
-        view, xy=np.where(kept, view.xy, xy), xyz_in_body=view.xyz_in_body @ still_from_shaken.mT
+        view,
+        xy=np.where(np.isnan(xy), view.xy, xy),
+        xyz_in_body=view.xyz_in_body @ still_from_shaken.mT,
     )
 
 
@@ -108,11 +113,16 @@ def knocked(camera: Camera, table: DataFrame, knocks: Sequence[tuple[float, NDAr
 def frame_turns(camera: Camera, table: DataFrame, time_s: NDArray) -> NDArray:
     """Return the rotation of a camera that `steady` removed, for frames at times (T,) of its clock.
 
-    Rotation vectors (T, 3), radians, from the camera as calibrated; 0 where the shake is unknown
-    for longer than 0.2 s. Raises `InputError` if a frame is not in the table.
+    Rotation vectors (T, 3), radians, from the camera as calibrated; where the shake is unknown,
+    from the known frames beside, and 0 if there are none. Raises `InputError` if a frame is not in
+    the table.
     """
-    turned = _of_frames(camera, table, time_s)
-    return np.where(np.isnan(turned).any(axis=1, keepdims=True), 0.0, turned)
+    vectors, all_s = camera_turns(camera, table), table.time_s.to_numpy(float)
+    known, rows = np.isfinite(vectors).all(axis=1), _rows(camera.name, time_s, table)
+    if not known.any():
+        return np.zeros((len(rows), 3))
+    turned = [np.interp(all_s, all_s[known], axis) for axis in vectors[known].T]
+    return np.column_stack(turned)[rows]
 
 
 def put_back(seen: Sequence[Footage], tables: Mapping[str, DataFrame]) -> list[Footage]:
@@ -143,12 +153,6 @@ def read_as_filmed(
     return put_back(seen, shake_table.read_all(shake_csv))
 
 
-def _of_frames(camera: Camera, table: DataFrame, time_s: NDArray) -> NDArray:
-    """Return the rotation vectors (T, 3) of frames at times (T,), NaN where unknown."""
-    turned = _bridged(table.time_s.to_numpy(float), camera_turns(camera, table))
-    return turned[_rows(camera.name, time_s, table)]
-
-
 def _solve(camera: Camera, measured: NDArray) -> NDArray:
     """Return rotation vectors (T, 3) that move and turn the picture's centre as measured."""
     f = np.diag(camera.K)[:2]
@@ -175,17 +179,12 @@ def _moved(camera: Camera, vectors: NDArray) -> NDArray:
     return np.column_stack([moved[:, 0] - centre, curl])
 
 
-def _bridged(time_s: NDArray, vectors: NDArray) -> NDArray:
-    """Fill short gaps of (T, 3) linearly, between the first and the last value only."""
-    known = np.flatnonzero(np.isfinite(vectors).all(axis=1))
-    filled = vectors.copy()
-    for last, following in pairwise(known):
-        gap = slice(last + 1, following)
-        ends_s = time_s[[last, following]]
-        if following > last + 1 and ends_s[1] - ends_s[0] <= LONGEST_GAP_S:
-            share = ((time_s[gap] - ends_s[0]) / (ends_s[1] - ends_s[0]))[:, None]
-            filled[gap] = (1 - share) * vectors[last] + share * vectors[following]
-    return filled
+def _hidden(table: DataFrame) -> NDArray:
+    """Return (T,) which frames' shake is unknown in gaps too long for the tremor."""
+    unknown, time_s = table.shift_x_px.isna().to_numpy(), table.time_s.to_numpy(float)
+    ends_s = np.r_[-np.inf, time_s[~unknown], np.inf]
+    after = np.searchsorted(ends_s, time_s)
+    return unknown & (ends_s[after] - ends_s[after - 1] > LONGEST_GAP_S)
 
 
 def _rows(camera: str, wanted_s: NDArray, table: DataFrame) -> NDArray:
@@ -213,6 +212,7 @@ LEAST_SPREADS = 3.0  # of a knock to the root mean square of the tremor beside i
 # A knock makes this share of its step within this time, s; tremor is slower.
 ABRUPT_S, ABRUPT_SHARE = 0.15, 0.6
 MOST = 30  # knocks reported per take
+LEAST_ZOOM_PERCENT = 0.2  # reported; as `max_zoom_percent` of takes whose cameras must stand still
 
 
 @dataclass(frozen=True)
@@ -282,8 +282,8 @@ def mm_per_px(camera: Camera, xyz: NDArray) -> float:
 def say(camera: Camera, table: DataFrame, xyz: NDArray) -> list[str]:
     """Describe a camera's shake in plain lines, with its size at a player at `xyz` (3,) m in world.
 
-    One line is about tremor, one more if the camera did not stand as in its static picture, and one
-    about each knock. NaN for `xyz` means an unknown place.
+    One line is about tremor, one more if the camera did not stand as in its static picture, one
+    about each knock, and one if it zoomed. NaN for `xyz` means an unknown place.
     """
     knocks, scale = find(camera, table), mm_per_px(camera, xyz)
     tremor = tremor_px(table, knocks)
@@ -308,7 +308,20 @@ def say(camera: Camera, table: DataFrame, xyz: NDArray) -> list[str]:
             f"{name} knocked at {knock.time_s:.1f} s by {size_px:.2g} px ({knock.turn_deg:.2g} deg"
             f"{_at_player(scale * size_px)}): steady its keypoints from then on, or leave it out"
         )
-    return lines
+    return lines + _zoom_lines(name, table)
+
+
+def _zoom_lines(name: str, table: DataFrame) -> list[str]:
+    """Return a line about the second of a take in which a camera's zoom is furthest off, if any."""
+    zoom = table.zoom_percent.groupby(table.time_s // WINDOW_S * WINDOW_S).median()
+    at_s = zoom.abs().idxmax()
+    if abs(zoom[at_s]) <= LEAST_ZOOM_PERCENT:
+        return []
+    return [
+        f"{name} zoomed by {zoom[at_s]:+.2f} % against its static picture at {at_s:.0f} s, which "
+        "`steady` does not take out: calibrate it with the zoom of the take, end the take before "
+        "it zooms with `trim_s`, or leave it out"
+    ]
 
 
 def _at_player(length_mm: float) -> str:

@@ -13,7 +13,10 @@ BAND = 65536  # values of the median at a time: those of 25 pictures fit into th
 TAKE = "its static picture and in its take"
 AGAIN = "film the static picture and the walk again with the camera as in the take"
 UNTOUCHED = "film it again without touching the camera"
-KNOCKED = "end the take before it with `trim_s`, or state `steady: true` to measure the movement"
+KNOCKED = (
+    "end the take before it with `trim_s`, or, unless it zoomed, state `steady: true` to measure "
+    "the movement"
+)
 # ASSUME: a picture is too dark if this share of its pixels is below this level in all channels.
 BLACK_LEVEL, BLACK_SHARE = 20, 0.8
 

@@ -37,7 +37,8 @@ LEAST_OF_SIDE = 0.3  # on one side of a knock: 0.4 degrees make 0.4 to 0.8, came
 USUAL_RAD = np.radians(0.5)  # about each axis: keeps a turn small that is badly seen
 SAME_M, SAME_LENS = 0.002, 0.03  # a knocked camera keeps its place, and its lens: share of sigma
 BLOCK_S = 1.0  # residuals err alike within it
-MOST_TRIED = 4  # candidates, each of another camera
+MOST_TRIED = 4  # candidates, each of another camera, and one of a camera that is put back
+GRID = 60  # times at which a camera may be turned or put back, before the best are refined
 ROWS_TO_JUDGE = 40  # of each half that fits: enough for a turn, and a quarter of the time
 MOST = 3  # knocks per take
 NOT_BETTER = {"joints": "not better"}
@@ -68,6 +69,16 @@ class _Step:
     time_s: float
     turn: NDArray
     gain: float
+    until_s: float = np.inf  # when it is put back
+
+    @property
+    def put_back(self) -> bool:
+        """Whether the camera is put back within the take."""
+        return bool(np.isfinite(self.until_s))
+
+    def during(self, time_s: NDArray) -> NDArray:
+        """Return at which times the camera is turned."""
+        return (time_s >= self.time_s) & (time_s < self.until_s)
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,10 +89,14 @@ class _Judged:
     verdicts: dict[str, str]
     clearest: float  # the change of all, or of the side of the step that changes more
 
-    def order(self) -> tuple[bool, float]:
-        """Return what sorts steps: those taken first, by how clear they are."""
+    def order(self, step: _Step) -> tuple[bool, float]:
+        """Return what sorts steps: those taken first, by how clear they are.
+
+        A step for good is simpler: one that is put back must be clearer.
+        """
         taken = held_out.better(self.verdicts)
-        return not taken, self.clearest if taken else self.change
+        clear = self.clearest if taken else self.change
+        return not taken, clear + LEAST_CHANGE * step.put_back
 
 
 # Normal equations of each camera's turn in each row, (C, T, 3, 3) and (C, T, 3).
@@ -97,7 +112,8 @@ def find(
 ) -> list[Knock]:
     """Find the knocks of a take, each in keypoints without those before it.
 
-    They can be at any time, or at the times `at_s`, of every camera at each.
+    They can be at any time, or at the times `at_s`, of every camera at each. A camera that is put
+    back within the take is found as a whole, and has two.
 
     Steps are looked for with the cameras as they are and as people refine them: errors of cameras
     change with the place of people. Those that stand out are adjusted with all cameras, and taken
@@ -116,13 +132,15 @@ def find(
             break
         one_pose = _halves(cameras, known, left, limits, ())
         judged = [_judged(cameras, known, left, limits, step, one_pose) for step in tried]
-        at = min(range(len(tried)), key=lambda one: judged[one].order())
-        ((turn, sigma),) = _measured(cameras, known, left, limits, [tried[at]])
-        place = tried[at].camera, tried[at].time_s
-        found.append(Knock(*place, turn, sigma, judged[at].change, judged[at].verdicts))
-        if not found[-1].taken:
+        step, said = min(zip(tried, judged, strict=True), key=lambda one: one[1].order(one[0]))
+        ((turn, sigma),) = _measured(cameras, known, left, limits, [step])
+        new = [Knock(step.camera, step.time_s, turn, sigma, said.change, said.verdicts)]
+        if new[0].taken and step.put_back:
+            new.append(replace(new[0], time_s=step.until_s, turn=-turn))
+        found += new
+        if not new[0].taken:
             break
-        left = undone(cameras, left, found[-1:])
+        left = undone(cameras, left, new)
     return _together(cameras, known, seen, limits, found)
 
 
@@ -188,29 +206,6 @@ def row(knock: Knock, cameras: Sequence[Camera], clocks: Mapping[str, Clock]) ->
     }
 
 
-def lines(rows: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Return what rows of knocks that are taken say, a line each, of takes in a row the first."""
-    found, told = [], set()
-    for row in (row for row in rows if row["taken"]):
-        if row.get("after"):
-            if (row["camera"], row["after"]) in told:
-                continue
-            told.add((row["camera"], row["after"]))
-        turn, sigma = (
-            np.linalg.norm([row[f"{what}_{axis}_deg"] for axis in "xyz"])
-            for what in ("turn", "sigma")
-        )
-        where = f"knocked at {row['time_s']:.2f} s of take {row['take']}"
-        if row.get("after"):
-            where = f"turned between takes {row['after']} and {row['take']}"
-        found.append(
-            f"camera {row['camera']} was {where} by {turn:.2f} +- {sigma:.2f} deg: two poses, "
-            "before and after, with which held-out joints disagree by "
-            f"{-row['joints_percent']:.0f} % less"
-        )
-    return found
-
-
 def undone(cameras: Sequence[Camera], seen: Seen, knocks: Sequence[Knock]) -> Seen:
     """Return keypoints where cameras would have seen them without the knocks taken."""
     xy = seen.xy.copy()
@@ -224,13 +219,12 @@ def undone(cameras: Sequence[Camera], seen: Seen, knocks: Sequence[Knock]) -> Se
 
 
 def _candidates(cameras, known, seen: Seen, limits: Limits, at_s) -> list[_Step]:
-    """Return the clearest steps, each of another camera."""
+    """Return the clearest steps, each of another camera, and the clearest that is put back."""
     refined = _adjusted(cameras, known, seen.thinned(2 * ROWS_TO_JUDGE), limits, ()).cameras
     steps = [step for some in (cameras, refined) for step in _steps(some, seen, limits.score, at_s)]
-    best: dict[int, _Step] = {}
-    for step in sorted(steps, key=lambda one: one.gain):
-        best[step.camera] = step
-    return list(best.values())[-MOST_TRIED:]
+    steps.sort(key=lambda one: one.gain)
+    best = {step.camera: step for step in steps if not step.put_back}
+    return list(best.values())[-MOST_TRIED:] + [step for step in steps if step.put_back][-1:]
 
 
 def _steps(
@@ -241,14 +235,12 @@ def _steps(
     times, row = np.unique(seen.time_s, return_inverse=True)
     order = np.argsort(row, kind="stable")
     first = np.flatnonzero(np.diff(row[order], prepend=-1))
-    matrix, right = (np.add.reduceat(part[:, order], first, axis=1) for part in equations)
+    sums = [np.add.reduceat(part[:, order], first, axis=1) for part in equations]
     found = []
-    for camera, gain in enumerate(_gains(matrix, right, times)):
-        when = at_s
-        if when is None:
-            when = [float(times[gain.argmax()])] if gain.max() > 0 else []
-        for time_s in when:
-            step = _step(equations, seen, camera, time_s)
+    for camera, (matrix, right) in enumerate(zip(*sums, strict=True)):
+        when = [(one, np.inf) for one in at_s] if at_s else _spans(matrix, right, times)
+        for span in when:
+            step = _step(equations, seen, camera, *span)
             if step and step.gain >= LEAST_GAIN and np.linalg.norm(step.turn) >= LEAST_RAD:
                 found.append(step)
     return found
@@ -334,7 +326,7 @@ def _by_side(
     before: held_out.Score, after: held_out.Score, seen: Seen, step: _Step
 ) -> list[tuple[float, dict[str, str]]]:
     """Return the change and the verdicts of each side of a step, where it has a block."""
-    block, behind, found = seen.blocks(held_out.BLOCKS), seen.time_s >= step.time_s, []
+    block, behind, found = seen.blocks(held_out.BLOCKS), step.during(seen.time_s), []
     for side in (~behind, behind):
         own = np.setdiff1d(block[side], block[~side])
         one, two = (score.of(own) for score in (before, after))
@@ -361,7 +353,7 @@ def _score(halves: list[list[Camera]], seen: Seen, step: _Step) -> held_out.Scor
         views = seen.xy[:, rows]
         xyz = residuals.placed_by_others(found[: len(views)], views, at)
         last = found[-1] if len(found) > len(seen.xy) else found[at]
-        after = (seen.time_s[rows] >= step.time_s)[:, None, None]
+        after = step.during(seen.time_s[rows])[:, None, None]
         there = np.where(after, project(last, xyz), project(found[at], xyz))
         off = np.linalg.norm(views[at] - there, axis=-1) / seen.height_px[at, rows, None]
         for one in np.unique(block[rows]):
@@ -403,7 +395,7 @@ def _split(seen: Seen, steps: Sequence[_Step]) -> Seen:
     which = np.r_[:n_cameras, [step.camera for step in steps]]
     gone = np.zeros((len(which), len(seen.time_s)), dtype=bool)
     for new, old in enumerate(_poses_before(n_cameras, steps), start=n_cameras):
-        after = seen.time_s >= steps[new - n_cameras].time_s
+        after = steps[new - n_cameras].during(seen.time_s)
         gone[old] |= after
         gone[new] |= ~after
     xy, score = seen.xy[which], seen.score[which]
@@ -449,28 +441,48 @@ def _equations(cameras: Sequence[Camera], seen: Seen, min_score: float) -> Equat
     return matrix, right
 
 
-def _gains(matrix: NDArray, right: NDArray, times: NDArray) -> NDArray:
-    """Return how much a step at each time lowers the cost of each camera, (C, T)."""
-    ahead = [np.cumsum(part, axis=1) - part for part in (matrix, right)]
-    whole = [part.sum(axis=1, keepdims=True) for part in (matrix, right)]
-    small = 1e-6 * np.trace(whole[0], axis1=2, axis2=3)[..., None, None] + 1e-12
-    ridge = small * np.eye(3)  # also of a camera that sees nobody
+def _spans(matrix: NDArray, right: NDArray, times: NDArray) -> list[tuple[float, float]]:
+    """Return when a camera is best turned: for good, and until it is put back, if it can be."""
+    ahead = [np.cumsum(np.concatenate([0 * part[:1], part]), axis=0) for part in (matrix, right)]
+    rows = np.flatnonzero((times >= times[0] + LEAST_S) & (times <= times[-1] - LEAST_S))
+    if not len(rows):
+        return []
+    first = rows[_gains(ahead, rows, len(times)).argmax()]
+    spans = [(float(times[first]), np.inf)]
+    grid = rows[np.unique(np.linspace(0, len(rows) - 1, GRID).astype(int))]
+    starts, stops = np.array(list(combinations(grid, 2)), dtype=int).reshape(-1, 2).T
+    long = times[stops] - times[starts] >= LEAST_S
+    if not long.any():
+        return spans
+    stop = stops[long][_gains(ahead, starts[long], stops[long]).argmax()]
+    for _ in range(2):  # refined in turn
+        early = rows[times[rows] <= times[stop] - LEAST_S]
+        start = early[_gains(ahead, early, stop).argmax()]
+        late = rows[times[rows] >= times[start] + LEAST_S]
+        stop = late[_gains(ahead, start, late).argmax()]
+    return [*spans, (float(times[start]), float(times[stop]))]
+
+
+def _gains(ahead: Sequence[NDArray], first, stop) -> NDArray:
+    """Return how much turns from rows up to others lower the cost (N,), from sums before rows."""
+    matrix, right = ahead
+    ridge = (1e-6 * np.trace(matrix[-1]) + 1e-12) * np.eye(3)  # also of a camera that sees nobody
 
     def cost(one: NDArray, other: NDArray) -> NDArray:
         return (np.linalg.solve(one + ridge, other[..., None])[..., 0] * other).sum(axis=-1)
 
-    behind = [all_ - part for all_, part in zip(whole, ahead, strict=True)]
-    gain = cost(*ahead) + cost(*behind) - cost(*whole)
-    inner = (times >= times[0] + LEAST_S) & (times <= times[-1] - LEAST_S)
-    return np.where(inner, gain, 0.0)
+    during = matrix[stop] - matrix[first], right[stop] - right[first]
+    return cost(*during) + cost(matrix[-1] - during[0], right[-1] - during[1])
 
 
-def _step(equations: Equations, seen: Seen, camera: int, time_s: float) -> _Step | None:
+def _step(
+    equations: Equations, seen: Seen, camera: int, time_s: float, until_s: float
+) -> _Step | None:
     """Return the step at a time; None where a side says too little.
 
     Residuals err alike: its covariance is from their sums over blocks of time.
     """
-    after, turns, spread = seen.time_s >= time_s, [], []
+    after, turns, spread = (seen.time_s >= time_s) & (seen.time_s < until_s), [], []
     for side in (~after, after):
         matrix, right = (part[camera, side] for part in equations)
         total = matrix.sum(axis=0)
@@ -485,4 +497,4 @@ def _step(equations: Equations, seen: Seen, camera: int, time_s: float) -> _Step
         spread.append(inverse + inverse @ sums.T @ sums @ inverse)
     step, information = turns[1] - turns[0], np.linalg.inv(spread[0] + spread[1])
     shrunk = np.linalg.solve(information + np.eye(3) / USUAL_RAD**2, information @ step)
-    return _Step(camera, time_s, shrunk, float(step @ information @ step))
+    return _Step(camera, time_s, shrunk, float(step @ information @ step), until_s)

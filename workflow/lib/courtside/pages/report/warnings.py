@@ -118,7 +118,7 @@ def shaken(line: str) -> Warned:
     """
     text = line.partition(": steady")[0]
     text = text[:1].upper() + text[1:]
-    if "too little" in line or "no frame" in line:
+    if "too little" in line or "no frame" in line or "zoomed" in line:
         return Warned(DOUBTFUL, f"{text}.")
     if "knocked" in line or "off its static picture" in line:
         return Warned(DOUBTFUL, f"{text}. This was measured on the background and corrected.")

@@ -34,5 +34,27 @@ def read(path: StrPath, take: str, camera: str) -> list[tuple[float, np.ndarray]
     return list(zip(table["time_s"].astype(float), turns, strict=True))
 
 
+def lines(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return what rows of knocks that are taken say, a line each, of takes in a row the first."""
+    found, told = [], set()
+    for row in (row for row in rows if row["taken"]):
+        if row.get("after"):
+            if (row["camera"], row["after"]) in told:
+                continue
+            told.add((row["camera"], row["after"]))
+        turn, sigma = (
+            np.linalg.norm([row[column] for column in columns]) for columns in (TURN, SIGMA)
+        )
+        where = f"knocked at {row['time_s']:.2f} s of take {row['take']}"
+        if row.get("after"):
+            where = f"turned between takes {row['after']} and {row['take']}"
+        found.append(
+            f"camera {row['camera']} was {where} by {turn:.2f} +- {sigma:.2f} deg: two poses, "
+            "before and after, with which held-out joints disagree by "
+            f"{-row['joints_percent']:.0f} % less"
+        )
+    return found
+
+
 def _fault(table: pd.DataFrame) -> str:
     return tables.column_fault(table, COLUMNS, ("time_s", *TURN, *SIGMA, "taken"))
