@@ -126,6 +126,17 @@ def test_a_stranger_may_come_while_somebody_else_is_there():
     assert found_again(0.6, 0.5, beside=beside) > 0.9
 
 
+def test_who_is_seen_elsewhere_throughout_a_gap_is_not_who_comes_back():
+    far, lost = np.tile([6.0, 6.0], (60, 1)), np.tile([6.0, 6.0], (60, 1))
+    lost[25:45] = np.nan
+    passing = far.copy()
+    passing[35] = 1.5, 0.0
+    alone = found_again(3.5, 0.5, np.nan)
+    assert found_again(3.5, 0.5, np.nan, [far]) == alone
+    assert found_again(3.5, 0.5, np.nan, [lost]) < alone - 0.02
+    assert found_again(3.5, 0.5, np.nan, [passing]) < alone - 0.02
+
+
 def test_confidence_is_the_product_over_doubts():
     rows = np.array([[0, 1, 2, 1, 0.9], [0, 3, 4, 1, 0.8], [1, 1, 2, 0, 0.5]])
     assert identity.confidence(rows, 3) == pytest.approx([0.72, 0.5, 1.0])

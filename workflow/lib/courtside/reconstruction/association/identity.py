@@ -98,12 +98,20 @@ def _groups(at: NDArray, time_s: NDArray) -> list[NDArray]:
 
 
 def _who_could_be(path: NDArray, time_s: NDArray, person: int, left: int, right: int) -> int:
-    """Return who could be where the person is found again after a gap; -1 for nobody."""
-    reach = REACH_MS * (time_s[right] - time_s[left])
-    around = path[:, left : right + 1, :2] - path[person, right, :2]
-    away = np.nan_to_num(np.linalg.norm(around, axis=-1), nan=np.inf).min(axis=1)
+    """Return who could be where the person is found again after a gap; -1 for nobody.
+
+    Who is placed throughout the gap, and far from both of its ends, is where he is placed.
+    """
+    during = slice(left, right + 1)
+    around = path[:, during, None, :2] - path[person, [left, right], :2]
+    near = np.nan_to_num(np.linalg.norm(around, axis=-1), nan=np.inf).min(axis=1)
+    away = near[:, 1]
+    for other, placed in enumerate(np.isfinite(path[:, during, 0])):
+        known_s = time_s[[left, *(left + np.flatnonzero(placed)), right]]
+        if np.diff(known_s).max() <= GAP_S and near[other].min() > REACH_MS * GAP_S:
+            away[other] = np.inf
     away[person] = np.inf
-    return int(np.argmin(away)) if away.min() <= reach else -1
+    return int(np.argmin(away)) if away.min() <= REACH_MS * (time_s[right] - time_s[left]) else -1
 
 
 def _carried(before: NDArray, after: NDArray) -> bool:
