@@ -94,6 +94,23 @@ def test_a_rally_has_time_distance_and_rate():
     assert values(both).loc["rally_2_time", "value"] == pytest.approx(0.3 * 9)
 
 
+@pytest.mark.parametrize("hidden", [("left", "right"), ("right",)])
+def test_the_step_rate_does_not_count_the_time_in_which_a_foot_is_not_seen(hidden):
+    """A run of 3.3 landings a second in which both feet, or one, are hidden for 1.2 s."""
+    feet = {side: [replace(s, seen_s=(0.0, 20.0)) for s in own] for side, own in run(20).items()}
+    whole = values(feet)
+    for side in hidden:
+        before = [replace(s, seen_s=(0.0, 4.0)) for s in feet[side] if not s.onset_s > 4.0]
+        after = [replace(s, seen_s=(5.2, 20.0)) for s in feet[side] if s.onset_s > 5.2]
+        feet[side] = before + after
+    found = values(feet)
+    rate = found.loc["rally_1_step_rate"]
+    assert found.loc["rally_1_time", "value"] == whole.loc["rally_1_time", "value"]
+    assert rate["value"] == pytest.approx(1 / 0.3)
+    assert 20 < rate["n"] < whole.loc["rally_1_step_rate", "n"]
+    assert rate["sigma"] > whole.loc["rally_1_step_rate", "sigma"]
+
+
 def test_corners_are_sixths_of_the_own_half_as_seen_facing_the_net():
     lines = court.read(CONFIG / "courts" / "badminton.yaml")
     net, width = lines.net["y_m"], lines.size_m[0]

@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import cv2
@@ -46,6 +47,15 @@ def test_persons_have_columns_of_pictures_and_a_path():
     assert first["path"][0] == [0.0, 0.0, 0.0]
     assert held["clocks"] == {"c0": [0.0, 1.0], "c1": [0.5, 1.0]}
     assert held["court"] is None
+
+
+def test_the_least_certain_times_of_a_doubtful_person_are_shown():
+    take = named_takes.take(2)
+    rows = [[0.0, at, at + 0.3, 1, kept] for at, kept in enumerate((0.95, 0.93, 0.96, 0.94))]
+    found = replace(take.found, doubts=np.array(rows))
+    first, second = data(page.build(WORDS, found, take.seen, {0: [5], 1: [5]}, []))["persons"]
+    assert first["doubts"] == [[1.0, 1.3, 0.93], [3.0, 3.3, 0.94]]
+    assert second["doubts"] == []
 
 
 def test_the_page_holds_the_court_and_names_given_before():

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from courtside.reconstruction.association import identity
+from courtside.reconstruction.association.appearance import Looks
 from courtside.reconstruction.association.candidates import Candidates
 
 TIMES = np.arange(60) * 0.1
@@ -85,7 +86,7 @@ def test_a_gap_is_a_doubt_with_who_could_be_there():
     assert far[0, 3] == -1
 
 
-def found_again(gap_s, away_m, size=1.0, beside=()):
+def found_again(gap_s, away_m, size=1.0, beside=(), looks=None):
     """Return the probability that who is found again at a distance is the same person."""
     last = 20 + round(gap_s * 10)
     x = np.where(np.arange(60) < last, 0.0, away_m)
@@ -94,7 +95,7 @@ def found_again(gap_s, away_m, size=1.0, beside=()):
     lengths_m = np.stack([after, *(np.full_like(after, 0.35) for _ in beside)])
     pieces = np.arange(len(paths))[:, None] * 10 + np.where(np.arange(60) < last, 0, 1)
     people = followed(paths, pieces, [(0, np.arange(21, last))])
-    return identity.doubts(people, TIMES, lengths_m)[0, 4]
+    return identity.doubts(people, TIMES, lengths_m, looks)[0, 4]
 
 
 def test_a_stranger_may_come_after_a_long_gap_or_far_away():
@@ -124,6 +125,32 @@ def test_a_stranger_may_come_while_somebody_else_is_there():
     assert found_again(3.5, 3.0, np.nan, beside) < 0.9
     assert found_again(3.5, 3.0, 0.75, beside) < 0.2
     assert found_again(0.6, 0.5, beside=beside) > 0.9
+
+
+def test_who_is_seen_elsewhere_throughout_a_gap_is_not_who_comes_back():
+    far, lost = np.tile([6.0, 6.0], (60, 1)), np.tile([6.0, 6.0], (60, 1))
+    lost[25:45] = np.nan
+    passing = far.copy()
+    passing[35] = 1.5, 0.0
+    alone = found_again(3.5, 0.5, np.nan)
+    assert found_again(3.5, 0.5, np.nan, [far]) == alone
+    assert found_again(3.5, 0.5, np.nan, [lost]) < alone - 0.02
+    assert found_again(3.5, 0.5, np.nan, [passing]) < alone - 0.02
+
+
+def dressed(off, spread):
+    """Return the looks of one person whose clothes change by `off` in the middle of the take."""
+    worn = np.where(TIMES[:, None] < 4.0, 50.0, 50.0 + off) * np.ones((1, 1, 6))
+    return Looks([worn], np.arange(60), np.full(6, 3.0), np.full(6, spread))
+
+
+def test_the_clothes_say_whether_a_stranger_came():
+    """After 3.5 s far away, with bones that say little."""
+    unknown = found_again(3.5, 3.0, 0.95)
+    same, other = (found_again(3.5, 3.0, 0.95, looks=dressed(off, 15.0)) for off in (3.0, 30.0))
+    assert same > 0.9 > unknown > 0.8 > 0.6 > other
+    # Where people dress alike, clothes say nothing.
+    assert found_again(3.5, 3.0, 0.95, looks=dressed(3.0, 0.0)) == pytest.approx(unknown)
 
 
 def test_confidence_is_the_product_over_doubts():

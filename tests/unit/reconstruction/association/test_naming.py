@@ -165,6 +165,15 @@ def test_gaps_and_doubts_are_said():
     assert sure.confidence.tolist() == [1.0]
 
 
+def test_doubts_that_are_surer_each_but_not_together_are_said():
+    take = named_takes.take(2)
+    rows = [[0.0, at, at + 0.3, 1, kept] for at, kept in enumerate((0.95, 0.93, 0.96, 0.94, 0.97))]
+    take.found = replace(take.found, doubts=np.array(rows))
+    (line,) = naming.lines(take.found, name(take, [sighting("p1", 0, 0.0)]))
+    assert "with probability 0.77; may be somebody else after 0.3 s (0.95 that not)" in line
+    assert line.count("may be") == 3 and "3.3 s (0.94 that not)" in line
+
+
 def met_twice(doubts):
     """Return two people who meet at 2 s, and closer at 4 s, with these doubts."""
     apart = np.interp(named_takes.TIMES, [0, 2, 3, 4, 6], [3, 0.6, 3, 0.5, 3])

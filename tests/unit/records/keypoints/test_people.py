@@ -47,6 +47,22 @@ def test_cameras_with_different_numbers_of_frames_come_back(tmp_path):
         np.testing.assert_array_equal(found.index[camera], index)
 
 
+@pytest.mark.parametrize(
+    ("kept", "shown"),
+    [
+        ([0.8, 0.995, 0.7, 0.95], [0.8, 0.7]),  # the others are sure together
+        ([0.96, 0.93, 0.95, 0.92, 0.97], [0.93, 0.95, 0.92]),  # each is sure, together they are not
+        ([0.8, 0.7, 0.6, 0.5, 0.95], [0.8, 0.7, 0.6, 0.5]),
+        ([0.96, 0.97], []),
+        ([], []),
+    ],
+)
+def test_of_a_doubtful_person_the_least_certain_times_are_to_be_checked(kept, shown):
+    rows = [[0.0, at, at + 0.5, 1, one] for at, one in enumerate(kept)]
+    doubts = np.array([*rows, [1.0, 0.0, 0.5, 0, 0.3]])
+    assert replace(table(), doubts=doubts).to_check(0)[:, 4].tolist() == shown
+
+
 def test_a_table_that_was_cut_is_refused(tmp_path):
     path = tmp_path / "people.npz"
     people.write(path, table())

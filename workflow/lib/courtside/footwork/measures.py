@@ -134,8 +134,28 @@ def _rallies(steps: pd.DataFrame) -> Iterator[Row]:
         length, error = _path(own)
         words = "path of the midpoints between each landing and the one before"
         yield f"{name}_distance", length, error, "m", n, words
-        rate, words = (n - 1) / lasts, "landings after the first, per second"
-        yield f"{name}_step_rate", rate, rate * spread / lasts, "1/s", n, words
+        yield f"{name}_step_rate", *_rate(steps, own)
+
+
+def _rate(steps: pd.DataFrame, landed: pd.DataFrame) -> tuple[float, float, str, int, str]:
+    """Return the landings per second of the time in which both feet are seen.
+
+    A landing counts if both are seen from the one before: in a gap nobody knows of landings.
+    """
+    feet = steps.foot.nunique()
+    spans = zip(landed.onset_s, landed.onset_s.shift(1), strict=True)
+    seen = np.array(
+        [
+            steps.foot[(steps.seen_from_s < since) & (steps.seen_until_s >= at)].nunique() == feet
+            for at, since in spans
+        ]
+    )
+    n, lasts = int(seen.sum()), float(landed.onset_s.diff()[seen].sum())
+    counted = seen.astype(float) - np.append(seen[1:], False)  # each onset, in the sum of times
+    spread = float(np.sqrt(counted**2 @ landed.onset_sigma_s**2))
+    rate = n / lasts if n else NAN
+    words = "landings per second of the time in which both feet are seen"
+    return rate, rate * spread / lasts if n else NAN, "1/s", n, words
 
 
 def _path(steps: pd.DataFrame) -> tuple[float, float]:

@@ -85,11 +85,7 @@ def _person(
         "name": str(people.person_id[person]),
         "placed": float(people.placed[person]),
         "confidence": float(people.confidence[person]),
-        "doubts": [
-            [float(row[1]), float(row[2]), float(row[4])]
-            for row in people.doubts
-            if int(row[0]) == person and row[4] < 0.9
-        ],
+        "doubts": people.to_check(person)[:, [1, 2, 4]].tolist(),
         "path": np.round(path, 2).tolist(),
         "columns": [
             {

@@ -105,7 +105,7 @@ def associate(
         path=path,
         placed=np.isfinite(path[..., 0]).mean(axis=1),
         doubts=identity.doubts(
-            people, time_s[instants], lengths.of_people(cameras, xy, instants, people, bones)
+            people, time_s[instants], lengths.of_people(cameras, xy, instants, people, bones), looks
         ),
     )
 

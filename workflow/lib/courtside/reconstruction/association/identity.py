@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.reconstruction.association.appearance import Looks
 from courtside.reconstruction.association.candidates import Candidates
 
 # ASSUME: this block has no source but the development takes (CONTRIBUTING.md). Probabilities that a
@@ -44,21 +45,34 @@ class Followed:
         either = np.where(self.chosen >= 0, self.chosen, self.seen_alone)
         return np.where((either >= 0)[..., None], self.piece[either], -1)
 
+    def worn(self, looks: Looks) -> NDArray:
+        """Return the colours (K, N, Q) of their clothes; NaN where unknown."""
+        there = (self.chosen >= 0)[..., None]
+        return np.where(there, looks.middle(self.candidates)[self.chosen], np.nan)
 
-def doubts(people: Followed, time_s: NDArray, lengths_m: NDArray) -> NDArray:
+
+def doubts(
+    people: Followed, time_s: NDArray, lengths_m: NDArray, looks: Looks | None = None
+) -> NDArray:
     """Return the possible exchanges of persons (D, 5), by person and time.
 
     Each row holds: person; start and stop, s of the reference clock; the other person, -1 where
     nobody came near; the probability that the person is still the same. `time_s` (N,) is of the
-    instants, `lengths_m` (K, N, B) are the lengths of bones, NaN where unknown.
+    instants, `lengths_m` (K, N, B) are the lengths of bones, NaN where unknown; with `looks`, the
+    clothes say whether a stranger came.
     """
     path, pieces = people.path(), people.pieces()
+    worn = people.worn(looks) if looks else np.empty((len(path), 0))
     found = []
     for person in range(len(path)):
         for first, last, other in _occasions(path, time_s, person):
             kept = CARRIED
             if not _carried(pieces[person, first], pieces[person, last]):
-                kept = _kept(path, time_s, lengths_m, (person, other), (first, last))
+                alike = 0.0
+                if looks:
+                    before, after = _around(worn[person], time_s, (first, last))
+                    alike = -float(looks.cost(after - before, 1.0))
+                kept = _kept(path, time_s, lengths_m, (person, other), (first, last), alike)
             found.append((person, time_s[first], time_s[last], other, kept))
     return np.array(found, float).reshape(-1, 5)
 
@@ -98,28 +112,39 @@ def _groups(at: NDArray, time_s: NDArray) -> list[NDArray]:
 
 
 def _who_could_be(path: NDArray, time_s: NDArray, person: int, left: int, right: int) -> int:
-    """Return who could be where the person is found again after a gap; -1 for nobody."""
-    reach = REACH_MS * (time_s[right] - time_s[left])
-    around = path[:, left : right + 1, :2] - path[person, right, :2]
-    away = np.nan_to_num(np.linalg.norm(around, axis=-1), nan=np.inf).min(axis=1)
+    """Return who could be where the person is found again after a gap; -1 for nobody.
+
+    Who is placed throughout the gap, and far from both of its ends, is where he is placed.
+    """
+    during = slice(left, right + 1)
+    around = path[:, during, None, :2] - path[person, [left, right], :2]
+    near = np.nan_to_num(np.linalg.norm(around, axis=-1), nan=np.inf).min(axis=1)
+    away = near[:, 1]
+    for other, placed in enumerate(np.isfinite(path[:, during, 0])):
+        known_s = time_s[[left, *(left + np.flatnonzero(placed)), right]]
+        if np.diff(known_s).max() <= GAP_S and near[other].min() > REACH_MS * GAP_S:
+            away[other] = np.inf
     away[person] = np.inf
-    return int(np.argmin(away)) if away.min() <= reach else -1
+    return int(np.argmin(away)) if away.min() <= REACH_MS * (time_s[right] - time_s[left]) else -1
 
 
 def _carried(before: NDArray, after: NDArray) -> bool:
     return bool(((before == after) & (before >= 0)).any())
 
 
-def _kept(path: NDArray, time_s: NDArray, lengths_m: NDArray, pair: tuple, between: tuple) -> float:
+def _kept(
+    path: NDArray, time_s: NDArray, lengths_m: NDArray, pair: tuple, between: tuple, alike: float
+) -> float:
     """Return the probability that a person is the same after a meeting or gap as before.
 
-    It is not, if exchanged with the other of the `pair`, or, after a gap, if a stranger came.
+    It is not, if exchanged with the other of the `pair`, or, after a gap, if a stranger came. The
+    log odds that he is none by his clothes are `alike`.
     """
     against = []
     if pair[1] >= 0:
         against.append(np.log(MOTION / (1 - MOTION)) + _ratio(lengths_m, time_s, pair, between))
     if not np.isfinite(path[pair[0], between[0] + 1 : between[1], 0]).any():
-        against.append(_familiar(path[pair[0]], time_s, lengths_m[pair[0]], between))
+        against.append(_familiar(path[pair[0]], time_s, lengths_m[pair[0]], between) + alike)
     return float(1 / (1 + np.exp(-np.array(against)).sum()))
 
 

@@ -98,14 +98,13 @@ def _line(found: People, named: People, at: int, free: Free) -> str:
     gaps: dict[str, Spans] = defaultdict(list)
     for gap in gaps_s(named.time_s, named.path[at]):
         gaps[_who_may_be(found, named.path[at], gap, free)].append(gap)
-    exchanges = [row for row in named.doubts if row[0] == at and row[4] < 0.9]
     parts = [f"placed from two views or more in {named.placed[at]:.0%} of the take"]
     parts += [f"one person throughout with probability {named.confidence[at]:.2f}"]
     parts += [f"not placed from {_spans(gaps.pop(''))}"] if "" in gaps else []
     parts += [
         f"not named from {_spans(spans)}: say who {who} is then" for who, spans in gaps.items()
     ]
-    for _, start, stop, other, kept in exchanges:
+    for _, start, stop, other, kept in named.to_check(at):
         span = f"{named.person_id[int(other)]} from {start:.1f} to"
         who = span if other >= 0 else "somebody else after"
         parts += [f"may be {who} {stop:.1f} s ({kept:.2f} that not): look at the page"]
