@@ -128,11 +128,28 @@ def test_what_remains_is_its_standard_deviation_and_joins_the_covariance():
     assert sigma_m["wrist"] == pytest.approx(0.01, rel=0.05)
     assert sigma_m["hip"] < 1e-3
     for size, own in ((1.0, 1.0), (0.714, 0.7)):  # an adult, and a child with a trunk of 0.357 m
-        corrected = joint_correction.correct(record(bodies(8, seed=5, size=size)), table)
+        upright = record(bodies(8, seed=5, size=size, turned=False))
+        corrected = joint_correction.correct(upright, table)
         at, own_m = list(corrected.joints).index("left_wrist"), own * sigma_m["wrist"]
         np.testing.assert_allclose(
             corrected.covariance_2d[0, 0, at], own_m**2 * np.eye(3), atol=1e-12
         )
+
+
+@pytest.mark.parametrize(("tilt_deg", "more_m"), [(25, 0), (45, 0.01), (90, 0.02), (180, 0.02)])
+def test_joints_of_who_leans_further_than_the_fit_are_less_certain(tilt_deg, more_m):
+    table = joint_correction.read(CONFIG / "joint_offsets" / "blazepose-heavy-flip.csv")
+    table = table[~table["vector"].str.startswith("seen ")]
+    sigma_m = table.loc[table["joint"] == "hip", "sigma_m"].iloc[0]
+    turn = Rotation.from_euler("y", tilt_deg, degrees=True).as_matrix()
+    points = record(bodies(8, seed=5, turned=False) @ turn.T)
+    corrected = joint_correction.correct(points, table)
+    at = list(corrected.joints).index("left_hip")
+    np.testing.assert_allclose(
+        corrected.covariance_2d[0, :, at] - points.covariance_2d[0, :, at],
+        np.broadcast_to((sigma_m**2 + more_m**2) * np.eye(3), (8, 3, 3)),
+        atol=1e-9,
+    )
 
 
 def test_the_direction_of_an_arm_counts_whatever_its_length():
@@ -280,7 +297,7 @@ def test_offsets_that_depend_on_the_view_hold_for_cameras_elsewhere():
 def test_a_joint_whose_trunk_is_missing_keeps_its_place():
     true = bodies(20, seed=5)
     table = joint_correction.estimate([Clip(displaced(true), true)], JOINTS, JOINTS)
-    points = record(displaced(true))
+    points = record(displaced(bodies(20, seed=5, turned=False)))
     points.xyz[0, 3, list(points.joints).index("left_shoulder")] = np.nan
     corrected = joint_correction.correct(points, table)
     at = list(points.joints).index("right_hip")

@@ -110,7 +110,7 @@ def test_names_are_those_of_the_vectors(joint):
 
 @pytest.mark.parametrize("joint", skeleton.LIMBS)
 def test_vectors_turn_with_body_and_cameras(joint):
-    turn = Rotation.from_rotvec([0, 0, 0.7]).as_matrix()  # about the world's z, as `upright`
+    turn = Rotation.from_rotvec([0.3, -2.4, 0.7]).as_matrix()  # nearly upside down
     cameras, xyz = scene.ring(3), persons()
     turned = [
         Camera(

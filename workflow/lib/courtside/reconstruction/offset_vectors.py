@@ -35,7 +35,7 @@ BY_SEX = {"hip": TRUNK}
 SIGN: dict[str | None, float] = {"m": 1.0, "f": -1.0}  # for others, the mean of both
 # Lines that also count by their direction: if a part of the arm looks too short, the elbow is off.
 DIRECTED = {"elbow": (("shoulder", "elbow"), ("elbow", "wrist"))}
-# Of directions and of the vector along the world's z, for an adult: about a limb, any unit will do.
+# Of directions, for an adult: about a limb, any unit will do.
 LENGTH_M = 0.3
 TRUNK_M = 0.51  # mean of the eight development bodies' trunks, as the default network sees them
 # ASSUME: sizes of adults, as a network sees them, are all 1; beyond the outer two, a size counts as
@@ -124,6 +124,12 @@ def size_of(xyz: NDArray, joints: Sequence[str]) -> float:
     return float(np.interp(size, *ADULTS) * size / np.clip(size, ADULTS[0][0], ADULTS[0][-1]))
 
 
+def tilt_deg(xyz: NDArray, joints: Sequence[str]) -> NDArray:
+    """Return the angle (...) between trunks of `xyz` (..., J, 3) and the world's z, degrees."""
+    axes, _ = _trunk(dict(zip(joints, np.moveaxis(xyz, -2, 0), strict=True)), "left")
+    return np.degrees(np.arccos(np.clip(axes["up"][..., 2], -1.0, 1.0)))
+
+
 def of_body(
     xyz: NDArray, joints: Sequence[str], side: str, joint: str, sex: str | None = None
 ) -> dict[str, NDArray]:
@@ -131,7 +137,8 @@ def of_body(
 
     `xyz` (..., J, 3) m are skeletons in the world with the named `joints` (J,); `joint` is one of
     `skeleton.LIMBS`, of the `side` left or right; `sex` is "m", "f" or None. Trunk axes have the
-    trunk's length (`out`: to the joint's own side; `up`; `forward`); `upright` is the world's z.
+    trunk's length (`out`: to the joint's own side; `up`; `forward`); `upright` is `up` with the
+    length `LENGTH_M` (not the world's z: who is upside down would have offsets of nobody).
     There are lines between joints of the own side (`hip-knee`) and of the other (`other hip-knee`),
     if the network has these joints; `way elbow-wrist` and the like, lines of `DIRECTED` with length
     `LENGTH_M`; `lean up forward` and the like, the trunk's axis `forward` times the component along
@@ -140,7 +147,7 @@ def of_body(
     place = dict(zip(joints, np.moveaxis(xyz, -2, 0), strict=True))
     axes, length = _trunk(place, side)
     found = {name: axes[name] * length for name in TRUNK}
-    found["upright"] = np.broadcast_to([0.0, 0.0, LENGTH_M], axes["up"].shape)
+    found["upright"] = LENGTH_M * axes["up"]
     other = {"left": "right", "right": "left"}[side]
     found |= _lines(place, side, BONES[joint])
     if joint in ACROSS:
