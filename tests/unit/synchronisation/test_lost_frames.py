@@ -45,6 +45,14 @@ def test_lost_frames_of_one_camera_are_told(camera, at_s, lag_ms):
     assert f"from {start} to {stop} s of its video" in said and f"{lag_ms:+d} ms" in said
 
 
+def test_frames_lost_near_the_end_of_a_long_take_are_told():
+    shown = views(0, seconds=240.0, rate_hz=15)
+    shown[1] = without(shown[1], 222.0, 3)
+    found = cameras.synchronise(shown, RIG)
+    assert {name for name, clock in found.items() if clock.doubt} == {"c1"}
+    assert "-200 ms" in found["c1"].doubt
+
+
 def test_lost_frames_of_several_cameras_are_told_of_each():
     rig = sync_takes.rig(4)
     shown = views(0, seconds=60.0, rig=rig)

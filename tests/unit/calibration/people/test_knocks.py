@@ -71,7 +71,7 @@ def test_a_knock_is_told_in_the_clock_of_its_camera(found):
 
 
 def test_a_camera_that_sees_nobody_of_the_others_hinders_no_search(knocked, monkeypatch):
-    monkeypatch.setattr(knocks, "_judged", lambda *_: knocks._Judged(0.0, knocks.NOT_BETTER, 0.0))
+    monkeypatch.setattr(knocks, "_judged", lambda *_: knocks._Judged(0.0, knocks.NOT_BETTER))
     blind = knocked.xy.copy()
     blind[3] = np.nan
     found = knocks.find(TRUE, KNOWN, replace(knocked, xy=blind), LIMITS)
@@ -159,11 +159,23 @@ def test_a_camera_that_is_put_back_was_knocked_twice():
         assert np.degrees(np.abs(one.turn - turn)[:2]).max() < 0.04
 
 
+def test_a_knock_in_the_last_seconds_of_a_longer_take_is_found(monkeypatch):
+    """The cameras are known well: most of the time one pose of each fits."""
+    monkeypatch.setattr(knocks, "MOST", 1)
+    known = replace(KNOWN, covariance=KNOWN.covariance / 400)
+    seen = walkers.seen(TRUE, walkers.joints(240))
+    xy, after = seen.xy.copy(), seen.time_s >= 20.5
+    xy[2, after] = cameras.turned_back(TRUE[2], xy[2, after], -2 * TURN)
+    (found,) = knocks.find(TRUE, known, replace(seen, xy=xy), LIMITS)
+    assert found.taken and found.camera == 2 and found.time_s == pytest.approx(20.5, abs=0.2)
+    assert (np.abs(found.turn - 2 * TURN) < 3 * found.sigma).all()
+
+
 def test_a_side_of_one_block_does_not_tell_of_a_knock():
     before = held_out.Score(dict(enumerate([0.02] * 8)))
-    seen = replace(SEEN, time_s=np.arange(80.0))
-    for first, taken in ((70.0, False), (60.0, True)):
-        shares = [0.005 if 10 * block >= first else 0.02 for block in range(8)]
+    seen = replace(SEEN, time_s=np.arange(80) / 10)
+    for first, taken in ((7.0, False), (6.0, True)):
+        shares = [0.005 if block >= first else 0.02 for block in range(8)]
         ((kept, _), (gone, said)) = knocks._by_side(
             before, held_out.Score(dict(enumerate(shares))), seen, knocks._Step(2, first, TURN, 99)
         )

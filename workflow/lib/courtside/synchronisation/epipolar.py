@@ -51,12 +51,12 @@ class Epipolar:
         # Of pairs of cameras: pairs of rows that show one person in a block of times.
         self.matches: dict[tuple[int, int], list[tuple[int, int, slice]]] = {}
 
-    def scan(self, a: int, b: int, lags_s: NDArray) -> NDArray:
+    def scan(self, a: int, b: int, lags_s: NDArray, most: int = SCAN_TIMES) -> NDArray:
         """Return the loss (N, L) of camera b against a, at N times of one, by the offset of b.
 
         Offsets `lags_s` are (L,), or (N, L) if they differ from time to time.
         """
-        at, swapped = smooth_tracks.compared(self.tracks[a], self.tracks[b], SCAN_TIMES)
+        at, swapped = smooth_tracks.compared(self.tracks[a], self.tracks[b], most)
         a, b, lags_s = (b, a, -lags_s) if swapped else (a, b, lags_s)
         track_a, track_b = self.tracks[a], self.tracks[b]
         every = at[1] - at[0] if len(at) > 1 else 1

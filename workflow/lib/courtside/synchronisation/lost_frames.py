@@ -14,8 +14,9 @@ from courtside.synchronisation.speed import Speeds
 # ASSUME: this block was chosen on takes of 24 s of `players-b`, from which 6 frames of 30 a second
 # were taken out in one camera after a quarter or three quarters. None of the 34 whole takes of the
 # development sessions is doubted. They last 3 to 10 s: missing frames are not noticed there either.
+# Parts of longer takes are checked on synthetic takes of 2 to 15 minutes.
 REACH_S, STEP_S = 1.0, 1 / 30  # offsets about the found one
-PARTS = 8  # of the take, compared each for itself
+PARTS, PART_S = 8, 5.0  # of a take, compared each for itself: so many, or more of so many s
 DISTINCT = 3.0  # standard deviations by which another offset must be better, in a part or all
 LEAST_RUN = 2  # parts one after the other that must prefer the same offset
 LEAST_S = 0.1  # less is within what clocks and networks are wrong by
@@ -31,17 +32,19 @@ def doubt(
     """
     lags_s = STEP_S * np.arange(-round(REACH_S / STEP_S), round(REACH_S / STEP_S) + 1)
     track = evidence.tracks[camera]
-    losses = []
+    shown_s = track.step_s * np.isfinite(track.values).any(axis=(0, 2, 3)).sum()
+    n_parts = max(PARTS, round(shown_s / PART_S))
+    most, losses = evidence.scan_times * n_parts // PARTS, []
     for other in sorted(set(used) - {camera}):
-        at, swapped = smooth_tracks.compared(track, evidence.tracks[other], evidence.scan_times)
-        if not swapped and len(at) >= PARTS:
+        at, swapped = smooth_tracks.compared(track, evidence.tracks[other], most)
+        if not swapped and len(at) >= n_parts:
             time_s = track.start_s + track.step_s * at
             other_s = own[other].from_reference(own[camera].to_reference(time_s))
-            losses.append(evidence.scan(camera, other, (other_s - time_s)[:, None] - lags_s))
+            losses.append(evidence.scan(camera, other, (other_s - time_s)[:, None] - lags_s, most))
     if not losses or any(len(loss) != len(losses[0]) for loss in losses):
         return 0.0, ""
     loss = np.nanmean(losses, axis=0)
-    parts = np.array_split(np.arange(len(loss)), PARTS)
+    parts = np.array_split(np.arange(len(loss)), n_parts)
     preferred = np.array([_preferred(loss[part], lags_s) for part in parts])
     for first, last in _runs(preferred, len(lags_s) // 2):
         at = np.concatenate(parts[first : last + 1])

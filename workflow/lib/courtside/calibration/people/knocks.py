@@ -83,20 +83,19 @@ class _Step:
 
 @dataclass(frozen=True, eq=False)
 class _Judged:
-    """What held-out joints say of a step: the first two as of `Knock`."""
+    """What held-out joints say of a step, as of `Knock`."""
 
-    change: float
+    change: float  # of the clearer side of a step that is taken, else of all
     verdicts: dict[str, str]
-    clearest: float  # the change of all, or of the side of the step that changes more
 
     def order(self, step: _Step) -> tuple[bool, float]:
-        """Return what sorts steps: those taken first, by how clear they are.
+        """Return what sorts steps: those taken first, by how clear they are; others by gain.
 
         A step for good is simpler: one that is put back must be clearer.
         """
-        taken = held_out.better(self.verdicts)
-        clear = self.clearest if taken else self.change
-        return not taken, clear + LEAST_CHANGE * step.put_back
+        if held_out.better(self.verdicts):
+            return False, self.change + LEAST_CHANGE * step.put_back
+        return True, -step.gain
 
 
 # Normal equations of each camera's turn in each row, (C, T, 3, 3) and (C, T, 3).
@@ -306,33 +305,28 @@ def _judged(
 ) -> _Judged:
     """Return what held-out joints say of a step.
 
-    Judged is the step's camera alone, against joints that the others place: by all of the time, or
-    by one side of the step, which may be too short to tell in all. The other must not be worse.
+    Judged is the step's camera alone, against joints that the others place: by the time on one side
+    of the step, which may be too short to tell in all. The other must not be worse.
     """
     two_poses = _halves(cameras, known, seen, limits, [step])
     before, after = (_score(halves, seen, step) for halves in (one_pose, two_poses))
-    whole, verdicts = after.typical() / before.typical() - 1, held_out.verdicts(before, after)
-    sides = _by_side(before, after, seen, step)
-    clearest = min([whole, *(side for side, _ in sides)])
-    if whole < -LEAST_CHANGE and held_out.better(verdicts):
-        return _Judged(whole, verdicts, clearest)
+    sides = sorted(_by_side(before, after, seen, step), key=lambda one: one[0])
     for (side, said), (other, _) in permutations(sides, 2):
         if side < -LEAST_OF_SIDE and held_out.better(said) and other < LEAST_CHANGE:
-            return _Judged(side, said, clearest)
-    return _Judged(whole, verdicts if whole < -LEAST_CHANGE else NOT_BETTER, clearest)
+            return _Judged(side, said)
+    return _Judged(after.typical() / before.typical() - 1, NOT_BETTER)
 
 
 def _by_side(
     before: held_out.Score, after: held_out.Score, seen: Seen, step: _Step
 ) -> list[tuple[float, dict[str, str]]]:
     """Return the change and the verdicts of each side of a step, where it has a block."""
-    block, behind, found = seen.blocks(held_out.BLOCKS), step.during(seen.time_s), []
+    block, behind, found = _blocks(seen), step.during(seen.time_s), []
     for side in (~behind, behind):
         own = np.setdiff1d(block[side], block[~side])
         one, two = (score.of(own) for score in (before, after))
         if one.share and two.share:
-            change = two.typical() / one.typical() - 1
-            found.append((change, held_out.verdicts(one, two)))
+            found.append((two.typical() / one.typical() - 1, held_out.verdicts(one, two)))
     return found
 
 
@@ -340,14 +334,14 @@ def _halves(
     cameras, known, seen: Seen, limits: Limits, steps: Sequence[_Step]
 ) -> list[list[Camera]]:
     """Return cameras with one pose, or two with a step, fitted to either half of the blocks."""
-    block = seen.blocks(held_out.BLOCKS)
+    block = _blocks(seen)
     halves = [seen.of(block % 2 == odd).thinned(ROWS_TO_JUDGE) for odd in (0, 1)]
     return [_adjusted(cameras, known, half, limits, steps).cameras for half in halves]
 
 
 def _score(halves: list[list[Camera]], seen: Seen, step: _Step) -> held_out.Score:
     """Score the step's camera in the blocks of the half that its cameras were not fitted to."""
-    score, block, at = held_out.Score(), seen.blocks(held_out.BLOCKS), step.camera
+    score, block, at = held_out.Score(), _blocks(seen), step.camera
     for odd, found in enumerate(halves):
         rows = block % 2 != odd
         views = seen.xy[:, rows]
@@ -401,6 +395,13 @@ def _split(seen: Seen, steps: Sequence[_Step]) -> Seen:
     xy, score = seen.xy[which], seen.score[which]
     xy[gone], score[gone] = np.nan, np.nan
     return replace(seen, xy=xy, score=score, height_px=seen.height_px[which], offset_px=None)
+
+
+def _blocks(seen: Seen, fewest: int = held_out.BLOCKS) -> NDArray:
+    """Return the block of time of its track (T,) int of each row: of 1 s, in short takes less."""
+    long_s = min(BLOCK_S, np.ptp(seen.time_s) / fewest)
+    block = np.stack([seen.track, seen.time_s // long_s])
+    return np.unique(block, axis=1, return_inverse=True)[1].ravel()
 
 
 def _equations(cameras: Sequence[Camera], seen: Seen, min_score: float) -> Equations:
@@ -483,16 +484,15 @@ def _step(
     Residuals err alike: its covariance is from their sums over blocks of time.
     """
     after, turns, spread = (seen.time_s >= time_s) & (seen.time_s < until_s), [], []
+    block = _blocks(seen, fewest=1)
     for side in (~after, after):
         matrix, right = (part[camera, side] for part in equations)
         total = matrix.sum(axis=0)
         if np.linalg.matrix_rank(total) < 3:
             return None
         turns.append(np.linalg.solve(total, right.sum(axis=0)))
-        block = np.stack([seen.track[side], seen.time_s[side] // BLOCK_S])
-        _, number = np.unique(block, axis=1, return_inverse=True)
         left = right - matrix @ turns[-1]
-        sums = np.stack([np.bincount(number.ravel(), axis) for axis in left.T], axis=1)
+        sums = np.stack([np.bincount(block[side], axis) for axis in left.T], axis=1)
         inverse = np.linalg.inv(total)
         spread.append(inverse + inverse @ sums.T @ sums @ inverse)
     step, information = turns[1] - turns[0], np.linalg.inv(spread[0] + spread[1])
