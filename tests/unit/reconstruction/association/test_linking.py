@@ -280,6 +280,20 @@ def test_who_runs_at_the_first_instant_is_placed_from_there_on(speed_m_s):
     assert ((result >= 0).sum(axis=0) == 2).all()
 
 
+@pytest.mark.parametrize("speed_m_s", [7.0, 9.0])
+def test_who_runs_through_the_pictures_is_found_beside_who_stands(speed_m_s):
+    """Never slower than this in sight, as in a sprint."""
+    n = 15
+    end_m = speed_m_s * STEP_S * (n - 1)
+    found, piece, time_s, person = candidates_of(
+        lines(n, ([3, 0, 1], [3, end_m, 1]), ([0, 4, 1], [0, 4, 1]))
+    )
+    found = replace(found, view_cost=2 * found.view_cost)  # as of four views
+    result = linking.link(found, piece, time_s, 4)
+    assert sorted(map(sorted, persons_of(result, person))) == [[0], [1]]
+    assert ((result >= 0).sum(axis=0) == 2).all()
+
+
 @pytest.mark.parametrize("n", [1, 2, 3])
 @pytest.mark.parametrize("people", [2, 4, 8])
 def test_all_are_known_in_takes_of_few_instants(people, n):

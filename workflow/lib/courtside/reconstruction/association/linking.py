@@ -19,6 +19,7 @@ NEWBORN, NEWBORN_S = 5, 0.5
 HOPELESS = 20.0  # histories that cost this much more than the best are dropped
 PLACE_M = 0.07  # standard deviation of a body about its prediction one instant later
 ACCELERATION_MS2 = 6.0  # of a player, for predictions over gaps
+RUN_MS = 2.0  # standard deviation of the velocity of who may run, seen at one instant only
 LARGEST_M = 4.0  # limit of the prediction's standard deviation, for persons lost for long
 WARM_S = 5.0  # at first, backwards: births take instants, and of many people one after another
 AGAIN_S = 0.1  # between the repeated instants of a short take, as usual between instants
@@ -164,6 +165,10 @@ def _exchanged(owned: NDArray, pieces: NDArray, shared: NDArray) -> NDArray:
 def _own_cost(state, offered, now_s, birth, net_y_m) -> NDArray:
     """Return (H, S, n) costs of giving each candidate to each person."""
     move = _move_cost(state, offered, now_s)
+    young = state.alive & ~state.velocity.any(axis=2)
+    if young.any():  # who stands or walks costs no more, though others may run
+        ran = _move_cost(state, offered, now_s, RUN_MS)
+        move = np.where(young[..., None], np.minimum(move, ran), move)
     if net_y_m is not None:
         sides = (state.place[..., 1:2] > net_y_m) != (offered.xyz[:, 1] > net_y_m)
         move = move + NET_CROSSED * (sides & ~offered.is_ray)
@@ -174,24 +179,30 @@ def _own_cost(state, offered, now_s, birth, net_y_m) -> NDArray:
     return np.where(state.alive[..., None], move, born) + offered.view_cost.sum(axis=1)
 
 
-def _move_cost(state: _Histories, offered: Candidates, now_s: float) -> NDArray:
+def _move_cost(
+    state: _Histories, offered: Candidates, now_s: float, unknown_ms: float = 0.0
+) -> NDArray:
     """Return (H, S, n) negative log-likelihoods of candidates about the predicted places.
 
-    A person recently seen by only one view is less certain along its ray than across.
+    A person recently seen by only one view is less certain along its ray than across. `unknown_ms`
+    is the standard deviation of the velocities.
     """
     gone_s = np.maximum(now_s - state.time_s, 0.0)[..., None]
     ahead = state.place + state.velocity * np.minimum(gone_s, COAST_S)
     off, sigma_m = _offset(ahead[:, :, None], offered.xyz, offered.direction, offered.sigma_m)
     along = (off * state.ray[:, :, None]).sum(axis=-1) ** 2
     across = np.maximum((off**2).sum(axis=-1) - along, 0.0)
-    variance = _spread_m(gone_s) ** 2 + sigma_m**2
-    blind = _spread_m(np.maximum(now_s - state.placed_s, 0.0)[..., None]) ** 2 + sigma_m**2
+    unknown_m = unknown_ms * np.minimum(gone_s, COAST_S)
+    spread_m = _spread_m(gone_s) + unknown_m
+    variance = spread_m**2 + sigma_m**2
+    blind_m = _spread_m(np.maximum(now_s - state.placed_s, 0.0)[..., None]) + unknown_m
+    blind = blind_m**2 + sigma_m**2
     blind = np.where(np.any(state.ray, axis=-1)[..., None], blind, variance)
     cosine = (state.ray @ offered.direction.T) ** 2
     # Of a place by two views, mostly one direction is uncertain. Not so with more cameras, where
     # places by two views must cost more than those by all. A ray does not measure along itself.
     loose = ~offered.is_ray & (offered.row.shape[1] == 2)
-    sure = np.where(loose, _spread_m(gone_s) ** 2, variance)
+    sure = np.where(loose, spread_m**2, variance)
     volume = 2 * np.log(sure / PLACE_M**2) + np.log(blind / PLACE_M**2)
     unmeasured = cosine * np.log(blind / PLACE_M**2) + (1 - cosine) * np.log(variance / PLACE_M**2)
     volume = volume - np.where(offered.is_ray, unmeasured, 0.0)
@@ -251,7 +262,8 @@ def _move(state: _Histories, choice: NDArray, offered: Candidates, now_s: float)
     spread = 2 * _spread_m(gone_s)
     new = ahead + np.where(born, 1.0, spread**2 / (spread**2 + sigma_m[:, None] ** 2)) * off
     speed = (new - state.place[history, slot]) / gone_s
-    velocity = np.where(gone_s > COAST_S, 0.5 * speed, old + GAIN * (speed - old))
+    gain = np.where(old.any(axis=1, keepdims=True), GAIN, 1.0)
+    velocity = np.where(gone_s > COAST_S, 0.5 * speed, old + gain * (speed - old))
     state.velocity[history, slot] = np.where(born, 0.0, velocity)
     state.place[history, slot], state.time_s[history, slot] = new, now_s
     state.born_s[history[born[:, 0]]] = now_s
