@@ -128,6 +128,12 @@ def test_timestamps_in_milliseconds_are_named(tmp_path):
         nuitrack.read(path, JOINTS, "n")
 
 
+def test_timestamps_that_a_spreadsheet_rounded_are_refused(tmp_path):
+    path = write_csv(tmp_path / "a.csv", shifted(["1.71515E+15"] * 25 * N))
+    with pytest.raises(InputError, match=r"different timestamps, found one for 100 rows; a spread"):
+        nuitrack.read(path, JOINTS, "n")
+
+
 @pytest.mark.parametrize("unit", ["cm", "mm", "in", "ft"])
 def test_a_table_in_another_unit_is_named_and_read_with_its_key(tmp_path, unit):
     header, *rows = csv_rows()

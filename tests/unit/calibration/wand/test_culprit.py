@@ -84,6 +84,19 @@ def test_two_late_cameras_are_no_single_culprit():
     assert "which agree with each other" not in line
 
 
+def test_cameras_of_which_two_at_a_time_see_the_wand_are_not_accused():
+    found = good()
+    xy = found.xy.copy()
+    for t in range(xy.shape[1]):
+        xy[[(t // 6 + 2) % 4, (t // 6 + 3) % 4], t] = np.nan
+    line = fault(replace(found, xy=xy))
+    assert line.startswith("camera c") and "which one is not clear" not in line
+    assert line.endswith(
+        "; it sees the wand too seldom together with two of the others: move the wand where three "
+        "cameras see it"
+    )
+
+
 @pytest.mark.parametrize("n_cameras", [3, 4])
 def test_markers_of_smaller_pictures_are_told_of_all_cameras(n_cameras):
     found = good(n_cameras)

@@ -7,7 +7,7 @@ import pytest
 
 from courtside.calibration.wand import calibration, quality
 from courtside.calibration.wand.calibration import Floor
-from fixtures.cameras.wands_made import LENSES, SIZES, WAND, floor_points, seen, swung
+from fixtures.cameras.wands_made import LENSES, SIZES, THREE, WAND, floor_points, seen, swung
 from virtualgym.devices import wand as simulated
 
 
@@ -102,6 +102,22 @@ def test_a_wand_of_another_length_has_a_warning_by_clicked_points():
     shorter = replace(WAND, along_m=0.98 * WAND.along_m, sigma_m=1e-3)
     warnings = summary(seen(swung()), wand=shorter, clicks=floor_points())["warnings"]
     assert any("by the clicked points; measure it" in line for line in warnings)
+
+
+@pytest.mark.parametrize("lenses", [LENSES, {}])
+@pytest.mark.parametrize(
+    ("middle_m", "length_m", "told"),
+    [(0.2, 0.6, None), (0.2, 0.605, "33.06"), (0.2055, 0.6, "34.25"), (0.2, 0.601, None)],
+)
+def test_the_middle_of_three_markers_shows_a_wrong_length(lenses, middle_m, length_m, told):
+    """The true wand has its markers at 0, 0.2 and 0.6 m."""
+    stated = replace(THREE, along_m=np.array([0.0, middle_m, length_m]), sigma_m=5e-4)
+    found = summary(seen(swung(THREE.along_m), sigma_px=0.3), lenses, stated)
+    lines = [line for line in found["warnings"] if "the middle marker" in line]
+    assert len(lines) == (told is not None)
+    for line in lines:
+        assert line.startswith(f"wand: expected the middle marker at {told} % of the length from")
+        assert "found it at 33.3" in line and "`length_m` or `middle_m` is wrong" in line
 
 
 def test_markers_that_scatter_by_several_px_have_a_warning():

@@ -69,9 +69,8 @@ def read(
     users, time_us, xyz, confidence = (_csv if kind == ".csv" else _json)(path, list(joints))
     chosen = _user(path, users, time_us)
     time_us, xyz, confidence = time_us[chosen], xyz[chosen], confidence[chosen]
-    newer = plausible.in_order(path, time_us * 1e-6)  # and the recorder repeats rows
+    newer = _in_order(path, time_us)
     time_us, confidence = time_us[newer], confidence[newer]
-    plausible.check_rate(path, time_us * 1e-6, "its timestamps must be in microseconds")
     unit = unit or UNITS[kind]
     xyz = xyz[newer] * METRES[unit] * (1.0, -1.0, 1.0)
     unseen = ~np.isfinite(xyz).all(axis=-1) | (xyz == 0).all(axis=-1)
@@ -90,6 +89,18 @@ def read(
         reason=reason.astype(np.uint8),
         performed=np.ones(len(xyz), dtype=bool),
     )
+
+
+def _in_order(path: Path, time_us: NDArray) -> NDArray:
+    """Return which rows to keep, as indices: the recorder repeats rows."""
+    newer = plausible.in_order(path, time_us * 1e-6)
+    if len(newer) < 2 <= len(time_us):
+        raise InputError(
+            f"{path}: expected rows at different timestamps, found one for {len(time_us)} rows; "
+            "a spreadsheet may have rounded them: give the file as the recorder wrote it"
+        )
+    plausible.check_rate(path, time_us[newer] * 1e-6, "its timestamps must be in microseconds")
+    return newer
 
 
 def _user(path: Path, users: NDArray, time_us: NDArray) -> NDArray:

@@ -212,25 +212,31 @@ def _check_extent(xyz: NDArray) -> None:
 
 
 def _check_middle(wand: Wand, xyz: NDArray) -> None:
-    """Raise an `InputError` if the middle one of three markers (F, 3, 3) is not where stated.
-
-    Its share of the length does not depend on the scale of the cameras.
-    """
-    if len(wand.along_m) < 3:
-        return
-    to_middle, whole = (xyz[:, k] - xyz[:, 0] for k in (1, 2))
-    share = (to_middle * whole).sum(axis=1) / (whole**2).sum(axis=1)
-    share = share[np.isfinite(share)]
-    if not len(share):
-        return
-    stated, found = float(wand.along_m[1]) / wand.length_m, float(np.median(share))
-    spread = float(np.median(np.abs(share - found)))
-    sigma = timing.MEDIAN_SIGMA * spread / np.sqrt(len(share))
+    """Raise an `InputError` if the middle one of three markers (F, 3, 3) is not where stated."""
+    stated, found, sigma = middle_share(wand, xyz)
     if abs(found - stated) > max(MIDDLE_SHARE, MIDDLE_SIGMAS * sigma):
         raise InputError(
             f"wand: expected the middle marker at {100 * stated:.1f} % of the length from the "
             f"first, found it at {100 * found:.1f} %; correct the order of `markers`, or `middle_m`"
         )
+
+
+def middle_share(wand: Wand, xyz: NDArray) -> tuple[float, float, float]:
+    """Return the middle marker's share of the length as stated and as found, and its sigma.
+
+    It does not depend on the scale of the cameras. NaN of two markers, and where (F, 3, 3) lack it.
+    """
+    if len(wand.along_m) < 3:
+        return np.nan, np.nan, np.nan
+    to_middle, whole = (xyz[:, k] - xyz[:, 0] for k in (1, 2))
+    share = (to_middle * whole).sum(axis=1) / (whole**2).sum(axis=1)
+    share = share[np.isfinite(share)]
+    if not len(share):
+        return np.nan, np.nan, np.nan
+    found = float(np.median(share))
+    spread = float(np.median(np.abs(share - found)))
+    sigma = timing.MEDIAN_SIGMA * spread / np.sqrt(len(share))
+    return float(wand.along_m[1]) / wand.length_m, found, sigma
 
 
 def _check_sync(seen: Seen, cameras: Sequence[Camera], xyz: NDArray) -> None:

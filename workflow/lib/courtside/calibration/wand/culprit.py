@@ -121,7 +121,7 @@ def _of_one(c: int, rest: Placed, seen: Seen, cameras: Sequence[Sequence[Camera]
         agreeing, tried, _ = start.resected(cameras[c], xy, xyz)
         if agreeing >= start.LEAST_AGREEING * tried and count < LOWER * agreeing:
             return f"{line}, and {agreeing} {mend}"
-    return f"{line}; {start.CHECK}"
+    return f"{line}; {start.mend(count, shown)}"
 
 
 def _changes(xy: NDArray, camera: Camera) -> Iterator[tuple[NDArray, str]]:

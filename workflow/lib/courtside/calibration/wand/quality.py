@@ -10,7 +10,7 @@ from courtside.calibration import vertical
 from courtside.calibration.court import place_checks
 from courtside.calibration.wand import timing, world
 from courtside.calibration.wand.adjustment import WRONG_SIGMAS
-from courtside.calibration.wand.calibration import Found
+from courtside.calibration.wand.calibration import Found, middle_share
 from courtside.calibration.wand.points import Seen, Wand
 from courtside.geometry import camera_fields
 from courtside.statistics.normal_errors import MEDIAN_TO_SIGMA
@@ -23,6 +23,7 @@ LATE_SIGMAS, LATE, LATE_PX = 5.0, 0.03, 1.0
 MOST_WRONG = 30.0  # %, of a camera's markers; of a right one it is 0 to a few
 LEAST_PATH = 0.3  # extent of the path in a picture of an unknown lens, of the diagonal
 LONGER_SIGMAS = 4.0  # error of the stated length by clicked points, in its standard deviations
+SHARE_SIGMAS = 3.0  # error of the middle marker, in standard deviations
 MOST_SIGMA_PX = 3.0  # of a marker
 
 
@@ -121,7 +122,22 @@ def _warnings(found: Found, wand: Wand) -> list[str]:
             f"{1000 * wand.length_m * np.exp(longer):.1f} mm by the clicked points; measure it "
             "between the markers' centres"
         )
-    return lines + _hanging(found)
+    return lines + _middle(found, wand) + _hanging(found)
+
+
+def _middle(found: Found, wand: Wand) -> list[str]:
+    """Return a warning if the middle one of three markers shows that a stated length is wrong.
+
+    The sigma of the length is also that of the middle marker.
+    """
+    stated, share, sigma = middle_share(wand, found.xyz)
+    if not abs(share - stated) > SHARE_SIGMAS * np.hypot(sigma, wand.sigma_m / wand.length_m):
+        return []
+    return [
+        f"wand: expected the middle marker at {100 * stated:.2f} % of the length from the first, "
+        f"found it at {100 * share:.2f} %: `length_m` or `middle_m` is wrong, and with `length_m` "
+        "all lengths; measure both between the markers' centres"
+    ]
 
 
 def _hanging(found: Found) -> list[str]:

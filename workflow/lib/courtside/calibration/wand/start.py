@@ -35,6 +35,10 @@ LEAST_SINE = 0.05  # ASSUME: of the angle between rays (3 degrees), for enough p
 PAIRS = 3  # pairs of cameras that are tried, those with most common frames
 HOW = "move it through the views of all cameras, near and far, high and low, in all directions"
 CHECK = "check its clock, that no markers are exchanged, and that its video is not mirrored"
+SELDOM = (
+    "it sees the wand too seldom together with two of the others: move the wand where three "
+    "cameras see it"
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,15 +114,22 @@ def _completed(first: _Pair, seen: Seen, cameras: Sequence[Sequence[Camera]]) ->
         count, shown, camera = max(tried, key=lambda one: one[0])
         share = count / max(shown, 1)
         if count < max(FEWEST_FRAMES, LEAST_AGREEING * shown):
+            remedy = mend(count, shown)
             fault = (
                 f"camera {camera.name}: expected {FEWEST_FRAMES} markers or more, and "
                 f"{100 * LEAST_AGREEING:.0f} %, to agree with the other cameras, found {count} of "
-                f"{shown}; {CHECK}"
+                f"{shown}; {remedy}"
             )
+            accused = camera.name if remedy == CHECK else ""
             # Worse than any start with all cameras.
-            return Placed(posed, share - 1, first.spread, fault, camera.name)
+            return Placed(posed, share - 1, first.spread, fault, accused)
         posed[camera.name], least = camera, min(least, share)
     return Placed(posed, least, first.spread)
+
+
+def mend(agreeing: int, shown: int) -> str:
+    """Return what to do about a camera of whose markers `shown` to others too few agree."""
+    return SELDOM if LEAST_AGREEING * shown <= agreeing < FEWEST_FRAMES else CHECK
 
 
 def _shared(seen: Seen) -> NDArray:
