@@ -53,6 +53,18 @@ def test_feet_on_the_rests_of_a_wheelchair_do_not_stand(m_s):
     assert steps.empty
 
 
+def test_feet_that_go_far_by_small_steps_stand():
+    """Somebody who waits moves each foot by 4 cm once a second: 0.8 m in 20 s."""
+    points, _ = walking_feet.record(walking_feet.gait(1), 20.0)
+    standing = points.xyz[:, :1] + np.random.default_rng(0).normal(0, 0.004, points.xyz.shape)
+    time_s = points.time_s[:, None, None]
+    went_m = 0.04 * (np.floor(time_s) + np.clip(time_s % 1 / 0.2, 0, 1))
+    contacts, *_ = feet.find(
+        replace(points, xyz=standing + np.array([0, 1, 0]) * went_m), walking_feet.CUTOFFS
+    )
+    assert (contacts.probability > 0.5).mean() > 0.7
+
+
 def test_a_heel_that_is_hidden_for_a_while_makes_no_lunges():
     points, _ = walking_feet.record(walking_feet.gait(), 12.0)
     xyz, heel = points.xyz.copy(), points.joints.tolist().index("left_heel")

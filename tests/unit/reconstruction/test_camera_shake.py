@@ -377,6 +377,14 @@ def test_a_zoom_that_steady_leaves_in_is_told():
     assert "leave it out" in zoomed and "\n" not in zoomed
 
 
+def test_a_turn_that_enlarges_the_picture_is_no_zoom():
+    """A turn by 3.5 degrees enlarges the picture by 0.27 %, as `fit_turn` finds it."""
+    shake = table(tremor_px=0.2)
+    shake.loc[150:, "shift_x_px"] += np.radians(3.5) * CAMERA_KNOCKS.K[0, 0]
+    shake.loc[150:, "zoom_percent"] = 0.27
+    assert "zoom" not in "".join(camera_shake.say(CAMERA_KNOCKS, shake, PLAYER))
+
+
 def test_knocks_are_added_to_shake():
     vectors, turn = turns(30), np.array([0.004, -0.003, 0.002])
     more = [Rotation.from_rotvec(turn * (at >= 15)) for at in range(30)]

@@ -202,6 +202,8 @@ def test_rows_in_zstandard_are_read_as_the_sdk_packs_them():
     assert np.abs(picture.astype(int) - 255).max() <= 1
     with pytest.raises(ValueError, match="found rows of 20 and 80 bytes"):
         rosbag.colour(SimpleNamespace(format="YUYV; zstd; 8x5 step=20", data=data))
+    with pytest.raises(ValueError, match="a packed picture that does not open"):
+        rosbag.colour(SimpleNamespace(format="YUYV; zstd; 8x4 step=20", data=data[::-1]))
 
 
 def test_compressed_pictures_are_decoded():

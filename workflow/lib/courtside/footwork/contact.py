@@ -28,9 +28,10 @@ TIPTOE, STRICT = (0.01, 0.02), (0.0, STILL_M)
 SWING_M_S = (0.6, 1.5, 4.0)  # of a swinging point: shuffling, stepping and running alike
 SWING_M, SWING_SD_M = 0.05, 0.05  # its height
 RAISED_M_S, RAISED_M, RAISED_SD_M = 0.9, 0.04, 0.04  # of the other end of a tilted foot
-# ASSUME: a foot that goes further than this without a swing does not stand: it rides on wheels, or
-# is dragged. In the study's takes it goes 0.35 m at most.
-FURTHEST_M = 0.5
+# ASSUME: a foot that goes further than this without a swing, and faster than the small steps of
+# somebody who waits, does not stand: it rides on wheels, or is dragged. In the study's takes it
+# goes 0.35 m at most.
+FURTHEST_M, RIDES_M_S = 0.5, 0.15
 # Mean durations of states, s, and where they go: swing, heel, flat, toe.
 RATES = np.array(
     [
@@ -47,7 +48,7 @@ def probability(track: Track) -> NDArray:
     """Return posterior probabilities (N, 3) of contact of the foot, its heel and its toe.
 
     By the model `TIPTOE`, and around flights that it alone misses by the model `STRICT`; 0 while
-    the foot goes further than `FURTHEST_M`.
+    the foot goes further than `FURTHEST_M`, faster than `RIDES_M_S`.
     """
     found, strict = _posterior(track, TIPTOE), _posterior(track, STRICT)
     flies = np.concatenate([[False], strict[:, 0] <= 0.5, [False]])
@@ -60,7 +61,8 @@ def probability(track: Track) -> NDArray:
             around = slice((last[at] + start) // 2, (stop + following[at + 1]) // 2)
             chosen[around] = strict[around]
     for start, stop in filtering.runs(chosen[:, 0] > 0.5):
-        if np.linalg.norm(np.ptp(track.place[start:stop, :, :2].mean(axis=1), axis=0)) > FURTHEST_M:
+        went_m = np.linalg.norm(np.ptp(track.place[start:stop, :, :2].mean(axis=1), axis=0))
+        if went_m > max(FURTHEST_M, RIDES_M_S * np.ptp(track.time_s[start:stop])):
             chosen[start:stop] = 0.0
     return chosen
 

@@ -95,7 +95,7 @@ def correct(
     joint keeps its place and its offset. The square of `sigma_m`, times the person's size, is added
     to the `covariance_2d` of all these joints, moved or not, and taken out of `covariance_network`,
     which contains it: `keep` must not take a joint that could not be corrected for the more certain
-    one. Where the trunk leans further than in the fit, `LEANING_M` is added, too.
+    one. Where the trunk leans further than in the fit, `LEANING_M` is added in the same way.
     """
     return _corrected(points, table, offsets(points, table, sex_of, cameras), _sizes(points))
 
@@ -114,7 +114,8 @@ def _corrected(
     """
     covariance, network = points.covariance_2d.copy(), points.covariance_network.copy()
     tilt_deg = np.nan_to_num(offset_vectors.tilt_deg(points.xyz, points.joints.tolist()))
-    leaning = np.square(LEANING_M * np.interp(tilt_deg, LEANING_DEG, (0.0, 1.0)))[..., None, None]
+    leaning_m = LEANING_M * sizes[:, None] * np.interp(tilt_deg, LEANING_DEG, (0.0, 1.0))
+    leaning = np.square(leaning_m)[..., None, None]
     for joint, side in product(table["joint"].unique(), SIDES):
         at = list(points.joints).index(f"{side}_{joint}")
         sigma_m = table.loc[table["joint"] == joint, "sigma_m"].iloc[0]

@@ -62,11 +62,15 @@ def repeated(sessions: Iterable[Session]) -> Iterator[str]:
             continue
         if here is there or (here.name, there.name) not in told:
             where = "" if here is there else f" of {there.file}"
-            yield (
+            line = (
                 f"{here.file}: takes.{one.name} and takes.{other.name}{where}: the same "
-                f"{', '.join(same)}, and their times overlap: if they are two recordings, correct "
-                "one path; if one video has both, state a `trim_s` of each"
+                f"{', '.join(same)}{{}}: if they are two recordings, correct one path"
             )
+            if all(key.startswith("devices.") for key in same):  # read completely
+                yield line.format("")
+            else:
+                part = "; if one video has both, state a `trim_s` of each"
+                yield line.format(", and their times overlap") + part
         told.add((here.name, there.name))
 
 

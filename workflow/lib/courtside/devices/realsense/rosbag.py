@@ -222,7 +222,10 @@ def _decompressed(message: Any) -> SimpleNamespace | None:
     found = ROWS_IN_ZSTD.fullmatch(message.format)
     if not found:
         return None
-    raw = zstd.ZstdDecompressor().decompress(bytes(message.data), LARGEST_MESSAGE_BYTES)
+    try:
+        raw = zstd.ZstdDecompressor().decompress(bytes(message.data), LARGEST_MESSAGE_BYTES)
+    except zstd.ZstdError as error:
+        raise ValueError(f"a packed picture that does not open: {error}") from error
     width, height, step = map(int, found.groups()[1:])
     data = np.frombuffer(raw, dtype=np.uint8)
     return SimpleNamespace(encoding=found[1], width=width, height=height, step=step, data=data)

@@ -304,7 +304,7 @@ def _join_of(found: People) -> Change:
             met = np.nanmin(apart) <= MEET_M
             if away_s > (AWAY_S if met else GAP_S):
                 return middle_s
-            if not met and np.ptp(both_s) > GAP_S:
+            if not met and len(both_s) * np.median(np.diff(found.time_s)) > GAP_S:
                 raise InputError(
                     f"{after.where}: expected the person of {before.where}, found another one, "
                     f"never nearer than {np.nanmin(apart):.1f} m in between; correct one of them, "
