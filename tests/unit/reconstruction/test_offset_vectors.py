@@ -110,7 +110,7 @@ def test_names_are_those_of_the_vectors(joint):
 
 @pytest.mark.parametrize("joint", skeleton.LIMBS)
 def test_vectors_turn_with_body_and_cameras(joint):
-    turn = Rotation.from_rotvec([0.3, -2.4, 0.7]).as_matrix()  # nearly upside down
+    turn = Rotation.from_rotvec([0, 0, 0.7]).as_matrix()  # about the world's z, as `upright`
     cameras, xyz = scene.ring(3), persons()
     turned = [
         Camera(
@@ -122,6 +122,24 @@ def test_vectors_turn_with_body_and_cameras(joint):
     before, after = every(xyz, joint, "left", cameras), every(xyz @ turn.T, joint, "left", turned)
     for name, vector in before.items():
         np.testing.assert_allclose(after[name], vector @ turn.T, atol=1e-9, err_msg=name)
+
+
+@pytest.mark.parametrize(
+    ("tilt_deg", "off_deg"), [(0, 0), (29, 29), (45, 15), (61, 0), (120, 0), (180, 0)]
+)
+def test_upright_turns_with_who_leans_further_than_the_fit(tilt_deg, off_deg):
+    xyz = walker.body(1)[0]
+    shoulders, hips = (
+        sum(xyz[JOINTS.index(f"{side}_{part}")] for side in ("left", "right"))
+        for part in ("shoulder", "hip")
+    )
+    trunk, _ = Rotation.align_vectors([[0, 0, 1.0]], [shoulders - hips])
+    turn = Rotation.from_euler("x", tilt_deg, degrees=True) * trunk
+    found = offset_vectors.of_body(turn.apply(xyz)[None], JOINTS, "left", "hip")
+    upright, up = (found[name][0] / np.linalg.norm(found[name][0]) for name in ("upright", "up"))
+    assert np.linalg.norm(found["upright"][0]) == pytest.approx(offset_vectors.LENGTH_M)
+    assert np.degrees(np.arccos(min(1.0, upright @ up))) == pytest.approx(off_deg, abs=0.01)
+    assert (upright[2] > 1 - 1e-9) == (tilt_deg <= 30)
 
 
 @pytest.mark.parametrize("joint", skeleton.LIMBS)

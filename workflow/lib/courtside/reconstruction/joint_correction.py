@@ -25,10 +25,10 @@ NORMAL_MEDIAN = 1.5382  # median length of a vector of three standard normal num
 # ASSUME: skeletons below this frequency tell from where joints are seen. On `players-dev`, errors
 # of position and speed are the same with 3 Hz as without this filter; with 2 Hz they are larger.
 VIEW_HZ = 3.0
-# Trunks of the development bodies lean by 30 degrees at most. ASSUME: beyond twice that, offsets
-# are off by this more (standard deviation per axis): with it, 90 % ellipsoids of two rendered
-# bodies in a handstand, a cartwheel, lying and in push-ups hold 86 to 98 %.
-LEANING_M, LEANING_DEG = 0.02, (30.0, 60.0)
+# ASSUME: where trunks lean further than in the fit, offsets are off by this more (standard
+# deviation per axis): with it, 90 % ellipsoids of two rendered bodies in a handstand, a cartwheel,
+# lying and in push-ups hold 86 to 99 %.
+LEANING_M = 0.02
 SIDES = ("left", "right")
 COLUMNS = ["joint", "vector", "share", "sigma_m", "n"]
 REMAKE = "make it again with the rule evaluate_joint_offsets"
@@ -114,7 +114,7 @@ def _corrected(
     """
     covariance, network = points.covariance_2d.copy(), points.covariance_network.copy()
     tilt_deg = np.nan_to_num(offset_vectors.tilt_deg(points.xyz, points.joints.tolist()))
-    leaning_m = LEANING_M * sizes[:, None] * np.interp(tilt_deg, LEANING_DEG, (0.0, 1.0))
+    leaning_m = LEANING_M * sizes[:, None] * np.interp(tilt_deg, offset_vectors.LEANING_DEG, (0, 1))
     leaning = np.square(leaning_m)[..., None, None]
     for joint, side in product(table["joint"].unique(), SIDES):
         at = list(points.joints).index(f"{side}_{joint}")

@@ -35,7 +35,7 @@ BY_SEX = {"hip": TRUNK}
 SIGN: dict[str | None, float] = {"m": 1.0, "f": -1.0}  # for others, the mean of both
 # Lines that also count by their direction: if a part of the arm looks too short, the elbow is off.
 DIRECTED = {"elbow": (("shoulder", "elbow"), ("elbow", "wrist"))}
-# Of directions, for an adult: about a limb, any unit will do.
+# Of directions and of the vector along the world's z, for an adult: about a limb, any unit will do.
 LENGTH_M = 0.3
 TRUNK_M = 0.51  # mean of the eight development bodies' trunks, as the default network sees them
 # ASSUME: sizes of adults, as a network sees them, are all 1; beyond the outer two, a size counts as
@@ -44,6 +44,9 @@ TRUNK_M = 0.51  # mean of the eight development bodies' trunks, as the default n
 ADULTS = (0.76, 0.88, 1.12, 1.28), (0.76, 1.0, 1.0, 1.28)
 # Products of two components of the direction of view; the third square follows from the others.
 SQUARES = (("out", "out"), ("up", "up"), ("out", "forward"), ("up", "forward"), ("out", "up"))
+# Trunks of the development bodies lean by the first at most. ASSUME: from the second on, offsets
+# turn with the body: in a handstand, what is along z and along the trunk would add up.
+LEANING_DEG = (30.0, 60.0)
 SEEN = "seen "  # begins the names of vectors that depend on the view
 # ASSUME: weight of a view that was not accepted, over one that was: enough for a joint between two
 # gaps, where no view was accepted, and nothing beside an accepted one.
@@ -137,8 +140,8 @@ def of_body(
 
     `xyz` (..., J, 3) m are skeletons in the world with the named `joints` (J,); `joint` is one of
     `skeleton.LIMBS`, of the `side` left or right; `sex` is "m", "f" or None. Trunk axes have the
-    trunk's length (`out`: to the joint's own side; `up`; `forward`); `upright` is `up` with the
-    length `LENGTH_M` (not the world's z: who is upside down would have offsets of nobody).
+    trunk's length (`out`: to the joint's own side; `up`; `forward`); `upright` is the world's z
+    for trunks that lean as far as those of the fit (`LEANING_DEG`), and the trunk's axis beyond.
     There are lines between joints of the own side (`hip-knee`) and of the other (`other hip-knee`),
     if the network has these joints; `way elbow-wrist` and the like, lines of `DIRECTED` with length
     `LENGTH_M`; `lean up forward` and the like, the trunk's axis `forward` times the component along
@@ -147,7 +150,7 @@ def of_body(
     place = dict(zip(joints, np.moveaxis(xyz, -2, 0), strict=True))
     axes, length = _trunk(place, side)
     found = {name: axes[name] * length for name in TRUNK}
-    found["upright"] = LENGTH_M * axes["up"]
+    found["upright"] = LENGTH_M * _upright(axes["up"])
     other = {"left": "right", "right": "left"}[side]
     found |= _lines(place, side, BONES[joint])
     if joint in ACROSS:
@@ -237,6 +240,18 @@ def _trunk(place: dict[str, NDArray], side: str) -> tuple[dict[str, NDArray], ND
     left = np.cross(along / length, forward)
     out = left if side == "left" else -left
     return dict(zip(TRUNK, (out, along / length, forward), strict=True)), length
+
+
+def _upright(up: NDArray) -> NDArray:
+    """Return the world's z, or where trunks `up` (..., 3) lean further than in the fit, their axes.
+
+    In between it turns from one to the other.
+    """
+    tilt = np.arccos(np.clip(up[..., 2:], -1.0, 1.0))
+    first, last = np.radians(LEANING_DEG)
+    off = np.interp(tilt, (0.0, first, last), (0.0, first, 0.0))
+    share = np.sin(off) / np.maximum(np.sin(tilt), np.finfo(float).tiny)
+    return np.cos(off) * up + share * (np.array([0.0, 0.0, 1.0]) - np.cos(tilt) * up)
 
 
 def _lines(place, side, bones) -> dict[str, NDArray]:
