@@ -50,8 +50,9 @@ def _warn(points: Keypoints3D, *, known: bool) -> None:
     if not known:
         there = any(skeleton.heel_and_toe(names, side) for side in footwork.FEET)
         log.logger.warning(
-            "expected heels and toes of at least one foot in %d frames in a row, found none: "
+            "%s: expected heels and toes of at least one foot in %d frames in a row, found none: "
             "no contacts; %s",
+            ", ".join(points.person_id),
             tracks.LEAST_FRAMES,
             "film people for longer, with their feet in view of two cameras"
             if there

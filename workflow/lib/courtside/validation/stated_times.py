@@ -62,16 +62,19 @@ def repeated(sessions: Iterable[Session]) -> Iterator[str]:
             continue
         if here is there or (here.name, there.name) not in told:
             where = "" if here is there else f" of {there.file}"
-            line = (
+            yield (
                 f"{here.file}: takes.{one.name} and takes.{other.name}{where}: the same "
-                f"{', '.join(same)}{{}}: if they are two recordings, correct one path"
+                f"{', '.join(same)}{_advice(same)}"
             )
-            if all(key.startswith("devices.") for key in same):  # read completely
-                yield line.format("")
-            else:
-                part = "; if one video has both, state a `trim_s` of each"
-                yield line.format(", and their times overlap") + part
         told.add((here.name, there.name))
+
+
+def _advice(same: Iterable[str]) -> str:
+    """Return what to do about the same recordings, by their keys; `trim_s` does not cut devices."""
+    paths = ": if they are two recordings, correct one path"
+    if all(key.startswith("devices.") for key in same):
+        return paths
+    return f", and their times overlap{paths}; if one video has both, state a `trim_s` of each"
 
 
 def _recordings(take: Take) -> dict[str, str]:
