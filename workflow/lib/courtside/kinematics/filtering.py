@@ -47,7 +47,7 @@ def fill_gaps(points: Keypoints3D, max_gap_s: float) -> Keypoints3D:
 
 def _across(
     time_s: NDArray, line: NDArray, known: NDArray, start: int, near: int, far: int
-) -> scipy.interpolate.PchipInterpolator:
+) -> "scipy.interpolate.PchipInterpolator":
     """Return a spline across the gap from `start` on, through means of near and far frames.
 
     `known` are the indices of the known frames of the line (T, 3), on both sides. `near` and `far`

@@ -1,6 +1,7 @@
 """Changes of a measure from session to session, and the tables that hold it."""
 
 from collections.abc import Mapping, Sequence
+from statistics import NormalDist
 
 import numpy as np
 import pandas as pd
@@ -11,7 +12,7 @@ from courtside.study.errors import InputError, StrPath
 # What must not change unnoticed; the definition is checked beside them.
 CONDITIONS = ("model", "calibration")
 LEVEL = 0.95  # of detectable changes, as is usual
-FACTOR = scipy.special.ndtri(0.5 + LEVEL / 2)  # of the smallest detectable change of single takes
+FACTOR = NormalDist().inv_cdf(0.5 + LEVEL / 2)  # of the smallest detectable change of single takes
 REAL, WITHIN, UNTOLD, MIXED = "real", "within", "untold", "mixed"
 VALUES = [
     "person", "measure", "unit", "session", "order", "model", "calibration", "definition",
