@@ -15,7 +15,7 @@ def main(recording, video, frames_csv, camera_toml, *, device, crf):
     table = open_depth.colour_times(recording, found)
     pictures = log.progress(found.colour_frames(), len(table.time_s), f"{device}: frames")
     images = (image for _, image in pictures)
-    writer.write_video(video, images, table.rate_hz, crf=crf)
+    writer.write_video(video, images, table.rate_hz, crf=crf, effort="veryfast")
     frame_times.write(frames_csv, table)
     camera.write_toml(camera_toml, [found.colour], source=f"recorded by {device}")
 

@@ -11,6 +11,7 @@ N_FEATURES = 4000  # ORB features that find a large movement
 N_CORNERS = 600  # corners that measure it
 CELL = 0.02  # least distance of corners, picture widths: people get no more than their area
 CONTRAST = 0.01  # picture widths: scale at which brightness and contrast are normalised
+BLUR_STEPS = 3  # pixels of the lower resolution in a standard deviation of that scale
 MIN_CONTRAST = 4.0  # grey levels; flatter surroundings are not amplified further
 WINDOW_PX = 21  # of a tracked corner
 MAX_RETURN_PX = 0.2  # a corner tracked forth and back must return this close
@@ -89,10 +90,20 @@ def _even_contrast(image: NDArray) -> NDArray:
     """Return grey values with normalised brightness and contrast, against exposure changes."""
     grey = cv2.cvtColor(image, cv2.COLOR_BGR2GRAY).astype(np.float32)
     sigma = CONTRAST * grey.shape[1]
-    high = grey - cv2.GaussianBlur(grey, (0, 0), sigma)
-    contrast = np.sqrt(cv2.GaussianBlur(high * high, (0, 0), 2 * sigma))
+    high = grey - _blurred(grey, sigma)
+    contrast = np.sqrt(_blurred(high * high, 2 * sigma))
     scaled = 128 + 40 * high / np.maximum(contrast, MIN_CONTRAST)
     return np.clip(scaled, 0, 255).round().astype(np.uint8)
+
+
+def _blurred(grey: NDArray, sigma: float) -> NDArray:
+    """Return nearly a Gaussian blur, at a lower resolution: a tenth of the time at 1080 lines."""
+    step = max(1, int(sigma / BLUR_STEPS))
+    height, width = grey.shape
+    small = (-(-width // step), -(-height // step))
+    reduced = cv2.resize(grey, small, interpolation=cv2.INTER_AREA)
+    reduced = cv2.GaussianBlur(reduced, (0, 0), sigma / step)
+    return cv2.resize(reduced, (width, height), interpolation=cv2.INTER_LINEAR)
 
 
 def _roughly(before: NDArray, after: NDArray) -> list[NDArray]:
