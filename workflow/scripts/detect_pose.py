@@ -34,6 +34,9 @@ def main(
         )
     options["clothing"] = Clothing(joints)
     track, shown = follow(frames, (detector, landmarks), paths.background, **options)
+    track, doubt = tracking.limited(track, model, decoder.get("full_score", 1))
+    if doubt:
+        log.tell(f"{camera}: {doubt}", "config/README.md, Your own network")
     if shown:
         report(f"{camera}: {paths.background}", shown, has_static)
     found = keypoints.Keypoints2D(

@@ -1,5 +1,7 @@
 """Following one person: a stand-in network that answers from the picture itself."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -167,6 +169,16 @@ def test_joints_outside_the_picture_say_so():
     ]
     assert np.isnan(track.xy[0, 0, 2]).all()
     assert np.isnan(track.score[0, 0, 2])
+
+
+def test_scores_up_to_one_stay_and_missing_ones_are_not_counted():
+    track, _ = follow([20, None])
+    same, doubt = tracking.limited(track, "any", 1)
+    np.testing.assert_array_equal(same.score, track.score)
+    high = replace(track, score=track.score * 4)
+    cut, doubt = tracking.limited(high, "any", 1)
+    assert "5 % of its scores exceed 3.6" in doubt
+    np.testing.assert_array_equal(cut.score[0], [[1, 1, np.nan], [np.nan] * 3])
 
 
 @pytest.mark.parametrize("finds", [True, False])

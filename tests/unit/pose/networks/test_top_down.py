@@ -1,14 +1,16 @@
 """Networks made for tests find blobs: crop, decoding and the way back place them to 0.1 px."""
 
 import json
+import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import cv2
 import numpy as np
 import pytest
 import yaml
 
-from courtside.pose import detector, open_network
+from courtside.pose import detector, open_network, tracking
 from courtside.pose.conversion import tflite_onnx
 from courtside.pose.detector import Region
 from courtside.pose.networks import top_down
@@ -31,8 +33,8 @@ def image(points=POINTS, sigma=9.0):
     return onnx_files.picture(points, (320, 260), sigma)
 
 
-def simcc(tmp_path, shift=0, joints=JOINTS, **options):
-    path = onnx_files.simcc(tmp_path / "n.onnx", (96, 128), shift=shift)
+def simcc(tmp_path, shift=0, joints=JOINTS, white=1, **options):
+    path = onnx_files.simcc(tmp_path / "n.onnx", (96, 128), shift=shift, full_score=white)
     return open_network.landmark_network(path, joints, decoder="simcc", input=SIMCC, **options)
 
 
@@ -55,6 +57,41 @@ def test_simcc_places_points(tmp_path):
     box = pose.region.box
     assert box == pytest.approx(np.ptp(TRUTH, axis=0) * 1.25 + 1, abs=0.3)
     np.testing.assert_allclose(network.estimate(image(sigma=5.0), pose.region).xy, TRUTH, atol=0.1)
+
+
+def followed(network):
+    """Return the track of three joints that are seen less and less well, and its warning."""
+    picture = (image(sigma=5.0) * [1, 0.8, 0.4]).astype(np.uint8)
+    finder = SimpleNamespace(detect=lambda _: [BOX])
+    frames = [(at / 30, picture) for at in range(3)]
+    track = tracking.track_person(frames, finder, network, min_presence=0.4, redetect=False)
+    return tracking.limited(track, "rtmw", network.maps.full_score)
+
+
+def test_scores_are_shares_of_the_full_score(tmp_path):
+    """RTMW's scores reach 5 and more (Tau-J/rtmlib#42); cut at 1, all joints would be certain."""
+    usual, doubt = followed(simcc(tmp_path))
+    assert not doubt
+    assert usual.score[0].max(axis=0) == pytest.approx([0.95, 0.76, 0.38], rel=0.1)
+    cut, doubt = followed(simcc(tmp_path, white=5))
+    assert (cut.score == 1).all()
+    advised = float(re.search(r"set `full_score: ([\d.]+)` of rtmw", doubt)[1])
+    assert advised == pytest.approx(5 * usual.score.max(), rel=0.01)
+    for full_score in (5, advised):
+        track, doubt = followed(simcc(tmp_path, white=5, full_score=full_score))
+        assert not doubt
+        np.testing.assert_allclose(track.xy, usual.xy, atol=0.05)
+        np.testing.assert_allclose(track.score, usual.score * 5 / full_score, atol=0.01)
+    _, doubt = followed(simcc(tmp_path, white=5, full_score=2))
+    assert f"set `full_score: {advised}` of rtmw" in doubt
+
+
+def test_a_person_is_there_by_scores_up_to_one(tmp_path):
+    """One shoulder of a high score does not show a person who is not there."""
+    network = simcc(tmp_path, white=5)
+    pose = network.estimate(image(POINTS[:2], sigma=5.0), BOX)
+    assert pose.score[1] > 4
+    assert pose.presence == pytest.approx(0.5)
 
 
 @pytest.mark.parametrize("layout", ["nchw", "nhwc"])

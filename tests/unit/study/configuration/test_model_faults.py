@@ -41,9 +41,11 @@ def without(entry, key):
 
 
 def test_own_networks_are_read(folder):
-    study = load(folder, MODEL | {"detector": "own", "split": 2, "flip_test": True})
+    own = {"detector": "own", "split": 2, "flip_test": True, "full_score": 4.9}
+    study = load(folder, MODEL | own)
     assert study.models["own"].detector.network.path == "data/n.onnx"
     assert study.models["own"].decoder_options()["split"] == 2
+    assert study.models["own"].decoder_options()["full_score"] == 4.9
     assert load(folder).models["own"].detector.decoder == "blazepose"
     assert load(folder, ONE).models["own"].detector is None
 
@@ -55,6 +57,8 @@ def test_own_networks_are_read(folder):
         (MODEL | {"detector": "nobody"}, "own.detector: expected one of ['blazepose-detector'"),
         (MODEL | {"cells": "udp"}, "own.cells: expected none with the decoder simcc"),
         (MODEL | {"decoder": "heatmaps", "split": 2}, "own.split: expected none"),
+        (MODEL | {"full_score": 0}, "own.full_score: expected at least 0.01, found 0"),
+        (ONE | {"full_score": 5}, "own.full_score: expected none with the decoder rtmo"),
         (without(MODEL, "input"), "own.input: expected with the decoder simcc, found none"),
         (without(MODEL, "landmarks"), "missing ['landmarks']"),
         (MODEL | {"input": without(GIVEN, "padding")}, "own.input: expected `padding`"),

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from courtside.devices import frame_numbers
 from courtside.records.keypoints import missing_reason
-from courtside.records.keypoints.keypoints import Keypoints2D
+from courtside.records.keypoints.keypoints import Keypoints2D, full_score
 from courtside.records.keypoints.skeleton import Skeleton
 from courtside.study.errors import RAISED_BY_READERS, InputError, StrPath, reading, require_type
 from courtside.study.execution import log
@@ -107,18 +107,12 @@ def _check_size(
         )
 
 
-# ASSUME: networks that score from 0 to 1 score one point in twenty no higher than this.
-LOGIT = 1.2
-
-
 def _up_to_one(folder: StrPath, score: NDArray) -> NDArray:
     """Return scores from 0 to 1; the largest of unlimited ones, such as RTMW's, count as 1."""
-    high = float(np.percentile(seen, 95)) if (seen := score[np.isfinite(score)]).size else 0.0
-    if high > LOGIT:
+    if (high := full_score(score)) > 1:
         message = "%s: scores are not limited to 1: divided by %.2f, which 5 %% of them exceed"
         log.logger.info(message, folder, high)
-        score = score / high
-    return np.clip(score, 0, 1)
+    return np.clip(score / high, 0, 1)
 
 
 # Skeletons by their number of points.

@@ -40,7 +40,7 @@ class Pose:
     """One person in one picture."""
 
     xy: NDArray  # (J, 2): joints, px of the picture
-    score: NDArray  # (J,): confidence of each joint, 0 to 1
+    score: NDArray  # (J,): confidence of each joint, from 0 to 1, or more: see `tracking.limited`
     # (J, 3): the network's own guess from the hip centre, m, axes as in cam; NaN without one.
     xyz_in_body: NDArray
     presence: float  # confidence that the region shows a person at all, 0 to 1

@@ -82,11 +82,12 @@ def _maps(
     given: Input,
     *,
     split: float = 2.0,
+    full_score: float = 1.0,
     cells: str = "corner",
     refine: str = "parabola",
 ) -> Maps:
     if decoder == "simcc":
-        return SimCC(n_joints, given.size, split)
+        return SimCC(n_joints, given.size, split, full_score)
     return HeatMaps(n_joints, given.layout, cells, refine)
 
 

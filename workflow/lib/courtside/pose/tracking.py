@@ -1,14 +1,14 @@
 """Follow the one person whom a camera films."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from courtside.pose.detector import LandmarkNetwork, PersonDetector, Pose, Region
 from courtside.pose.foreground import Box
-from courtside.records.keypoints import missing_reason
+from courtside.records.keypoints import keypoints, missing_reason
 
 # The detector looks at the foreground box times this. ASSUME: what the box misses of a body lies
 # within.
@@ -74,6 +74,21 @@ def track_person(
         rows.append(as_row(found, landmarks.n_joints, image.shape))
     xy, score, reason, xyz = (np.stack(column)[None] for column in zip(*rows, strict=True))
     return Track(np.array(times), xy, score, reason, xyz, np.full((1, len(times), 2, 3), np.nan))
+
+
+def limited(track: Track, model: str, full_score: float) -> tuple[Track, str]:
+    """Return a track with scores up to 1, and a warning if many were higher.
+
+    `full_score` is that of the network `model` in `models.yaml`, by which they were divided.
+    """
+    found, doubt = keypoints.full_score(track.score), ""
+    if found > 1:
+        doubt = (
+            f"{model}: 5 % of its scores exceed {found * full_score:.3g}, and all from "
+            f"{full_score:g} on count as 1, so that doubtful joints count as much as certain ones; "
+            f"set `full_score: {found * full_score:.3g}` of {model} in config/models.yaml"
+        )
+    return replace(track, score=np.clip(track.score, 0, 1)), doubt
 
 
 def _largest(

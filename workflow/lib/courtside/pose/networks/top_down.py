@@ -78,11 +78,16 @@ class HeatMaps:
 
 @dataclass(frozen=True)
 class SimCC:
-    """One line of bins for x and one for y per joint, (1, J, N) each; `split` bins per pixel."""
+    """One line of bins for x and one for y per joint, (1, J, N) each; `split` bins per pixel.
+
+    Heights of peaks are scores as shares of `full_score`. Some networks have no highest one: what
+    exceeds 1 is kept, for `tracking.limited` to see.
+    """
 
     n_joints: int
     size: Sequence[int]  # of the input, px
     split: float
+    full_score: float
     ends_inside = False
 
     def read(self, network: Network, outputs: Sequence[NDArray]) -> list[NDArray]:
@@ -111,7 +116,8 @@ class SimCC:
         """Return the joints, and the lower peak of their two lines as the score."""
         found = [peaks.lines(one) for one in arrays]
         fraction = [bins / one.shape[1] for (bins, _), one in zip(found, arrays, strict=True)]
-        return np.stack(fraction, axis=1), np.clip(np.minimum(found[0][1], found[1][1]), 0, 1)
+        height = np.minimum(found[0][1], found[1][1])
+        return np.stack(fraction, axis=1), np.maximum(height, 0) / self.full_score
 
 
 # The outputs of a network as arrays that can be averaged, and what they mean.
@@ -172,7 +178,7 @@ class TopDown(LandmarkNetwork):
             xy=xy,
             score=score,
             xyz_in_body=np.full((len(xy), 3), np.nan),
-            presence=float(score[self.presence_joints].mean()),
+            presence=float(np.minimum(score[self.presence_joints], 1).mean()),
             region=around(xy) if self.padding is None else around_person(xy, score),
         )
 

@@ -1,6 +1,6 @@
 """Skeletons, 2D and 3D keypoints, people, reasons of missing points.
 
-keypoints: `read_2d`, `write_2d`, `read_3d`, `write_3d`, `while_there`
+keypoints: `read_2d`, `write_2d`, `read_3d`, `write_3d`, `while_there`, `full_score`
 people: `read`, `write`, `People.assigned`: which tracklet is which person
 sightings: `read`, `stated`, `every_row`: where the user says that a person is
 skeleton: `read`: joints, bones, groups; `heel_and_toe`

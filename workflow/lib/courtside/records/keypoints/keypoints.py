@@ -13,6 +13,8 @@ from courtside.study.errors import StrPath
 
 FORM_2D = "courtside keypoints2d 2"
 FORM_3D = "courtside keypoints3d 3"
+# ASSUME: networks that score from 0 to 1 score one joint in twenty no higher than this.
+LIMITED = 1.2
 BLOCK = 4096  # frames at a time: what is computed of each frame by itself then needs little memory
 
 
@@ -132,6 +134,13 @@ def while_there(seen: NDArray) -> NDArray:
     came = np.maximum.accumulate(seen, axis=-1)
     stays = np.maximum.accumulate(seen[..., ::-1], axis=-1)[..., ::-1]
     return (came & stays) | ~seen.any(axis=-1, keepdims=True)
+
+
+def full_score(score: NDArray) -> float:
+    """Return the score that counts as 1: where scores are not limited, what 5 % of them exceed."""
+    seen = score[np.isfinite(score)]
+    high = float(np.percentile(seen, 95)) if seen.size else 0.0
+    return high if high > LIMITED else 1.0
 
 
 def blocks(n_frames: int) -> Iterator[slice]:

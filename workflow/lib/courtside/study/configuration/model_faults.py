@@ -12,7 +12,7 @@ from courtside.study.execution.artefacts import Artefact
 OPTIONS = {  # keys that mean something to a decoder of models.yaml
     "blazepose": ("flip_test",),
     "heatmaps": ("input", "flip_test", "cells", "refine"),
-    "simcc": ("input", "flip_test", "split"),
+    "simcc": ("input", "flip_test", "split", "full_score"),
     "rtmo": ("input", "min_score", "min_height"),
     "yolo-pose": ("input", "min_score", "min_height"),
 }

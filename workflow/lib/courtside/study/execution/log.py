@@ -40,7 +40,7 @@ class _LogFile(logging.FileHandler):
 def tell(warning: str, path: StrPath) -> None:
     """Log a warning, and show it on the terminal at once: a run may go on for an hour after it.
 
-    `path` is the file that holds it, and more.
+    `path` is the file that holds it, or explains it, and more.
     """
     logger.warning("%s", warning)
     print(f"Warning: {warning}; see {path}", file=sys.stderr, flush=True)
