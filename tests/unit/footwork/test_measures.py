@@ -111,6 +111,39 @@ def test_the_step_rate_does_not_count_the_time_in_which_a_foot_is_not_seen(hidde
     assert rate["sigma"] > whole.loc["rally_1_step_rate", "sigma"]
 
 
+def out_of_sight(since_s, until_s, n=40):
+    """Return the feet of a run of 24 s, without what neither foot shows in between."""
+    feet = {}
+    for side, stances in run(n).items():
+        known = [replace(s, seen_s=(0.0, 30.0)) for s in stances]
+        before = [replace(s, seen_s=(0.0, since_s)) for s in known if s.until_s < since_s]
+        after = [replace(s, seen_s=(until_s, 30.0)) for s in known if s.since_s > until_s]
+        feet[side] = before + after
+    return feet
+
+
+@pytest.mark.parametrize("unseen_s", [1.0, 3.0, 4.5])
+def test_a_rally_goes_on_while_the_player_is_out_of_sight_for_a_short_time(unseen_s):
+    whole, found = values(out_of_sight(40.0, 40.0)), values(out_of_sight(10.0, 10.0 + unseen_s))
+    assert "rally_2_time" not in found.index
+    for name in ("time", "distance", "step_rate"):  # the run is straight, also while unseen
+        of_run = whole.loc[f"rally_1_{name}", "value"]
+        assert found.loc[f"rally_1_{name}", "value"] == pytest.approx(of_run), name
+    assert found.loc["rally_1_unseen", "value"] == pytest.approx(unseen_s)
+    assert whole.loc["rally_1_unseen", "value"] == 0
+
+
+def test_a_rally_ends_where_the_player_stands_or_is_out_of_sight_for_long():
+    long = values(out_of_sight(10.0, 16.0))
+    times = long.loc[["rally_1_time", "rally_2_time"], "value"]
+    assert times.tolist() == pytest.approx([8.7, 8.4], abs=0.6)
+    assert long.loc[["rally_1_unseen", "rally_2_unseen"], "value"].tolist() == [0, 0]
+    # Out of sight for 1 s, but standing for 3.1 s besides: neither foot lands.
+    feet = out_of_sight(10.0, 11.0)
+    stood = {side: [s for s in own if not 7.9 < s.onset_s < 12.0] for side, own in feet.items()}
+    assert {"rally_1_time", "rally_2_time"} <= set(values(stood).index)
+
+
 def test_corners_are_sixths_of_the_own_half_as_seen_facing_the_net():
     lines = court.read(CONFIG / "courts" / "badminton.yaml")
     net, width = lines.net["y_m"], lines.size_m[0]

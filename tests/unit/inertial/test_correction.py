@@ -179,6 +179,21 @@ def test_a_row_that_nobody_performed_keeps_its_pose():
     assert np.allclose(body.translation[0, 1:], body.hierarchy.offsets[1:])
 
 
+def test_a_pose_that_the_suit_repeats_is_not_compared_with_vision():
+    """Lost from 5 to 8 s: what the report tells is that of the other times."""
+    true, vision = truth(), moved_bodies.seen(truth(), 1)
+    local, held = true.parent_from_joint.copy(), (true.time_s > 5.0) & (true.time_s <= 8.0)
+    local[held] = local[np.flatnonzero(held)[0] - 1]
+    frozen = replace(true, parent_from_joint=local)
+    _, report = correction.correct(frozen, vision, sigma_m=SIGMA_M)
+    xyz = vision.xyz.copy()
+    xyz[(vision.time_s > 5.0) & (vision.time_s <= 8.0)] = np.nan
+    _, wanted = correction.correct(true, replace(vision, xyz=xyz), sigma_m=SIGMA_M)
+    assert report.slow_deg == pytest.approx(wanted.slow_deg, rel=0.3)
+    assert report.after_mm == pytest.approx(wanted.after_mm, rel=0.1)
+    assert report.noise_mm == pytest.approx(wanted.noise_mm, rel=0.1)
+
+
 def test_feet_keep_their_floor():
     raw, body, _ = corrected("bones")
     ankles = [LIMB_JOINTS.index(f"{side}_ankle") for side in ("left", "right")]

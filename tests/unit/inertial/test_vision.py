@@ -40,6 +40,15 @@ def test_frames_outside_the_recording_are_left_out():
     assert len(found.time_s) < len(VISION.time_s)
 
 
+def test_times_in_which_the_skeleton_repeats_one_pose_are_left_out():
+    local = RECORDED.parent_from_joint.copy()
+    local[61:121] = local[60]  # 1 to 2 s
+    local[140:143] = local[140]  # three frames alike are no lost link
+    found = vision.observe(replace(RECORDED, parent_from_joint=local), VISION, 0.02)
+    wanted = (VISION.time_s <= 1.0) | (VISION.time_s > 2.0)
+    assert np.array_equal(found.time_s, VISION.time_s[wanted])
+
+
 def test_clocks_that_do_not_meet_are_named():
     far = replace(VISION, time_s=VISION.time_s + 100)
     with pytest.raises(

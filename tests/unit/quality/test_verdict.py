@@ -96,13 +96,26 @@ def test_a_camera_that_finds_nobody_meanwhile_is_doubtful():
 @pytest.mark.parametrize("lost", ["found in one camera", "nobody anywhere"])
 def test_who_is_lost_for_long_is_not_away(lost):
     cameras = absent(1, LONG, found=False, n_frames=400)
-    if lost == "nobody anywhere":
-        for one in cameras:
-            one.tracklets.xy[:, LONG] = np.nan
+    if lost == "nobody anywhere":  # cameras lose them within a few frames: the light went out
+        for at, one in enumerate(cameras):
+            one.tracklets.xy[:, LONG.start + at : LONG.stop] = np.nan
     else:
         cameras[2].tracklets.xy[1] = judged.footage(400)[2].tracklets.xy[1]
     rows, _ = wholes(cameras)
     assert rows[ALL, "p2"].verdict == rows[ALL, ALL].verdict == FAILED
+
+
+@pytest.mark.parametrize(("leaving", "returning"), [(10, 10), (10, 0), (0, 10)])
+def test_everybody_may_leave_the_pictures_and_come_back(leaving, returning):
+    """The pictures become empty one after another, by these frames, or fill so; not at one time."""
+    cameras = judged.footage(900)
+    for at, one in enumerate(cameras):
+        one.tracklets.xy[:, 60 + leaving * at : 390 - returning * at] = np.nan
+    rows, table = wholes(cameras)
+    assert set(table["verdict"]) == {GOOD}
+    until_s, since_s = (60 + 3 * leaving - 1) / 50, (390 - 3 * returning) / 50
+    when = f"from 0.0 to {until_s:.1f} s and {since_s:.1f} to 18.0 s of the take"
+    assert rows[ALL, "p1"].sentence == f"p1: the cameras agree {when}."
 
 
 PLANTED = {

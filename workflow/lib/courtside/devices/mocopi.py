@@ -32,7 +32,6 @@ WRITTEN_TO_S = 0.6e-6  # the app writes its frame time with six decimals: 0.0166
 BODY_M = (0.85, 2.3)
 # Three angles of at most 2 pi, read as degrees, turn a joint by less; nobody moves so little.
 LEAST_TURN_DEG = 11.0
-HELD_S = 0.2  # ASSUME: nobody holds every joint still to the last digit for this long
 NO_TURN = 1e-6  # rounding: largest entry by which a rotation may differ from the identity
 
 
@@ -153,10 +152,7 @@ def _performed(path: StrPath, posed: PosedHierarchy) -> NDArray:
 
 
 def _tell_of_held(path: StrPath, posed: PosedHierarchy) -> None:
-    repeats = (np.diff(posed.parent_from_joint, axis=0) == 0).all(axis=(1, 2, 3))
-    edges = np.flatnonzero(np.diff(repeats, prepend=False, append=False))
-    held_s = [posed.time_s[[first, last]] for first, last in edges.reshape(-1, 2)]
-    spans = [f"{first:.1f} to {last:.1f} s" for first, last in held_s if last - first >= HELD_S]
+    spans = [f"{first:.1f} to {last:.1f} s" for first, last in hierarchy.held_s(posed)]
     if spans:
         log.tell(
             f"{Path(path).name}: the same pose in every row from {', '.join(spans)}: the suit lost "

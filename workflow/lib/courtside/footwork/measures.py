@@ -11,7 +11,10 @@ from courtside.footwork.kinds import LEAST_FLIGHT_S
 from courtside.records import footwork
 
 COLUMNS = ("person", "measure", "value", "sigma", "unit", "n", "definition")
-PAUSE_S = 3.0  # ASSUME: a rally is over when no foot lands for longer
+PAUSE_S = 3.0  # ASSUME: a rally is over when no foot is seen to land for longer
+# ASSUME: nobody ends a rally, fetches the shuttle and serves again in less; in longer times out of
+# sight somebody may have.
+MOST_UNSEEN_S = 5.0
 LEAST_LANDINGS = 3  # of a rally: fewer say nothing of a path or a rate
 COUNTED = {"step": "steps", "lunge": "lunges", "split_step": "split_steps", "jump": "jumps"}
 DEPTHS, SIDES = ("front", "mid", "rear"), ("left", "right")
@@ -123,18 +126,30 @@ def _corners(steps: pd.DataFrame, court: Court | None) -> Iterator[Row]:
 
 def _rallies(steps: pd.DataFrame) -> Iterator[Row]:
     landed = steps[steps.onset_s.notna()].sort_values("onset_s")
-    number = (landed.onset_s.diff() > PAUSE_S).cumsum()
-    rallies = [own for _, own in landed.groupby(number) if len(own) >= LEAST_LANDINGS]
+    unseen_s = pd.Series(_unseen(steps, landed.onset_s.to_numpy()), landed.index).diff()
+    pause = (landed.onset_s.diff() - unseen_s > PAUSE_S) | (unseen_s > MOST_UNSEEN_S)
+    rallies = [own for _, own in landed.groupby(pause.cumsum()) if len(own) >= LEAST_LANDINGS]
     for at, own in enumerate(rallies, start=1):
         lasts = own.onset_s.iloc[-1] - own.onset_s.iloc[0]
         spread = float(np.hypot(own.onset_sigma_s.iloc[-1], own.onset_sigma_s.iloc[0]))
         n, name = len(own), f"rally_{at}"
-        words = f"from its first to its last landing, no pause over {PAUSE_S:g} s between landings"
+        words = f"from its first to its last landing, no pause over {PAUSE_S:g} s seen in between"
         yield f"{name}_time", float(lasts), spread, "s", n, words
+        hidden_s = float(unseen_s[own.index[1:]].sum())
+        words = "part of this time in which neither foot is seen; the path is straight meanwhile"
+        yield f"{name}_unseen", hidden_s, NAN, "s", n, words
         length, error = _path(own)
         words = "path of the midpoints between each landing and the one before"
         yield f"{name}_distance", length, error, "m", n, words
         yield f"{name}_step_rate", *_rate(steps, own)
+
+
+def _unseen(steps: pd.DataFrame, at_s: NDArray) -> NDArray:
+    """Return how long neither foot has been seen before each time (N,), s."""
+    seen = steps[["seen_from_s", "seen_until_s"]].drop_duplicates().sort_values("seen_from_s")
+    since_s = np.maximum.accumulate(seen.seen_until_s.to_numpy())[:-1]
+    until_s = seen.seen_from_s.to_numpy()[1:]
+    return np.maximum(np.minimum(at_s[:, None], until_s) - since_s, 0.0).sum(axis=1)
 
 
 def _rate(steps: pd.DataFrame, landed: pd.DataFrame) -> tuple[float, float, str, int, str]:

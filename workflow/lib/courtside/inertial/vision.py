@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from courtside.geometry.interpolation import window
 from courtside.records.devices.device_motion import DeviceMotion
-from courtside.records.devices.hierarchy import PosedHierarchy
+from courtside.records.devices.hierarchy import PosedHierarchy, held_s
 from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
 
@@ -34,6 +34,7 @@ class Seen:
 def observe(posed: PosedHierarchy, vision: DeviceMotion, sigma_m: ArrayLike) -> Seen:
     """Select what vision tells of a skeleton's limbs while it moves, on the same clock.
 
+    Times in which the skeleton repeats one pose, as after a lost link, are left out.
     `sigma_m`, a number or (T, J), is the standard deviation per axis; joints where it is not a
     positive number are not used. An `InputError` if vision has no place in space, or too little in
     common with the skeleton.
@@ -48,6 +49,8 @@ def observe(posed: PosedHierarchy, vision: DeviceMotion, sigma_m: ArrayLike) -> 
     columns = [list(vision.joints).index(name) for name in joints]
     inside = (vision.time_s >= posed.time_s[0]) & (vision.time_s <= posed.time_s[-1])
     inside &= vision.performed
+    for first, last in held_s(posed):
+        inside &= (vision.time_s <= first) | (vision.time_s > last)
     sigma = np.broadcast_to(np.asarray(sigma_m, float), vision.xyz.shape[:2])[inside][:, columns]
     xyz = vision.xyz[inside][:, columns]
     usable = np.isfinite(xyz).all(axis=2) & np.isfinite(sigma) & (sigma > 0)

@@ -29,6 +29,7 @@ HALF = 0.5  # of the middles: fewer do not show a person
 ROUNDING_S = 1e-6  # of times that are converted between clocks
 MARGIN = 0.05  # of the picture: somebody nearer to its border may be cut off
 AWAY_S = 5.0  # ASSUME: no network misses somebody for so long in all pictures, but finds others
+TOGETHER_S = 0.2  # ASSUME: people leave, or come back into, all pictures within no shorter time
 MORE = 0.2  # bodies: one more in a fifth of the frames may be the person who is missed
 
 
@@ -92,22 +93,38 @@ class Seen:
 
 
 def _away(seen: Seen) -> NDArray:
-    """Return when persons are away, (P, T): for long in no picture, while pictures show others.
+    """Return when persons are away, (P, T): for long in no picture, and no network fails meanwhile.
 
-    Not if a camera then shows more bodies who are nobody: one of them may be the person, lost.
+    Then pictures show others, or everybody has left. Not if a camera then shows more bodies who are
+    nobody: one of them may be the person, lost.
     """
     followed, time_s = seen.followed, seen.points.time_s
     bodies = np.stack([shown(rows).sum(axis=0) for rows in seen.rows])
-    nobody = bodies - followed.sum(axis=1)
+    nobody, works = bodies - followed.sum(axis=1), bodies.any(axis=0) | _left(followed, time_s)
     away = np.zeros(followed.shape[1:], bool)
     for person, there in enumerate(np.any(followed, axis=0)):
         for start, stop in runs(~there) if there.any() else ():
             part = slice(start, stop)
             more = nobody[:, part].mean(axis=1) - nobody[:, there].mean(axis=1)
-            others = bodies[:, part].any(axis=0).mean() >= HALF
             long = np.ptp(time_s[part]) > AWAY_S
-            away[person, part] = long and others and more.max() < MORE
+            away[person, part] = long and works[part].mean() >= HALF and more.max() < MORE
     return away
+
+
+def _left(followed: NDArray, time_s: NDArray) -> NDArray:
+    """Return when nobody is followed, (C, P, T), because everybody has left, (T,).
+
+    People leave pictures one after another, or come back so. Of light or a network that fails, most
+    of the bodies are last seen, and seen again, at one time.
+    """
+    total = followed.sum(axis=(0, 1))
+    left = np.zeros(len(total), bool)
+    for start, stop in runs(total == 0):
+        before, after = time_s[start] - time_s[:start], time_s[stop:] - time_s[stop - 1]
+        for away_s, number in ((before, total[:start]), (after, total[stop:])):
+            edge, near = (number[away_s < most_s].max(initial=0) for most_s in (TOGETHER_S, AWAY_S))
+            left[start:stop] |= 0 < 2 * edge <= near
+    return left
 
 
 def shown(xy: NDArray) -> NDArray:

@@ -25,7 +25,7 @@ FEET = (
     *(f"{what}_time{foot}" for what in ("stance", "swing") for foot in ("", "_left", "_right")),
     *(f"steps_{depth}_{side}" for depth in ("front", "mid", "rear") for side in ("left", "right")),
 )
-OF_RALLY = ("time", "distance", "step_rate")
+OF_RALLY = ("time", "unseen", "distance", "step_rate")
 RALLY = re.compile(rf"rally_[1-9][0-9]*_({'|'.join(OF_RALLY)})")
 NAMES = (
     *(f"{point}_{name}" for point in POINTS for name in OF_POINT),

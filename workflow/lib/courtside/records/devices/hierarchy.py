@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 NO_PARENT = -1
+HELD_S = 0.2  # ASSUME: nobody holds every joint still to the last digit for this long
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +70,13 @@ def forward(posed: PosedHierarchy) -> tuple[NDArray, NDArray]:
         np.matmul(turned[parent], local[joint], out=turned[joint])
         xyz[joint] = xyz[parent] + (turned[parent] @ places[joint][:, :, None])[:, :, 0]
     return np.moveaxis(xyz, 0, 1), np.moveaxis(turned, 0, 1)
+
+
+def held_s(posed: PosedHierarchy) -> list[tuple[float, float]]:
+    """Return from when until when every frame repeats one pose, s: a suit lost its sensors."""
+    repeats = (np.diff(posed.parent_from_joint, axis=0) == 0).all(axis=(1, 2, 3))
+    edges = np.flatnonzero(np.diff(repeats, prepend=False, append=False)).reshape(-1, 2)
+    return [(first, last) for first, last in posed.time_s[edges] if last - first >= HELD_S]
 
 
 def still(shape: Hierarchy, turns: NDArray) -> PosedHierarchy:
