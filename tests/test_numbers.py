@@ -56,6 +56,15 @@ def test_published_numbers_are_those_of_their_tables():
             assert number.sha256 == documents.sha256(number.source), number.source
 
 
+def test_the_halls_that_the_text_names_are_those_whose_interval_contains_0():
+    text = (ROOT / "docs" / "measured" / "calibration_by_walk.md").read_text(encoding="utf-8")
+    halls = text.split("<!-- table: halls -->")[1].split("<!-- end -->")[0]
+    ends = re.findall(r"^\| `(\S+)`.*\((\S+) to (\S+)\) \|$", halls, flags=re.M)
+    named = re.search(r"interval of the difference contains 0 in [^(]*\(([^)]*)\)", text)[1]
+    open_halls = {name for name, low, high in ends if float(low) <= 0 <= float(high)}
+    assert len(ends) == 6 and set(re.findall("`(.*?)`", named)) == open_halls
+
+
 def program(path, *words):
     command = [sys.executable, str(ROOT / path), *map(str, words)]
     return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)

@@ -166,13 +166,25 @@ def test_a_structure_without_result_is_counted(table):
     assert np.isnan(found.volume_rms_cm_median)
 
 
-def test_the_reference_is_the_same_draw_of_offset_0(table):
+def test_the_reference_is_the_same_draw_and_choice_of_images(table):
     found = row(table, SFM, 75)
     assert (found.vs_reference_n, found.vs_reference_mean_cm) == (2, 0.5)
     assert found.vs_reference_upper_cm == pytest.approx(0.5)
     own = row(table, SFM, 40)
-    assert (own.vs_reference_n, own.vs_reference_mean_cm) == (2, 0.0)
+    assert (own.vs_reference_n, own.vs_reference_mean_cm) == (4, 0.0)
     assert row(table, PAPER, 75).vs_reference_mean_cm == 1.0
+
+
+def test_the_limit_to_the_reference_counts_choices_of_images():
+    """Three choices of 10 images, by 0, 1 and 2 cm worse than the same ones of 40."""
+    parts = [
+        trials_made.structure({SFM: [1.0 + more] * 9}, n_bridging=n_bridging, offset=offset)
+        for offset in range(3)
+        for n_bridging, more in ((10, float(offset)), (40, 0.0))
+    ]
+    found = row(calibration.table(calibration.tidy(pd.concat(parts))), SFM, 10)
+    assert (found.vs_reference_n, found.vs_reference_mean_cm) == (27, 1.0)
+    assert 1.5 < found.vs_reference_upper_cm <= 2.0
 
 
 def test_known_points_are_those_of_most_clicks_scored_alike(table):

@@ -132,6 +132,26 @@ def test_an_interval_holds_a_share_as_wide_as_its_blocks_make_it():
     assert short["n_blocks"] == 2 and np.isnan(short["value_from"])
 
 
+def exchanged_in(takes):
+    """Return the share exchanged in takes of 60 frames, each with these frames exchanged."""
+    pictures = [{"one": made(constant(1), n_frames=60, exchanged=frames)} for frames in takes]
+    every = [networks.ComparedTake("gym", "truth", each) for each in pictures]
+    return networks.table(every, ["one"]).set_index("measure").loc["exchanged"]
+
+
+def test_an_interval_holds_a_share_that_the_last_frames_of_takes_make():
+    share = exchanged_in([range(52, 60)] * 5)
+    np.testing.assert_allclose(share["value"], 100 * 8 / 60)
+    assert share["value_from"] < share["value"] < share["value_to"]
+
+
+def test_an_interval_is_as_wide_as_takes_differ():
+    """One take of five is exchanged as a whole: 4 of 20 blocks."""
+    share = exchanged_in([range(60), (), (), (), ()])
+    assert share["value"] == 20 and share["n_blocks"] == 20
+    np.testing.assert_allclose(share["value_to"] - share["value_from"], 35, rtol=0.3)
+
+
 def test_frames_of_cameras_are_drawn_together_by_their_time():
     step_s, slot = networks._slots(made(constant(1), n_frames=5))
     assert step_s == pytest.approx(1 / 30)

@@ -133,15 +133,17 @@ def table(rows: pd.DataFrame) -> pd.DataFrame:
     One row per session, method, mapper, clicks, in-sample or not, strength of click errors, and
     number of bridging images; and one for all sessions of a condition together if they differ in
     their seeds only (session: `all N`). Differences of the volume error are paired:
-    `vs_reference_...` to `N_REFERENCE` images (same draw, offset 0), `vs_known_...` to calibration
+    `vs_reference_...` to `N_REFERENCE` images (same draw and offset), `vs_known_...` to calibration
     from all known points (same session, draw and choice of scored points). `rows` are of `tidy`.
     """
+    usual = rows[rows["n_bridging"] == N_REFERENCE]
+    to_reference = against(rows, usual, ["session", *METHOD, "offset", "draw"])
     known = rows[rows["method"] == "known"]
     most = known.groupby("session")["n_clicks"].transform("max")
     to_known = against(
         rows, known[known["n_clicks"] == most], ["session", "in_sample", "click_strength", "draw"]
     )
-    rows = rows.assign(vs_reference=_to_reference(rows), vs_known=to_known)
+    rows = rows.assign(vs_reference=to_reference, vs_known=to_known)
     settings = [name for name in rows if name not in OTHERS | {"vs_reference", "vs_known"}]
     keys = [*LABELS, *settings, *METHOD, "n_bridging"]
     groups = [
@@ -156,14 +158,6 @@ def table(rows: pd.DataFrame) -> pd.DataFrame:
                 {"session": f"all {count}", **dict(zip(pooled, key, strict=True)), **_row(group)}
             )
     return pd.DataFrame(groups)[list(groups[0])]
-
-
-def _to_reference(rows: pd.DataFrame) -> NDArray:
-    """Return the differences to the reference number of images; offset 0 only."""
-    on = ["session", *METHOD, "draw"]
-    first = rows["offset"] == 0
-    difference = against(rows, rows[first & (rows["n_bridging"] == N_REFERENCE)], on)
-    return np.where(first, difference, np.nan)
 
 
 def _row(group: pd.DataFrame) -> dict:

@@ -86,8 +86,10 @@ def table(takes: Sequence[ComparedTake], networks: Sequence[str]) -> pd.DataFram
 
     Values of 2D and 3D errors and of jitter are those of joints that all networks have, the shares
     are of all joints in the picture. Differences are a network's less the first one's, where the
-    same frames are drawn again for both. Intervals hold for these takes, persons and halls alone;
-    fewer than 20 blocks make them too narrow (`camera_sets.gains`), fewer than `FEWEST` have none.
+    same frames are drawn again for both. Intervals hold for these takes, persons and halls alone.
+    In simulations of five takes of four blocks, with errors as those of `repeats`, they hold 89 to
+    96 % of values and 93 % of differences; of one take of eight blocks 70 to 90 % of medians. Fewer
+    than `FEWEST` blocks have none.
     """
     rows = []
     groups: dict[tuple[str, str], list[ComparedTake]] = {}
@@ -145,12 +147,7 @@ def _counts(lengths: Sequence[int], rates_hz: Sequence[float]) -> tuple[NDArray 
     n_blocks = sum(length // block for length, block in zip(lengths, blocks, strict=True))
     if n_blocks < FEWEST:
         return None, n_blocks
-    counts = []
-    for seed, (length, block) in enumerate(zip(lengths, blocks, strict=True)):
-        drawn = moving_blocks.frames(length, block, seed=seed)
-        cell = drawn + length * np.arange(len(drawn))[:, None]
-        counts.append(np.bincount(cell.ravel(), minlength=drawn.size).reshape(drawn.shape))
-    return np.concatenate(counts, axis=1), n_blocks
+    return moving_blocks.counts(lengths, blocks), n_blocks
 
 
 def _drawn(
