@@ -131,6 +131,20 @@ def test_every_camera_turned_between_takes_is_found_and_measured_with_the_others
         assert (np.abs(turn - np.degrees(turns[camera])) < 3 * np.array(sigma)).all()
 
 
+def test_two_cameras_knocked_at_one_time_turn_no_third():
+    """While one is not known, a step of a third camera fits, too."""
+    turn, after = np.radians([0.28, 0.94, 0.19]), SEEN.time_s >= AT_S
+    xy = SEEN.xy.copy()
+    for at in (0, 2):
+        xy[at, after] = cameras.turned_back(TRUE[at], xy[at, after], -turn)
+    found = knocks.find(TRUE, KNOWN, replace(SEEN, xy=xy), LIMITS)
+    taken = {one.camera: one for one in found if one.taken}
+    assert sorted(taken) == [0, 2]
+    for one in taken.values():
+        assert one.time_s == pytest.approx(AT_S, abs=0.2)
+        assert np.degrees(np.abs(one.turn - turn)[:2]).max() < 0.06
+
+
 def test_two_turns_of_one_camera_are_measured_in_a_row():
     """Each from the pose before it, and what is found again at one time is part of it."""
     xy = SEEN.xy.copy()
