@@ -225,10 +225,10 @@ def _steps(
 
 
 def _of_turned(cameras, known, seen: Seen, limits: Limits, steps: list[_Step]) -> list[_Step]:
-    """Return steps, at the time of the last only of cameras turned then, if these are several.
+    """Return steps, at the time of the last only of cameras turned then.
 
-    Two cameras turned at one time make steps of others, too. All are measured together, then those
-    without the one that stands out least: the fewer there are, the surer are their turns.
+    Cameras that are turned make steps of others, too. All are measured together, then those without
+    the one that stands out least: the fewer there are, the surer are their turns.
     """
     at_once = [one for one in steps if abs(one.time_s - steps[-1].time_s) < BLOCK_S]
     turned, least = sorted({one.camera for one in at_once}), 0.0
@@ -239,8 +239,7 @@ def _of_turned(cameras, known, seen: Seen, limits: Limits, steps: list[_Step]) -
         least = min(stand_out)
         if least < SURE:
             turned.pop(stand_out.index(least))
-    if len(turned) < 2:
-        return steps
+    both = [replace(steps[-1], camera=at, turn=np.zeros(3)) for at in turned]
     others = {at: tuple(one for one in both if one.camera != at) for at in turned}
     kept = [one for one in steps if one.camera in turned or one not in at_once]
     return [replace(s, others=others[s.camera]) if s in at_once else s for s in kept]
