@@ -5,7 +5,7 @@ from dataclasses import replace
 from courtside.calibration import file_formats
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court import quality
-from courtside.calibration.people import adjustment, knocks, prior, refinement, resection
+from courtside.calibration.people import adjustment, prior, refinement, resection
 from courtside.calibration.people.held_out import Points
 from courtside.calibration.people.views import Limits
 from courtside.calibration.records import covariance as camera_covariance
@@ -35,9 +35,10 @@ def main(
         again = people_of(paths, base, takes, limits)
         wide, lost = resection.widened(known, base, again.which), again.lines
         read = {take["take"]: clocks.read(take["sync"])[1] for take in takes}
-        seen, rows = knocks.in_all(again.cameras or base, wide, again.parts, read, limits)
-        theirs = in_file(paths.calibration, names, override, unit)
-        kept = {"calibrated": theirs, "found_again": again.cameras}
+        still = again.cameras or base
+        seen, rows = refinement.without_knocks(still, wide, again.parts, read, limits)
+        kept = {"calibrated": in_file(paths.calibration, names, override, unit)}
+        kept["found_again"] = again.cameras
         found = refinement.refine(base, wide, seen, limits, points(paths, base, weights), **kept)
     except InputError as error:
         found = refinement.unchanged(base, known, str(error))

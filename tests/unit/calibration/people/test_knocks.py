@@ -131,6 +131,35 @@ def test_every_camera_turned_between_takes_is_found_and_measured_with_the_others
         assert (np.abs(turn - np.degrees(turns[camera])) < 3 * np.array(sigma)).all()
 
 
+def test_two_cameras_knocked_at_one_time_turn_no_third():
+    """While one is not known, a step of a third camera fits, too."""
+    turn, after = np.radians([0.28, 0.94, 0.19]), SEEN.time_s >= AT_S
+    xy = SEEN.xy.copy()
+    for at in (0, 2):
+        xy[at, after] = cameras.turned_back(TRUE[at], xy[at, after], -turn)
+    found = knocks.find(TRUE, KNOWN, replace(SEEN, xy=xy), LIMITS)
+    taken = {one.camera: one for one in found if one.taken}
+    assert sorted(taken) == [0, 2]
+    for one in taken.values():
+        assert one.time_s == pytest.approx(AT_S, abs=0.2)
+        assert np.degrees(np.abs(one.turn - turn)[:2]).max() < 0.06
+
+
+def test_steps_that_the_turn_of_another_camera_makes_are_not_tried():
+    xy, after = SEEN.xy.copy(), SEEN.time_s >= AT_S
+    xy[2, after] = cameras.turned_back(TRUE[2], xy[2, after], -4 * TURN)
+    seen = replace(SEEN, xy=xy)
+    steps = [
+        step
+        for one in (TRUE, walkers.disturbed(TRUE, KNOWN, 3))
+        for step in knocks._steps(one, seen, LIMITS.score, None)
+    ]
+    steps.sort(key=lambda one: one.gain)
+    kept = knocks._of_turned(TRUE, KNOWN, seen, LIMITS, steps)
+    there = [{s.camera for s in some if abs(s.time_s - AT_S) < 0.5} for some in (steps, kept)]
+    assert len(there[0]) > 1 and there[1] == {2}
+
+
 def test_two_turns_of_one_camera_are_measured_in_a_row():
     """Each from the pose before it, and what is found again at one time is part of it."""
     xy = SEEN.xy.copy()

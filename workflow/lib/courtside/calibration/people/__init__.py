@@ -5,7 +5,7 @@ views: `Seen`, `Limits`, `joined`, `placed`, `check`, `longest_way`: joints at c
 prior: `stated`, `knowledge`: what is known of cameras before
 adjustment: `refine`, `Clicks`, `court_clicks`: cameras and joints adjusted together
 held_out: `score`, `verdicts`, `better`: whether cameras are better, by what the fit did not see
-knocks: `find`, `in_all`, `between`, `undone`, `row`, `lines`: cameras knocked have two poses
+knocks: `find`, `between`, `undone`, `row`, `lines`: cameras knocked have two poses
 resection: `lost`, `expected`, `find`, `widened`, `line`: cameras that agree with nobody
 relative_poses: `pair`, `pose`: relative poses of cameras from tracks of unknown persons
 metric_scale: `Scale`, `Body`, `KnownLength`, `of_clicks`, `find`, `combined`, `by_lengths`,
@@ -13,5 +13,6 @@ metric_scale: `Scale`, `Body`, `KnownLength`, `of_clicks`, `find`, `combined`, `
 world_frame: `floor`, `frame_error`, `of_shape`: the floor from feet or points, covariance
 warnings: `find`: warnings about cameras from people alone
 from_nothing: `guess`, `adjust`, `check`, `summary`: cameras from people alone
-refinement: `refine`, `unchanged`: which cameras are taken, what was wrong, the table
+refinement: `refine`, `unchanged`, `without_knocks`: which cameras are taken, what was wrong, the
+    table
 """

@@ -37,6 +37,7 @@ LEAST_OF_SIDE = 0.3  # on one side of a knock: 0.4 degrees make 0.4 to 0.8, came
 USUAL_RAD = np.radians(0.5)  # about each axis: keeps a turn small that is badly seen
 SAME_M, SAME_LENS = 0.002, 0.03  # a knocked camera keeps its place, and its lens: share of sigma
 BLOCK_S = 1.0  # residuals err alike within it
+SURE = 3.0  # standard errors, of turns measured together
 MOST_TRIED = 4  # candidates, each of another camera, and one of a camera that is put back
 GRID = 60  # times at which a camera may be turned or put back, before the best are refined
 ROWS_TO_JUDGE = 40  # of each half that fits: enough for a turn, and a quarter of the time
@@ -70,6 +71,7 @@ class _Step:
     turn: NDArray
     gain: float
     until_s: float = np.inf  # when it is put back
+    others: tuple["_Step", ...] = ()  # of cameras turned at the same time, to measure with it
 
     @property
     def put_back(self) -> bool:
@@ -96,10 +98,6 @@ class _Judged:
         if held_out.better(self.verdicts):
             return False, self.change + LEAST_CHANGE * step.put_back
         return True, -step.gain
-
-
-# Normal equations of each camera's turn in each row, (C, T, 3, 3) and (C, T, 3).
-Equations = tuple[NDArray, NDArray]
 
 
 def find(
@@ -132,7 +130,7 @@ def find(
         one_pose = _halves(cameras, known, left, limits, ())
         judged = [_judged(cameras, known, left, limits, step, one_pose) for step in tried]
         step, said = min(zip(tried, judged, strict=True), key=lambda one: one[1].order(one[0]))
-        ((turn, sigma),) = _measured(cameras, known, left, limits, [step])
+        turn, sigma = _measured(cameras, known, left, limits, [step, *step.others])[0]
         new = [Knock(step.camera, step.time_s, turn, sigma, said.change, said.verdicts)]
         if new[0].taken and step.put_back:
             new.append(replace(new[0], time_s=step.until_s, turn=-turn))
@@ -141,26 +139,6 @@ def find(
             break
         left = undone(cameras, left, new)
     return _together(cameras, known, seen, limits, found)
-
-
-def in_all(
-    cameras: Sequence[Camera],
-    known: CameraCovariance,
-    takes: Mapping[str, Seen],
-    clocks: Mapping[str, Mapping[str, Clock]],
-    limits: Limits,
-) -> tuple[Seen, list[dict[str, Any]]]:
-    """Return what was seen in all takes without knocks, and rows of all found.
-
-    Takes are in the order of time; `clocks` are of each take and camera.
-    """
-    rows, still = [], {}
-    for take, seen in takes.items():
-        found = find(cameras, known, seen, limits)
-        rows += [{"take": take, **row(one, cameras, clocks[take])} for one in found]
-        still[take] = undone(cameras, seen, found)
-    seen, moves = between(cameras, known, still, limits)
-    return seen, rows + moves
 
 
 def between(
@@ -222,6 +200,7 @@ def _candidates(cameras, known, seen: Seen, limits: Limits, at_s) -> list[_Step]
     refined = _adjusted(cameras, known, seen.thinned(2 * ROWS_TO_JUDGE), limits, ()).cameras
     steps = [step for some in (cameras, refined) for step in _steps(some, seen, limits.score, at_s)]
     steps.sort(key=lambda one: one.gain)
+    steps = _of_turned(cameras, known, seen, limits, steps)
     best = {step.camera: step for step in steps if not step.put_back}
     return list(best.values())[-MOST_TRIED:] + [step for step in steps if step.put_back][-1:]
 
@@ -243,6 +222,27 @@ def _steps(
             if step and step.gain >= LEAST_GAIN and np.linalg.norm(step.turn) >= LEAST_RAD:
                 found.append(step)
     return found
+
+
+def _of_turned(cameras, known, seen: Seen, limits: Limits, steps: list[_Step]) -> list[_Step]:
+    """Return steps, at the time of the last only of cameras turned then.
+
+    Cameras that are turned make steps of others, too. All are measured together, then those without
+    the one that stands out least: the fewer there are, the surer are their turns.
+    """
+    at_once = [one for one in steps if abs(one.time_s - steps[-1].time_s) < BLOCK_S]
+    turned, least = sorted({one.camera for one in at_once}), 0.0
+    while len(turned) > 1 and least < SURE:
+        both = [replace(steps[-1], camera=at, turn=np.zeros(3)) for at in turned]
+        found = _measured(cameras, known, seen, limits, both)
+        stand_out = [float(np.max(np.abs(turn) / sigma)) for turn, sigma in found]
+        least = min(stand_out)
+        if least < SURE:
+            turned.pop(stand_out.index(least))
+    both = [replace(steps[-1], camera=at, turn=np.zeros(3)) for at in turned]
+    others = {at: tuple(one for one in both if one.camera != at) for at in turned}
+    kept = [one for one in steps if one.camera in turned or one not in at_once]
+    return [replace(s, others=others[s.camera]) if s in at_once else s for s in kept]
 
 
 def _together(cameras, known, seen: Seen, limits: Limits, found: Sequence[Knock]) -> list[Knock]:
@@ -300,9 +300,7 @@ def _poses_before(n_cameras: int, steps: Sequence[_Step]) -> list[int]:
     return found
 
 
-def _judged(
-    cameras, known, seen: Seen, limits: Limits, step: _Step, one_pose: list[list[Camera]]
-) -> _Judged:
+def _judged(cameras, known, seen: Seen, limits: Limits, step: _Step, one_pose) -> _Judged:
     """Return what held-out joints say of a step.
 
     Judged is the step's camera alone, against joints that the others place: by the time on one side
@@ -330,9 +328,7 @@ def _by_side(
     return found
 
 
-def _halves(
-    cameras, known, seen: Seen, limits: Limits, steps: Sequence[_Step]
-) -> list[list[Camera]]:
+def _halves(cameras, known, seen: Seen, limits: Limits, steps) -> list[list[Camera]]:
     """Return cameras with one pose, or two with a step, fitted to either half of the blocks."""
     block = _blocks(seen)
     halves = [seen.of(block % 2 == odd).thinned(ROWS_TO_JUDGE) for odd in (0, 1)]
@@ -404,13 +400,15 @@ def _blocks(seen: Seen, fewest: int = held_out.BLOCKS) -> NDArray:
     return np.unique(block, axis=1, return_inverse=True)[1].ravel()
 
 
-def _equations(cameras: Sequence[Camera], seen: Seen, min_score: float) -> Equations:
-    """Return epipolar residuals' equations; a view's scatter is in heights of the person."""
+def _equations(cameras: Sequence[Camera], seen: Seen, min_score: float) -> list[NDArray]:
+    """Return normal equations of each camera's turn in each row, (C, T, 3, 3) and (C, T, 3).
+
+    Of epipolar residuals; a view's scatter is in heights of the person.
+    """
     rays = []
     for camera, xy in zip(cameras, seen.xy, strict=True):
         straight = camera_models.undistort(camera, xy)
-        ray = np.concatenate([straight, np.ones((*straight.shape[:-1], 1))], axis=-1)
-        rays.append(ray / np.linalg.norm(ray, axis=-1, keepdims=True))
+        rays.append(rotations.unit(np.insert(straight, 2, 1.0, axis=-1)))
     shape = len(cameras), len(seen.track)
     matrix, right = np.zeros((*shape, 3, 3)), np.zeros((*shape, 3))
     used = np.nan_to_num(seen.score) >= min_score
@@ -439,7 +437,7 @@ def _equations(cameras: Sequence[Camera], seen: Seen, min_score: float) -> Equat
             by_turn = np.nan_to_num(by_turn / (scatter * np.sqrt(variance))[..., None])
             matrix[at] += np.einsum("tj,tji,tjk->tik", weight, by_turn, by_turn)
             right[at] += np.einsum("tj,tji,tj->ti", weight, by_turn, off)
-    return matrix, right
+    return [matrix, right]
 
 
 def _spans(matrix: NDArray, right: NDArray, times: NDArray) -> list[tuple[float, float]]:
@@ -476,9 +474,7 @@ def _gains(ahead: Sequence[NDArray], first, stop) -> NDArray:
     return cost(*during) + cost(matrix[-1] - during[0], right[-1] - during[1])
 
 
-def _step(
-    equations: Equations, seen: Seen, camera: int, time_s: float, until_s: float
-) -> _Step | None:
+def _step(equations, seen: Seen, camera: int, time_s: float, until_s: float) -> _Step | None:
     """Return the step at a time; None where a side says too little.
 
     Residuals err alike: its covariance is from their sums over blocks of time.

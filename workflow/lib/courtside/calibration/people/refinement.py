@@ -1,19 +1,21 @@
 """A calibration refined by people, beside the one that it began from: taken only where better."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from courtside.calibration.file_check import residuals, verdict
-from courtside.calibration.people import adjustment, held_out, prior, resection, views
+from courtside.calibration.people import adjustment, held_out, knocks, prior, resection, views
 from courtside.calibration.people.held_out import Points, Score
 from courtside.calibration.people.views import Limits, Seen
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera, in_other_picture
+from courtside.records.devices.clocks import Clock
 
 NAMED = 3.0  # stated standard deviations by which a number must change to be called wrong
 LENS = ("f_px", "cx_px", "cy_px", "k1")
@@ -43,6 +45,26 @@ class Found:
     verdicts: dict[str, dict[str, str]]  # of `mended` against base, of `refined` against these
     wrong: list[str]  # the numbers of the base that people contradict
     table: pd.DataFrame  # `COLUMNS`: held-out measures, then each camera's numbers
+
+
+def without_knocks(
+    cameras: Sequence[Camera],
+    known: CameraCovariance,
+    takes: Mapping[str, Seen],
+    clocks: Mapping[str, Mapping[str, Clock]],
+    limits: Limits,
+) -> tuple[Seen, list[dict[str, Any]]]:
+    """Return what was seen in all takes without knocks, and rows of all found.
+
+    Takes are in the order of time; `clocks` are of each take and camera.
+    """
+    rows, still = [], {}
+    for take, seen in takes.items():
+        found = knocks.find(cameras, known, seen, limits)
+        rows += [{"take": take, **knocks.row(one, cameras, clocks[take])} for one in found]
+        still[take] = knocks.undone(cameras, seen, found)
+    seen, moves = knocks.between(cameras, known, still, limits)
+    return seen, rows + moves
 
 
 def refine(
