@@ -98,7 +98,7 @@ def table(
     From what `errors` returns. missing_percent is over the frames with truth; sd_mm is the root
     mean square about the mean error, sigma_mm the root of the mean trace of the stated covariance.
     unbiased_... are of the distances once the row's mean error is taken off: for a set of joints
-    that is a shift of the whole skeleton, most of which the calibration makes.
+    that is a shift of the whole skeleton, about half of it from the calibration.
     """
     groups = {name: [at] for at, name in enumerate(names)}
     groups |= {label: of_set(names, label) for label in SETS}
