@@ -16,6 +16,10 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 COURTS = REPOSITORY / "config" / "courts"
 sys.path.insert(0, str(REPOSITORY / "workflow" / "lib"))
 
+from courtside.study import installed
+
+installed.require()
+
 from courtside.drafting import additions, advice, draft, guess, survey
 from courtside.drafting import names as file_names
 from courtside.study.configuration import schemas, session_files

@@ -14,6 +14,10 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(REPOSITORY / "workflow" / "lib"))
 
+from courtside.study import installed
+
+installed.require()
+
 from courtside.drafting import device_names
 from courtside.study.errors import InputError
 from courtside.video import chapters

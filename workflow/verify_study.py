@@ -27,6 +27,10 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(REPOSITORY / "workflow" / "lib"))
 
+from courtside.study import installed
+
+installed.require()
+
 from courtside.evaluation.numbers import study as numbers
 from courtside.study.errors import InputError
 from courtside.study.provenance import comparison, stage_checksums, verification

@@ -2,6 +2,7 @@
 
 errors: `InputError`, an error that a user can mend; `reading`, which raises it on damaged files;
     `StrPath`, the type of paths
+installed: `require`: one line where packages are missing
 measure_names: the names of all measures, checked before any is measured
 methods: `Calibration`, `Variant` and `Fusion`, parsed from their names
 paths: the name of every file
