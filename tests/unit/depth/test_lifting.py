@@ -163,7 +163,7 @@ def test_reasons_of_the_picture_stay(still):
     assert np.isnan(motion.xyz[2, 4]).all()
 
 
-def test_a_lost_depth_picture_is_no_depth(still):
+def test_a_lost_depth_picture_is_no_depth(still, caplog):
     xyz, pictures = still
     keypoints = view(xyz)
     taken = [(t, depth_scenes.steps(z)) for t, z in zip(keypoints.time_s, pictures, strict=True)]
@@ -174,6 +174,7 @@ def test_a_lost_depth_picture_is_no_depth(still):
     assert (motion.reason[5] == missing_reason.NO_DEPTH).all()
     assert np.count_nonzero(motion.reason) == len(NAMES)
     assert "91.7%" in lifting.summary(motion, np.ones(3))
+    assert not caplog.messages
     assert lifting.doubt(motion) is None
 
 
@@ -204,7 +205,7 @@ def test_a_body_of_another_size_is_told(still, factor):
         assert "depth_unit_m" in said
 
 
-def test_a_slower_depth_stream_serves_every_colour_frame(still):
+def test_a_slower_depth_stream_serves_every_colour_frame_and_is_told(still, caplog):
     """Colour at 60 frames a second, depth at 30; then one picture of depth is lost."""
     xyz, pictures = still
     keypoints = replace(view(xyz), time_s=5 + np.arange(N) / 60)
@@ -213,6 +214,8 @@ def test_a_slower_depth_stream_serves_every_colour_frame(still):
     settings = {"bones": BONES, "baseline_m": 0.055, "skin_m": RADIUS_M}
     motion, _ = lifting.lift_take("d", keypoints, taken, RIG, **settings)
     assert (motion.reason == missing_reason.OK).all()
+    (said,) = caplog.messages
+    assert said.startswith("d: expected depth as often as colour, found it every 33 ms and colour ")
     del taken[3]
     motion, _ = lifting.lift_take("d", keypoints, taken, RIG, **settings)
     lost = (motion.reason == missing_reason.NO_DEPTH).all(axis=1)

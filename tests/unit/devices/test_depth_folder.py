@@ -75,6 +75,33 @@ def test_depth_pictures_are_ordered_by_the_value_of_their_numbers(folder):
     assert np.array_equal(found, DEPTHS)
 
 
+def named(folder, names):
+    for k, name in enumerate(names):
+        (folder / "depth" / f"{k:04}.png").rename(folder / "depth" / f"{name}.png")
+    return depth_folder.read(folder)
+
+
+def test_times_as_names_without_zeros_at_the_end_are_told(folder):
+    """As `f"{time.time()}.png"` writes them: pictures of another time would be taken."""
+    with pytest.raises(InputError) as raised:
+        named(folder, ("17.4666667", "17.5", "17.5333333", "17.5666667", "18.0"))
+    assert "depth: expected names whose order is clear" in str(raised.value)
+    assert "17.5.png and 17.4666667.png; number the pictures" in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("17.466667", "17.500000", "17.533333", "17.566667", "18.000000"),
+        ("rec1.8", "rec1.9", "rec1.10", "rec1.11", "rec1.12"),
+    ],
+    ids=["all digits", "numbers of one take"],
+)
+def test_names_with_a_point_whose_order_is_clear_are_read(folder, names):
+    found = [steps for _, steps in named(folder, names).depth_frames()]
+    assert np.array_equal(found, DEPTHS)
+
+
 def test_frame_times_come_from_the_tables(folder):
     (folder / "colour.csv").write_text("number,time_s\n7,1.0\n8,1.1\n9,1.2\n11,1.4\n12,1.5\n")
     (folder / "depth.csv").write_text("number,time_s\n7,1.01\n8,1.11\n10,1.31\n11,1.41\n")

@@ -131,6 +131,20 @@ def test_a_folder_of_depth_is_one_recording(tmp_path):
     assert (one.path, one.kind, one.parts) == ("room/claps_depth", "depth", ("claps_depth",))
 
 
+@pytest.mark.parametrize("steps", [3000, 30000], ids=["1 mm a step", "0.1 mm a step"])
+def test_pictures_of_depth_are_no_walk(tmp_path, steps):
+    for name, image in (
+        ("rgb", np.full((48, 64, 3), 120, np.uint8)),
+        ("depth", np.full((48, 64), steps, np.uint16)),
+    ):
+        (tmp_path / "kinect" / name).mkdir(parents=True)
+        for k in range(3):
+            cv2.imwrite(str(tmp_path / "kinect" / name / f"{k:06}.png"), image)
+    depth, colour = survey.survey(tmp_path, root=tmp_path)
+    assert (depth.kind, colour.kind) == ("unusable", "photos")
+    assert "pictures of depth" in depth.note and "cameras.toml" in depth.note
+
+
 def test_an_empty_folder_is_told(tmp_path):
     """Of keypoints, it is one camera less; here nothing was copied."""
     for name in ("pose/cam1_json", "pose/cam2_json", ".hidden"):

@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+import scipy
 
 from courtside.footwork import stances, tracks
-from fixtures.people import walking_feet
+from courtside.kinematics import skeleton_filter
+from fixtures.people import footwork, walker, walking_feet
 
 SECONDS = 5.0
 
@@ -54,6 +56,37 @@ def test_sigma_holds_at_low_frame_rates(rate_hz):
                 found += list(np.take_along_axis(apart, near[:, None], axis=1)[:, 0] / sigma[near])
     assert np.sqrt(np.mean(np.square(found))) < 1.3
     assert np.mean(np.array(found) <= 2) >= 0.95
+
+
+def drop_jump(height_m, flight_s, rate_hz):
+    """Return filtered keypoints of who drops from a box at 1 s, and the feet's three true times.
+
+    They land, leave 0.2 s later, and land again after the flight. Nothing but g moves them in air.
+    """
+    g, time_s = scipy.constants.g, np.arange(3.5 * rate_hz) / rate_hz
+    lands_s = 1 + np.sqrt(2 * height_m / g)
+    leaves_s, again_s = lands_s + 0.2, lands_s + 0.2 + flight_s
+    high = height_m - g / 2 * np.maximum(time_s - 1, 0) ** 2
+    up_s = np.clip(time_s - leaves_s, 0, flight_s)
+    high = np.where(time_s < lands_s, high, g / 2 * up_s * (flight_s - up_s))
+    xyz, _ = footwork.body(np.column_stack([0 * high, 0 * high, 1.45 + high]), time_s)
+    for part, y, z in (("ankle", 0.0, 0.08), ("heel", -0.05, 0.03), ("foot_index", 0.15, 0.02)):
+        place = np.column_stack([0 * high - 0.15, 0 * high + y, z + high])
+        xyz[:, walker.SKELETON.index(f"left_{part}")] = place
+    made = footwork.record(xyz, time_s, 0.006, 0.0, np.random.default_rng(0))
+    return skeleton_filter.smooth(made, walking_feet.CUTOFF_HZ, 4), (lands_s, leaves_s, again_s)
+
+
+@pytest.mark.parametrize("rate_hz", [30, 60, 120])
+@pytest.mark.parametrize("height_m", [0.2, 0.3, 0.4, 0.6])
+def test_feet_that_fall_land_and_leave_in_time(height_m, rate_hz):
+    points, true_s = drop_jump(height_m, 0.45, rate_hz)
+    own, _ = tracks.tracks(points, 0, "left", walking_feet.CUTOFFS)
+    before, after = stances.of_tracks(own, len(points.time_s))[0][-2:]
+    found_s = np.array([before.onset_s, before.end_s, after.onset_s])
+    sigma_s = np.array([before.onset_sigma_s, before.end_sigma_s, after.onset_sigma_s])
+    assert np.abs(found_s - true_s).max() < 0.025
+    assert (np.abs(found_s - true_s) < 1.645 * sigma_s).all()
 
 
 def test_stances_that_the_take_cuts_have_no_onset_or_end_and_a_place():

@@ -13,6 +13,7 @@ from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.keypoints import missing_reason, skeleton
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
+from courtside.study.execution import log
 
 # Depth of a joint behind the visible skin from any side, metres: the radius of the limb there.
 # ASSUME: limbs are round: half of circumference / pi of adults' medians in ANSUR II (Gordon et al.
@@ -39,6 +40,7 @@ ON_SKIN = ("nose", "eye", "eye_inner", "eye_outer", "mouth")
 LEAST_RADIUS_M = 0.02  # of the limb at a joint, for the size of its window
 # Of the longer interval of colour and depth: an older or newer depth picture shows another pose.
 LAG = 0.75
+SLOWER = 1.5  # times colour's interval: depth that comes less often is told
 FIRST = 11  # depth pictures that tell their interval
 BONE_TOLERANCE, BONE_TOLERANCE_M = 0.25, 0.06  # share of a bone's length, and least tolerance
 FEWEST = 10  # frames that a bone's median length needs
@@ -88,7 +90,7 @@ def lift_take(
     radius_m = np.maximum(skin, LEAST_RADIUS_M)
     sampler = Sampler(rig, radius_m, is_trunk, baseline_m, sampling)
     xy = np.where((view.reason[0] == missing_reason.OK)[..., np.newaxis], view.xy[0], np.nan)
-    z, z_body = _sampled(sampler, xy, view.time_s, depth_frames)
+    z, z_body = _sampled(source, sampler, xy, view.time_s, depth_frames)
     joints_at = _behind_skin(rig.colour, xy, z, skin)
     chain = _chain(names, bones, is_trunk)
     radius_px_m = radius_m * rig.colour.K[0, 0]  # px at a depth of 1 m
@@ -157,15 +159,24 @@ def nearest_frames(
         yield best[1] if best is not None and close else None
 
 
-def _sampled(sampler, xy, times_s, depth_frames) -> tuple[NDArray, NDArray]:
+def _sampled(source, sampler, xy, times_s, depth_frames) -> tuple[NDArray, NDArray]:
     """Return the surfaces (T, J, 3) and the depth of the body (T,), metres."""
     z, z_body = np.full((*xy.shape[:2], 3), np.nan), np.full(len(xy), np.nan)
     depth_frames = iter(depth_frames)
     first = list(itertools.islice(depth_frames, FIRST))
     steps_s = [np.diff(times_s), np.diff([time_s for time_s, _ in first])]
-    interval_s = max((np.median(one) for one in steps_s if len(one)), default=1.0)
+    medians_s = [np.median(one) for one in steps_s if len(one)]
+    if len(medians_s) == 2 and medians_s[1] > SLOWER * medians_s[0]:
+        log.logger.warning(
+            "%s: expected depth as often as colour, found it every %.0f ms and colour every %.0f: "
+            "frames between take depth of another time, where fast joints are off by more than "
+            "sigma says; record both at one rate",
+            source,
+            1000 * medians_s[1],
+            1000 * medians_s[0],
+        )
     frames = itertools.chain(first, depth_frames)
-    for t, depth in enumerate(nearest_frames(times_s, frames, LAG * interval_s)):
+    for t, depth in enumerate(nearest_frames(times_s, frames, LAG * max(medians_s, default=1.0))):
         if depth is not None:
             z[t], z_body[t] = sampler.surfaces(xy[t], depth)
     return z, z_body

@@ -28,6 +28,8 @@ The folder holds
     depth_unit_m = 0.001
 """
 
+import itertools
+import re
 import tomllib
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -145,7 +147,26 @@ def _pictures(folder: Path) -> list[Path]:
     found = sorted(folder.glob("[!.]*.png"), key=images.name_order)
     if not found:
         raise InputError(f"{folder}: expected 16-bit PNG pictures of depth, found none; add them")
+    _check_order(found)
     return found
+
+
+def _check_order(found: Sequence[Path]) -> None:
+    """Refuse times as names where the digits after the point differ in number.
+
+    `f"{time.time()}.png"` drops zeros at the end: 7.5 is after 7.033. With the number of the
+    nanoseconds there, it is before; and of takes, `1.9` is before `1.10`.
+    """
+    ends = [re.search(r"(\d+)\.\d+$", path.stem) for path in found]
+    if None in ends or len({end[1] for end in ends if end}) == 1:
+        return
+    times = [float(end[0]) for end in ends if end]
+    for (path, time_s), (later, later_s) in itertools.pairwise(zip(found, times, strict=True)):
+        if time_s > later_s:
+            raise InputError(
+                f"{path.parent}: expected names whose order is clear, found {path.name} and "
+                f"{later.name}; number the pictures in order of time"
+            )
 
 
 def _indices(folder: Path, film: Path, n_depth: int) -> tuple[FrameTimes, FrameTimes]:

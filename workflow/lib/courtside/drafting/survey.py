@@ -7,6 +7,9 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+import cv2
+import numpy as np
+
 from courtside.calibration import file_formats
 from courtside.devices import depth_folder, frame_numbers, openpose
 from courtside.drafting.recordings import Recording
@@ -30,6 +33,10 @@ OTHER_TABLES = {  # by the key of a session that names them: columns beside thos
 }
 PEOPLE = {*CLICKED, "take", "subject", "time_s"}
 RACKET = {"take", "camera", "frame_idx", "end"}
+DEPTH = (
+    "16 bits and one channel, as pictures of depth: a depth camera's folder has cameras.toml, "
+    "colour.mp4 and depth/ (config/README.md); write photos with 8 bits"
+)
 EMPTY = "an empty folder; copy its recordings into it, or delete it"
 
 
@@ -137,6 +144,9 @@ def _video(path: Path) -> dict[str, Any]:
 def _photos(path: Path) -> dict[str, Any]:
     """Describe a photo or a folder of photos by the first of them."""
     photos = walk_frames.photo_paths(path)
+    first = images.read(photos[0], cv2.IMREAD_UNCHANGED, what=walk_frames.PHOTO)
+    if first.dtype == np.uint16 and first.ndim == 2:
+        return {"kind": "unusable", "note": DEPTH}
     height, width = walk_frames.read_photo(photos[0]).shape[:2]
     more = {"kind": "photos", "n_photos": len(photos)} if path.is_dir() else {"kind": "photo"}
     return {"size": (width, height), **more}
