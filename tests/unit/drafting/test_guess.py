@@ -130,13 +130,15 @@ def test_a_walk_that_players_walk_is_a_take():
     assert not found.walks
 
 
-def test_a_take_stands_in_for_static_recordings_that_a_walk_needs():
+def test_a_take_stands_in_for_static_recordings_that_walks_and_clicks_need():
     found = guess("left_empty.mp4", "a_left.mp4", "a_right.mp4", "right_empty.mp4", "walk.mp4")
     assert (set(found.static), found.stand_ins) == ({"left", "right"}, [])
     found = guess("serve_cam1.mp4", "serve_cam2.mp4", "walk.mp4")
     assert found.stand_ins == ["cam1", "cam2"]
     assert paths(found.static) == {"cam1": "serve_cam1.mp4", "cam2": "serve_cam2.mp4"}
-    assert guess("serve_cam1.mp4", "serve_cam2.mp4").stand_ins == []
+    clicked = guess("serve_cam1.mp4", "serve_cam2.mp4")
+    assert paths(clicked.static) == {"cam1": "serve_cam1.mp4", "cam2": "serve_cam2.mp4"}
+    assert guess("serve_cam1.mp4", "serve_cam2.mp4", "Calib.toml", Calib="calibration").stand_ins == []
 
 
 def test_photos_alone_are_a_walk():

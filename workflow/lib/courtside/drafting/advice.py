@@ -57,10 +57,7 @@ def _of_cameras(guess: Guess, court_points: str | None) -> Iterator[str]:
             )
         return
     if guess.court_points is None:
-        page = "the first run makes a page to click them on"
-        if not set(guess.cameras) <= set(guess.static):
-            page = f"give every camera a `static` recording, and {page}"
-        yield f"Court points: {page}, for {court_points}."
+        yield f"Court points: the first run makes a page to click them on, for {court_points}."
     if not guess.walks:
         yield "No walk was found: the cameras will be calibrated from clicked court points alone."
 

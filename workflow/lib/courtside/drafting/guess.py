@@ -47,9 +47,9 @@ def guess(recordings: Sequence[Recording]) -> Guess:
     _keep_serials(found)
     for camera in [name for name in found.boards if name not in found.cameras]:
         found.unused.append((found.boards.pop(camera), "a chessboard of no camera found"))
-    if found.walks:
-        _stand_in(found)
     _sort_others(found, recordings, own)
+    if found.walks or found.calibration is None:
+        _stand_in(found)
     _rename(found)
     return found
 
@@ -198,7 +198,7 @@ def _keep_serials(found: Guess) -> None:
 
 
 def _stand_in(found: Guess) -> None:
-    """Use the first take for missing static recordings: a walk is tied to them."""
+    """Use the first take for missing static recordings: walks and clicks need their pictures."""
     for camera in found.cameras:
         films = found.films(camera)
         if camera not in found.static and films and films[0].kind == "video":
