@@ -105,13 +105,23 @@ def test_who_is_lost_for_long_is_not_away(lost):
     assert rows[ALL, "p2"].verdict == rows[ALL, ALL].verdict == FAILED
 
 
-@pytest.mark.parametrize(("leaving", "returning"), [(10, 10), (10, 0), (0, 10)])
-def test_everybody_may_leave_the_pictures_and_come_back(leaving, returning):
-    """The pictures become empty one after another, by these frames, or fill so; not at one time."""
+def emptied(leaving, returning):
+    """Return pictures that become empty one after another, by these frames, and fill so."""
     cameras = judged.footage(900)
     for at, one in enumerate(cameras):
         one.tracklets.xy[:, 60 + leaving * at : 390 - returning * at] = np.nan
-    rows, table = wholes(cameras)
+    return cameras
+
+
+@pytest.mark.parametrize(("leaving", "returning"), [(0, 10), (10, 0)])
+def test_pictures_that_become_empty_or_fill_at_one_time_are_a_fault(leaving, returning):
+    rows, _ = wholes(emptied(leaving, returning))
+    assert rows[ALL, ALL].verdict != GOOD
+
+
+@pytest.mark.parametrize(("leaving", "returning"), [(10, 10), (10, 5)])
+def test_everybody_may_leave_the_pictures_and_come_back(leaving, returning):
+    rows, table = wholes(emptied(leaving, returning))
     assert set(table["verdict"]) == {GOOD}
     until_s, since_s = (60 + 3 * leaving - 1) / 50, (390 - 3 * returning) / 50
     when = f"from 0.0 to {until_s:.1f} s and {since_s:.1f} to 18.0 s of the take"

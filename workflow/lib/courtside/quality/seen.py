@@ -114,16 +114,20 @@ def _away(seen: Seen) -> NDArray:
 def _left(followed: NDArray, time_s: NDArray) -> NDArray:
     """Return when nobody is followed, (C, P, T), because everybody has left, (T,).
 
-    People leave pictures one after another, or come back so. Of light or a network that fails, most
-    of the bodies are last seen, and seen again, at one time.
+    People leave pictures one after another, and come back so. When light or a network fails, or
+    works again, most of the bodies are last seen, or seen again, at one time.
     """
     total = followed.sum(axis=(0, 1))
     left = np.zeros(len(total), bool)
     for start, stop in runs(total == 0):
         before, after = time_s[start] - time_s[:start], time_s[stop:] - time_s[stop - 1]
-        for away_s, number in ((before, total[:start]), (after, total[stop:])):
-            edge, near = (number[away_s < most_s].max(initial=0) for most_s in (TOGETHER_S, AWAY_S))
-            left[start:stop] |= 0 < 2 * edge <= near
+        sides = [(before, total[:start]), (after, total[stop:])]
+        most = [
+            [number[away_s < most_s].max() for most_s in (TOGETHER_S, AWAY_S)]
+            for away_s, number in sides
+            if len(number)
+        ]
+        left[start:stop] = bool(most) and all(2 * edge <= near for edge, near in most)
     return left
 
 
