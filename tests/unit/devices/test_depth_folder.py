@@ -81,10 +81,11 @@ def named(folder, names):
     return depth_folder.read(folder)
 
 
-def test_times_as_names_without_zeros_at_the_end_are_told(folder):
+@pytest.mark.parametrize("last", ["18.0", "18"])
+def test_times_as_names_without_zeros_at_the_end_are_told(folder, last):
     """As `f"{time.time()}.png"` writes them: pictures of another time would be taken."""
     with pytest.raises(InputError) as raised:
-        named(folder, ("17.4666667", "17.5", "17.5333333", "17.5666667", "18.0"))
+        named(folder, ("17.4666667", "17.5", "17.5333333", "17.5666667", last))
     assert "depth: expected names whose order is clear" in str(raised.value)
     assert "17.5.png and 17.4666667.png; number the pictures" in str(raised.value)
 
@@ -94,8 +95,9 @@ def test_times_as_names_without_zeros_at_the_end_are_told(folder):
     [
         ("17.466667", "17.500000", "17.533333", "17.566667", "18.000000"),
         ("rec1.8", "rec1.9", "rec1.10", "rec1.11", "rec1.12"),
+        ("10.15.59.900", "10.15.59.933", "10.15.59.967", "10.16.00.000", "10.16.00.033"),
     ],
-    ids=["all digits", "numbers of one take"],
+    ids=["all digits", "numbers of one take", "times of day"],
 )
 def test_names_with_a_point_whose_order_is_clear_are_read(folder, names):
     found = [steps for _, steps in named(folder, names).depth_frames()]

@@ -152,15 +152,15 @@ def _pictures(folder: Path) -> list[Path]:
 
 
 def _check_order(found: Sequence[Path]) -> None:
-    """Refuse times as names where the digits after the point differ in number.
+    """Refuse names that may be times without zeros at the end, if these have another order.
 
-    `f"{time.time()}.png"` drops zeros at the end: 7.5 is after 7.033. With the number of the
-    nanoseconds there, it is before; and of takes, `1.9` is before `1.10`.
+    Of times, 7.5 is after 7.033; of nanoseconds after the point, and of takes, it is before.
     """
-    ends = [re.search(r"(\d+)\.\d+$", path.stem) for path in found]
-    if None in ends or len({end[1] for end in ends if end}) == 1:
+    ends = [end for path in found if (end := re.search(r"(\d+)(?:\.(\d+))?$", path.stem))]
+    digits = {len(end[2] or "") for end in ends}
+    if len(ends) < len(found) or len(digits) == 1 or len({end[1] for end in ends}) == 1:
         return
-    times = [float(end[0]) for end in ends if end]
+    times = [float(end[0]) for end in ends]
     for (path, time_s), (later, later_s) in itertools.pairwise(zip(found, times, strict=True)):
         if time_s > later_s:
             raise InputError(
