@@ -152,6 +152,15 @@ def test_an_interval_is_as_wide_as_takes_differ():
     np.testing.assert_allclose(share["value_to"] - share["value_from"], 35, rtol=0.3)
 
 
+def test_a_draw_without_a_known_value_is_left_out():
+    """Of five takes, one second has a value: some draws have none of its frames."""
+    counts, _ = networks._counts([60] * 5, [30.0] * 5)
+    values, frame = np.full(30, 50.0), np.arange(30)
+    for percentile in (None, 50):
+        drawn = networks._drawn(counts, values, frame, percentile)
+        assert np.isnan(drawn).any() and set(drawn[np.isfinite(drawn)]) == {50.0}
+
+
 def test_frames_of_cameras_are_drawn_together_by_their_time():
     step_s, slot = networks._slots(made(constant(1), n_frames=5))
     assert step_s == pytest.approx(1 / 30)

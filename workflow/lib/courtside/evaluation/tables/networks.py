@@ -161,8 +161,10 @@ def _drawn(
     found = np.full(len(counts), np.nan)
     for at, often in enumerate(counts):
         weight = often[frame]
+        if not weight.any():
+            continue
         if percentile is None:
-            found[at] = (weight * values).sum() / max(weight.sum(), 1)
+            found[at] = (weight * values).sum() / weight.sum()
         else:
             below = np.cumsum(weight)
             place = np.searchsorted(below, percentile / 100 * below[-1])
