@@ -23,7 +23,7 @@ def test_files_that_are_not_used_are_told_at_once():
 
 def test_no_page_for_clicks_is_promised_without_a_court():
     guess, text, _ = draft(*TAKE, court="none")
-    assert "calibrations" not in text
+    assert "calibrations" not in text and "static" not in text
     said = "\n".join(advice.to_check(guess, "n.yaml", None, "s.yaml"))
     assert "Cameras: nothing in the folder tells how they stand" in said
     assert not any(part in said for part in ("Court points", "No walk", "people alone"))

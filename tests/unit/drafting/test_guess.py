@@ -138,7 +138,8 @@ def test_a_take_stands_in_for_static_recordings_that_walks_and_clicks_need():
     assert paths(found.static) == {"cam1": "serve_cam1.mp4", "cam2": "serve_cam2.mp4"}
     clicked = guess("serve_cam1.mp4", "serve_cam2.mp4")
     assert paths(clicked.static) == {"cam1": "serve_cam1.mp4", "cam2": "serve_cam2.mp4"}
-    assert guess("serve_cam1.mp4", "serve_cam2.mp4", "Calib.toml", Calib="calibration").stand_ins == []
+    given = guess("serve_cam1.mp4", "serve_cam2.mp4", "Calib.toml", Calib="calibration")
+    assert given.stand_ins == []
 
 
 def test_photos_alone_are_a_walk():

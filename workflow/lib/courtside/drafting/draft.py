@@ -3,6 +3,7 @@
 import json
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import yaml
@@ -48,6 +49,9 @@ def text(guess: Guess, *, title: str, folder: str, court: str | None = None) -> 
     if guess.takes:
         lines += ["subjects:", f"  p1: {{consent: [analysis, pictures]}}  {MARK} {SUBJECTS}"]
     clicked = measured and court != "none"
+    if not clicked and not guess.walks:  # nothing needs the pictures of takes that stand in
+        filmed = {c: film for c, film in guess.static.items() if c not in guess.stand_ins}
+        guess = replace(guess, static=filmed, stand_ins=[])
     lines += [*_cameras(guess), *_walks(guess), *_places(guess, folder, clicked)]
     lines += [*_people(guess, folder), *synchronised(guess), *_takes(guess)]
     lines += _override(guess)
