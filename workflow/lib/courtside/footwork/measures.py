@@ -12,8 +12,8 @@ from courtside.records import footwork
 
 COLUMNS = ("person", "measure", "value", "sigma", "unit", "n", "definition")
 PAUSE_S = 3.0  # ASSUME: a rally is over when no foot is seen to land for longer
-# ASSUME: nobody ends a rally, fetches the shuttle and serves again in less; in longer times out of
-# sight somebody may have.
+# ASSUME: in this time out of sight and `PAUSE_S` seen, nobody ends a rally, fetches the shuttle and
+# serves again.
 MOST_UNSEEN_S = 5.0
 LEAST_LANDINGS = 3  # of a rally: fewer say nothing of a path or a rate
 COUNTED = {"step": "steps", "lunge": "lunges", "split_step": "split_steps", "jump": "jumps"}

@@ -58,8 +58,8 @@ def observe(posed: PosedHierarchy, vision: DeviceMotion, sigma_m: ArrayLike) -> 
     if frames < LEAST_FRAMES:
         raise InputError(
             f"{vision.source}: expected {LEAST_FRAMES} frames with {LEAST_JOINTS} limb joints "
-            f"during the inertial recording, found {frames}; check the clocks and what the camera "
-            "saw"
+            f"during the inertial recording, found {frames}; check the clocks, what the camera "
+            "saw, and whether the suit repeats one pose"
         )
     xyz, sigma = np.where(usable[..., None], xyz, np.nan), np.where(usable, sigma, 1.0)
     return Seen(vision.source, tuple(joints), vision.time_s[inside], xyz, sigma)

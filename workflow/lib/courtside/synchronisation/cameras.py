@@ -32,8 +32,8 @@ KNOWN_DRIFT = 0.5  # share of the prior: a larger uncertainty means a mostly ass
 READOUT_SPREAD_S = 0.01  # ASSUME: rolling shutters need up to about 20 ms from top to bottom
 # A network errs with the pose, alike through a take, which looks like a shift in time. 3 ms are the
 # likeliest for 86 clocks of virtual development takes (players-dev, -stands, -near): 93 % of them
-# are in their stated 90 % (84 % without this term). Held-out takes judge it: of 30 of repeats
-# and players-b, 97 % are (90 % without). ASSUME: other networks and real people err as much.
+# are in their stated 90 % (84 % without this term). Of 30 of repeats and players-b, held out, 97 %
+# are (90 % without). ASSUME: other networks and real people err as much.
 NETWORK_S = 0.003
 SMOOTHING = 0.85  # of the longest frame interval: less would bias offsets to half frames
 REFERENCE = Clock(status="reference", note="the take's clock")
