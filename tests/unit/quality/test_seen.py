@@ -52,3 +52,10 @@ def test_whoever_leaves_the_picture_is_not_expected_there():
 def test_short_takes_are_gathered(n_frames):
     seen = judged.gathered(judged.footage(n_frames=n_frames))
     assert seen.others.shape == (4, 2, n_frames, 6, 3)
+
+
+def test_below_five_frames_per_second_empty_pictures_are_no_absence():
+    """No frame is within 0.2 s of the empty ones: who left when is not known."""
+    followed = np.ones((2, 1, 60), bool)
+    followed[:, :, 20:45] = False
+    assert not views._left(followed, np.arange(60) / 4).any()

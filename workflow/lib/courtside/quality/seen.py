@@ -123,11 +123,11 @@ def _left(followed: NDArray, time_s: NDArray) -> NDArray:
         before, after = time_s[start] - time_s[:start], time_s[stop:] - time_s[stop - 1]
         sides = [(before, total[:start]), (after, total[stop:])]
         most = [
-            [number[away_s < most_s].max() for most_s in (TOGETHER_S, AWAY_S)]
+            [number[away_s < most_s].max(initial=0) for most_s in (TOGETHER_S, AWAY_S)]
             for away_s, number in sides
             if len(number)
         ]
-        left[start:stop] = bool(most) and all(2 * edge <= near for edge, near in most)
+        left[start:stop] = bool(most) and all(0 < 2 * edge <= near for edge, near in most)
     return left
 
 
