@@ -231,17 +231,18 @@ def _of_turned(cameras, known, seen: Seen, limits: Limits, steps: list[_Step]) -
     the one that stands out least: the fewer there are, the surer are their turns.
     """
     at_once = [one for one in steps if abs(one.time_s - steps[-1].time_s) < BLOCK_S]
-    turned, least = sorted({one.camera for one in at_once}), 0.0
-    while len(turned) > 1 and least < SURE:
-        both = [replace(steps[-1], camera=at, turn=np.zeros(3)) for at in turned]
-        found = _measured(cameras, known, seen, limits, both)
-        stand_out = [float(np.max(np.abs(turn) / sigma)) for turn, sigma in found]
-        least = min(stand_out)
-        if least < SURE:
-            turned.pop(stand_out.index(least))
-    both = [replace(steps[-1], camera=at, turn=np.zeros(3)) for at in turned]
-    others = {at: tuple(one for one in both if one.camera != at) for at in turned}
+    turned = {
+        at: replace(steps[-1], camera=at, turn=np.zeros(3))
+        for at in sorted({one.camera for one in at_once})
+    }
+    while len(turned) > 1:
+        found = _measured(cameras, known, seen, limits, list(turned.values()))
+        sure = [float(np.max(np.abs(turn) / sigma)) for turn, sigma in found]
+        if min(sure) >= SURE:
+            break
+        del turned[list(turned)[sure.index(min(sure))]]
     kept = [one for one in steps if one.camera in turned or one not in at_once]
+    others = {at: tuple(turned[k] for k in turned if k != at) for at in turned}
     return [replace(s, others=others[s.camera]) if s in at_once else s for s in kept]
 
 
