@@ -21,7 +21,8 @@ from people_seen import LIMITS, STATED, of_takes
 from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
-from courtside.calibration.people import knocks, prior, views
+from courtside.calibration.people import prior, views
+from courtside.calibration.people.knocks import knocks
 from courtside.calibration.records import covariance
 from courtside.evaluation.numbers.players import NETWORK
 from courtside.geometry import camera as camera_models

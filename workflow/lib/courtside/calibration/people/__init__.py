@@ -5,7 +5,7 @@ views: `Seen`, `Limits`, `joined`, `placed`, `check`, `longest_way`: joints at c
 prior: `stated`, `knowledge`: what is known of cameras before
 adjustment: `refine`, `Clicks`, `court_clicks`: cameras and joints adjusted together
 held_out: `score`, `verdicts`, `better`: whether cameras are better, by what the fit did not see
-knocks: `find`, `between`, `undone`, `row`, `lines`: cameras knocked have two poses
+knocks/: cameras knocked during a take or between takes have two poses
 resection: `lost`, `expected`, `find`, `widened`, `line`: cameras that agree with nobody
 relative_poses: `pair`, `pose`: relative poses of cameras from tracks of unknown persons
 metric_scale: `Scale`, `Body`, `KnownLength`, `of_clicks`, `find`, `combined`, `by_lengths`,

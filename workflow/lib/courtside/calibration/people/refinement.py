@@ -8,8 +8,9 @@ import numpy as np
 import pandas as pd
 
 from courtside.calibration.file_check import residuals, verdict
-from courtside.calibration.people import adjustment, held_out, knocks, prior, resection, views
+from courtside.calibration.people import adjustment, held_out, prior, resection, views
 from courtside.calibration.people.held_out import Points, Score
+from courtside.calibration.people.knocks import knocks
 from courtside.calibration.people.views import Limits, Seen
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from courtside.calibration.people import held_out, knocks, prior
+from courtside.calibration.people import prior
+from courtside.calibration.people.knocks import judgement, knocks, steps
 from courtside.calibration.people.views import Limits
 from courtside.geometry import camera as cameras
 from courtside.records.cameras import knock_table
@@ -71,7 +72,8 @@ def test_a_knock_is_told_in_the_clock_of_its_camera(found):
 
 
 def test_a_camera_that_sees_nobody_of_the_others_hinders_no_search(knocked, monkeypatch):
-    monkeypatch.setattr(knocks, "_judged", lambda *_: knocks._Judged(0.0, knocks.NOT_BETTER))
+    said = judgement.Judged(0.0, judgement.NOT_BETTER)
+    monkeypatch.setattr(judgement, "judged", lambda *_: said)
     blind = knocked.xy.copy()
     blind[3] = np.nan
     found = knocks.find(TRUE, KNOWN, replace(knocked, xy=blind), LIMITS)
@@ -149,14 +151,14 @@ def test_steps_that_the_turn_of_another_camera_makes_are_not_tried():
     xy, after = SEEN.xy.copy(), SEEN.time_s >= AT_S
     xy[2, after] = cameras.turned_back(TRUE[2], xy[2, after], -4 * TURN)
     seen = replace(SEEN, xy=xy)
-    steps = [
+    tried = [
         step
         for one in (TRUE, walkers.disturbed(TRUE, KNOWN, 3))
-        for step in knocks._steps(one, seen, LIMITS.score, None)
+        for step in steps.clearest(one, seen, LIMITS.score, None)
     ]
-    steps.sort(key=lambda one: one.gain)
-    kept = knocks._of_turned(TRUE, KNOWN, seen, LIMITS, steps)
-    there = [{s.camera for s in some if abs(s.time_s - AT_S) < 0.5} for some in (steps, kept)]
+    tried.sort(key=lambda one: one.gain)
+    kept = knocks._of_turned(TRUE, KNOWN, seen, LIMITS, tried)
+    there = [{s.camera for s in some if abs(s.time_s - AT_S) < 0.5} for some in (tried, kept)]
     assert len(there[0]) > 1 and there[1] == {2}
 
 
@@ -198,15 +200,3 @@ def test_a_knock_in_the_last_seconds_of_a_longer_take_is_found(monkeypatch):
     (found,) = knocks.find(TRUE, known, replace(seen, xy=xy), LIMITS)
     assert found.taken and found.camera == 2 and found.time_s == pytest.approx(20.5, abs=0.2)
     assert (np.abs(found.turn - 2 * TURN) < 3 * found.sigma).all()
-
-
-def test_a_side_of_one_block_does_not_tell_of_a_knock():
-    before = held_out.Score(dict(enumerate([0.02] * 8)))
-    seen = replace(SEEN, time_s=np.arange(80) / 10)
-    for first, taken in ((7.0, False), (6.0, True)):
-        shares = [0.005 if block >= first else 0.02 for block in range(8)]
-        ((kept, _), (gone, said)) = knocks._by_side(
-            before, held_out.Score(dict(enumerate(shares))), seen, knocks._Step(2, first, TURN, 99)
-        )
-        assert kept == 0 and gone == pytest.approx(-0.75)
-        assert held_out.better(said) is taken
