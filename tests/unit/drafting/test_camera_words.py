@@ -112,12 +112,28 @@ def test_names_with_take_before_camera_need_no_look():
 
 def test_walks_that_may_be_takes_are_told():
     """No take is found, or a walk has the word of a camera."""
-    found, odd = takes("left_empty", "serve_left", "serve_right")
+    found, odd = takes("left_empty", "serve_left", "volley_right")
     assert found == {}
-    assert "serve_right.mp4 was taken for a walk" in odd[0]
+    assert "volley_right.mp4 was taken for a walk" in odd[0]
     _, odd = takes(*each("walking_<camera>_<n>", **SIDES, n="01 02"), *EMPTY)
     assert sum("was taken for a walk" in line for line in odd) == 4
     assert takes(*EMPTY, "walk")[1] == []
+
+
+def test_a_camera_without_a_recording_of_the_empty_hall_is_told_by_takes_of_others():
+    one_take = {"serve": {"left": "serve_left", "right": "serve_right"}}
+    assert takes("left_empty", "serve_left", "serve_right") == (one_take, [])
+    two_takes = each("<take>_<camera>", take="a b", camera="cam1 cam2 cam3")
+    assert [len(take) for take in takes("cam2_empty", *two_takes, "walk")[0].values()] == [3, 3]
+    assert len(takes("left_empty", "left", "right", "walk")[0]["take1"]) == 2
+
+
+def test_a_camera_that_films_no_take_of_others_walks():
+    assert takes(*EMPTY, "left", "right", "gopro1")[0] == {
+        "take1": {"left": "left", "right": "right"}
+    }
+    filmed = takes(*EMPTY, "a_left", "a_right", "round_gopro1")[0]
+    assert filmed == {"a": {"left": "a_left", "right": "a_right"}}
 
 
 def test_a_camera_of_more_words_goes_first():

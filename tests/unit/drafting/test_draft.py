@@ -46,7 +46,7 @@ def test_named_persons_are_looked_for_where_pictures_show_them():
 
 def test_the_workflow_takes_a_draft(tmp_path):
     """All but the files themselves, which are not there, is as a session must be."""
-    guess, text, _ = draft(*TAKE, WALK)
+    _, text, _ = draft(*TAKE, WALK)
     path = tmp_path / "sessions" / "north.yaml"
     path.parent.mkdir()
     session_draft.write(path, text)
@@ -57,7 +57,23 @@ def test_the_workflow_takes_a_draft(tmp_path):
     assert (
         len(found) == 5
     )  # two videos, the same as static recordings, the walk; clicks may come later
-    assert guess.stand_ins == ["left", "right"]
+    for camera, video in content["takes"]["a"]["videos"].items():
+        assert content["cameras"][camera]["static"] == video
+
+
+def test_a_take_stands_in_for_the_empty_hall_where_walks_or_clicks_need_its_pictures():
+    def static(*recordings, **keys):
+        cameras = draft(*recordings, **keys)[2]["cameras"]
+        return {camera: said["static"] for camera, said in cameras.items() if "static" in said}
+
+    taken = {"left": "data/north/a_left.mp4", "right": "data/north/a_right.mp4"}
+    empty = recording("data/north/left_empty.mp4")
+    assert static(*TAKE, WALK) == static(*TAKE) == taken
+    more = recording("data/north/b_left.mp4"), recording("data/north/b_right.mp4")
+    assert static(*TAKE, *more, WALK, empty) == taken | {"left": empty.path}
+    assert static(*TAKE, WALK, CALIBRATION) == taken
+    assert static(*TAKE, court="none") == static(*TAKE, CALIBRATION) == {}
+    assert static(*TAKE, empty, court="none") == {"left": empty.path}
 
 
 def test_odd_names_stay_what_they_are():

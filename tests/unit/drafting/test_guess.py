@@ -30,7 +30,7 @@ def guess(*paths, **kinds):
     given = recordings(*paths, **kinds)
     found = session_guess.guess(given)
     placed = [*found.walks.values(), *found.boards.values()]
-    placed += [r for c, r in found.static.items() if c not in found.stand_ins]
+    placed += found.static.values()
     placed += [r for take in found.takes.values() for r in take.values()]
     placed += [r for r, _ in found.unused] + [r for *_, r in found.devices]
     placed += [r for r in (found.court_points, found.calibration) if r]
@@ -69,7 +69,6 @@ def test_names_as_in_the_manual_are_understood():
     assert found.court_points.path == "gym/court_points.csv"
     assert [(take, device) for take, device, _ in found.devices] == [("smash2", "mocopi")]
     assert not found.unused
-    assert not found.stand_ins
 
 
 def test_odd_cases_spaces_and_accents():
@@ -128,18 +127,6 @@ def test_a_walk_that_players_walk_is_a_take():
     found = guess("walk01_cam1.mp4", "walk01_cam2.mp4")
     assert list(found.takes) == ["walk01"]
     assert not found.walks
-
-
-def test_a_take_stands_in_for_static_recordings_that_walks_and_clicks_need():
-    found = guess("left_empty.mp4", "a_left.mp4", "a_right.mp4", "right_empty.mp4", "walk.mp4")
-    assert (set(found.static), found.stand_ins) == ({"left", "right"}, [])
-    found = guess("serve_cam1.mp4", "serve_cam2.mp4", "walk.mp4")
-    assert found.stand_ins == ["cam1", "cam2"]
-    assert paths(found.static) == {"cam1": "serve_cam1.mp4", "cam2": "serve_cam2.mp4"}
-    clicked = guess("serve_cam1.mp4", "serve_cam2.mp4")
-    assert paths(clicked.static) == {"cam1": "serve_cam1.mp4", "cam2": "serve_cam2.mp4"}
-    given = guess("serve_cam1.mp4", "serve_cam2.mp4", "Calib.toml", Calib="calibration")
-    assert given.stand_ins == []
 
 
 def test_photos_alone_are_a_walk():

@@ -34,16 +34,41 @@ def of(
     empty = [r for r in recordings if r.kind in ("video", "photo") and called(r, STATIC)]
     names = [tuple(w for w in own[r.path] if uncounted(w) not in STATIC) for r in empty]
     doubtful = False
-    if not any(names):
-        names, doubtful = _known(videos, own)
-        if len(set(filter(None, names))) < 2:
-            names, doubtful = _differing(videos, own)
+    if any(names):
+        names += _beside(names, videos, own)
+    else:
+        names, doubtful = _of_videos(videos, own)
         if counted := _counted(names):
             doubtful = True
             if _are_trials(videos, own, counted):
                 names = [(uncounted(word),) for word in counted]
     cameras = {"_".join(words): words for words in dict.fromkeys(filter(None, names))}
     return cameras, doubtful or any(_names_several(own[r.path], cameras) for r in videos)
+
+
+def _beside(names: Named, videos: Sequence[Recording], own: Words) -> Named:
+    """Return cameras of which there is no recording of the empty hall, by takes that others film.
+
+    A name without other words may also be that of the walking camera, unless one is called so.
+    """
+
+    def takes(words: tuple[str, ...]) -> set[tuple[str, ...]]:
+        named = [own[r.path] for r in videos if set(words) <= set(own[r.path])]
+        return {tuple(word for word in every if word not in words) for every in named}
+
+    filmed = dict.fromkeys(_of_videos(videos, own)[0])
+    cameras = set(filter(None, names))
+    if not cameras <= set(filmed):
+        return []
+    known = set().union(*map(takes, cameras))
+    known -= set() if any(is_called_walk(r) for r in videos) else {()}
+    return [one for one in filmed if one and one not in cameras and takes(one) & known]
+
+
+def _of_videos(videos: Sequence[Recording], own: Words) -> tuple[Named, bool]:
+    """Return the words of cameras in names of videos, and whether others may be meant."""
+    names, doubtful = _known(videos, own)
+    return (names, doubtful) if len(set(filter(None, names))) > 1 else _differing(videos, own)
 
 
 def _known(videos: Sequence[Recording], own: Words) -> tuple[Named, bool]:

@@ -3,7 +3,6 @@
 import json
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import replace
 from pathlib import Path
 
 import yaml
@@ -49,10 +48,11 @@ def text(guess: Guess, *, title: str, folder: str, court: str | None = None) -> 
     if guess.takes:
         lines += ["subjects:", f"  p1: {{consent: [analysis, pictures]}}  {MARK} {SUBJECTS}"]
     clicked = measured and court != "none"
-    if not clicked and not guess.walks:  # nothing needs the pictures of takes that stand in
-        filmed = {c: film for c, film in guess.static.items() if c not in guess.stand_ins}
-        guess = replace(guess, static=filmed, stand_ins=[])
-    lines += [*_cameras(guess), *_walks(guess), *_places(guess, folder, clicked)]
+    if clicked or guess.walks:  # both need a picture of every camera
+        lines += _cameras(guess, _stand_ins(guess))
+    else:
+        lines += _cameras(guess, {})
+    lines += [*_walks(guess), *_places(guess, folder, clicked)]
     lines += [*_people(guess, folder), *synchronised(guess), *_takes(guess)]
     lines += _override(guess)
     if measured and court == "none" and not guess.walks:
@@ -94,13 +94,24 @@ def _is_free(name: str) -> bool:
     return bool(configuration.NAME.fullmatch(name)) and name not in configuration.RESERVED
 
 
-def _cameras(guess: Guess) -> list[str]:
+def _stand_ins(guess: Guess) -> Take:
+    """Return the first take of each camera that has no recording of the empty court."""
+    films = {camera: guess.films(camera)[:1] for camera in guess.cameras}
+    return {
+        camera: film
+        for camera, first in films.items()
+        for film in first
+        if film.kind == "video" and camera not in guess.static
+    }
+
+
+def _cameras(guess: Guess, stand_ins: Take) -> list[str]:
     if not guess.cameras:
         return ["cameras: {}"]
     lines = [f"cameras:  {MARK} one name for each physical camera"]
     calibrated = guess.calibration.cameras if guess.calibration else {}
     for camera in guess.cameras:
-        keys, remarks = _pictures(guess, camera)
+        keys, remarks = _pictures(guess, camera, stand_ins)
         for more in _calibrated(guess, camera, calibrated):
             keys += filter(None, more[:1])
             remarks += more[1:]
@@ -111,13 +122,14 @@ def _cameras(guess: Guess) -> list[str]:
     return lines
 
 
-def _pictures(guess: Guess, camera: str) -> tuple[list[str], list[str]]:
+def _pictures(guess: Guess, camera: str, stand_ins: Take) -> tuple[list[str], list[str]]:
     """Return the keys of a camera's own recordings, and remarks."""
     keys, remarks = [], []
     if camera in guess.static:
         keys.append(f"static: {_quoted(guess.static[camera].path)}")
         remarks.append(_described(guess.static[camera]))
-    if camera in guess.stand_ins:
+    if camera in stand_ins:
+        keys.append(f"static: {_quoted(stand_ins[camera].path)}")
         remarks = ["no recording of the empty court found, this take is used instead"]
     if camera in guess.boards:
         keys.append(f"chessboard: {{images: {_quoted(guess.boards[camera].path)}, {BOARD}}}")

@@ -48,8 +48,6 @@ def guess(recordings: Sequence[Recording]) -> Guess:
     for camera in [name for name in found.boards if name not in found.cameras]:
         found.unused.append((found.boards.pop(camera), "a chessboard of no camera found"))
     _sort_others(found, recordings, own)
-    if found.walks or found.calibration is None:
-        _stand_in(found)
     _rename(found)
     return found
 
@@ -197,15 +195,6 @@ def _keep_serials(found: Guess) -> None:
             found.serials[camera] = films[0].device.serial
 
 
-def _stand_in(found: Guess) -> None:
-    """Use the first take for missing static recordings: walks and clicks need their pictures."""
-    for camera in found.cameras:
-        films = found.films(camera)
-        if camera not in found.static and films and films[0].kind == "video":
-            found.static[camera] = films[0]
-            found.stand_ins.append(camera)
-
-
 def _sort_others(found: Guess, recordings: Iterable[Recording], own: Words) -> None:
     alone = not found.takes and not found.walks and not found.static
     if alone:  # a session of devices
@@ -238,7 +227,6 @@ def _rename(found: Guess) -> None:
         shown = [*found.films(camera), *filter(None, [found.static.get(camera)])]
         cameras[camera] = distinct(_named(camera, shown, f"cam{at}"), cameras.values())
     found.cameras = list(cameras.values())
-    found.stand_ins = [cameras[camera] for camera in found.stand_ins]
     found.numbered = [cameras[camera] for camera in found.numbered if camera in cameras]
     found.static = {cameras[c]: r for c, r in found.static.items() if c in cameras}
     found.boards = {cameras[c]: r for c, r in found.boards.items()}

@@ -84,9 +84,7 @@ class Guess:
     """What the recordings of a folder seem to be."""
 
     cameras: list[str] = field(default_factory=list)
-    # By camera; from a take where `stand_ins` names the camera
-    static: dict[str, Recording] = field(default_factory=dict)
-    stand_ins: list[str] = field(default_factory=list)
+    static: dict[str, Recording] = field(default_factory=dict)  # by camera
     # Pictures of a chessboard, by camera
     boards: dict[str, Recording] = field(default_factory=dict)
     walks: dict[str, Recording] = field(default_factory=dict)
