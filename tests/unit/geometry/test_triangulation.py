@@ -416,27 +416,36 @@ NEAR = VIEWED + np.random.default_rng(1).normal(0, 0.05, VIEWED.shape)
 
 
 def test_residuals_are_those_of_opencv():
-    found, in_cam = SEEN.residuals(NEAR)
+    found = SEEN.residuals(NEAR)
     expected = scene.views(VIEWED_BY, NEAR) - scene.views(VIEWED_BY, VIEWED)
-    np.testing.assert_allclose(found, expected, atol=1e-6)
-    np.testing.assert_allclose(SEEN.distance(NEAR), np.linalg.norm(expected, axis=-1), atol=1e-6)
+    np.testing.assert_allclose(found.px.mT, expected, atol=1e-6)
+    np.testing.assert_allclose(found.distance, np.linalg.norm(expected, axis=-1), atol=1e-6)
     depth = np.einsum("cj,nj->cn", [c.cam_from_world[2, :3] for c in VIEWED_BY], NEAR)
-    np.testing.assert_allclose(in_cam[..., 2], depth + SEEN.matrix[:, 2, 3:], atol=1e-12)
+    np.testing.assert_allclose(found.in_cam[:, 2], depth + SEEN.matrix[:, 2, 3:], atol=1e-12)
 
 
 def test_normal_equations_are_those_of_differences():
     weight = np.random.default_rng(2).uniform(0.2, 1, (3, 20))
-    residual, in_cam = SEEN.residuals(NEAR)
-    rows, weighted = SEEN.jacobians(in_cam, weight)
-    square = weighted @ rows
-    right = (weighted @ residual.transpose(1, 0, 2).reshape(20, -1, 1))[..., 0]
+    rows, depth = SEEN.jacobians(SEEN.residuals(NEAR).in_cam)
     steps = 1e-6 * np.eye(3)
-    slope = [(SEEN.residuals(NEAR + d)[0] - SEEN.residuals(NEAR - d)[0]) / 2e-6 for d in steps]
-    expected = np.einsum("icnr,cn,jcnr->nij", slope, weight, slope)
-    np.testing.assert_allclose(square, expected, rtol=1e-6)
-    np.testing.assert_allclose(
-        right, np.einsum("icnr,cn,cnr->ni", slope, weight, residual), rtol=1e-6
-    )
+    slope = [(SEEN.residuals(NEAR + d).px - SEEN.residuals(NEAR - d).px) / 2e-6 for d in steps]
+    slope = np.moveaxis(slope, 0, 2)
+    np.testing.assert_allclose(rows / depth[:, None, None], slope, rtol=1e-6, atol=1e-6)
+    expected = np.einsum("crin,cn,crjn->nij", slope, weight, slope)
+    np.testing.assert_allclose(triangulation._normal(slope, weight), expected, rtol=1e-12)
+    np.testing.assert_allclose(triangulation._normal(rows, weight / depth**2), expected, rtol=1e-6)
+
+
+def test_a_step_solves_the_weighted_normal_equations():
+    weight, there = np.random.default_rng(2).uniform(0.2, 1, (3, 20)), SEEN.residuals(NEAR)
+    rows, depth = SEEN.jacobians(there.in_cam)
+    slope = (rows / depth[:, None, None]) * np.sqrt(weight)[:, None, None]
+    step = [
+        np.linalg.lstsq(slope[..., at].reshape(-1, 3), residual.ravel())[0]
+        for at, residual in enumerate(np.moveaxis(there.px * np.sqrt(weight)[:, None], -1, 0))
+    ]
+    np.testing.assert_allclose(SEEN.stepped(NEAR, weight), NEAR - step, atol=1e-9)
+    np.testing.assert_allclose(SEEN.stepped(NEAR, weight, there), NEAR - step, atol=1e-9)
 
 
 def test_steps_end_at_the_points_that_the_views_show():
@@ -459,8 +468,9 @@ def test_points_are_in_front_of_the_cameras_named():
     behind = 2 * VIEWED_BY[0].centre_in_world - VIEWED
     nobody, first = np.zeros((3, 20), bool), np.zeros((3, 20), bool)
     first[0] = True
-    assert SEEN.in_front(VIEWED, ~nobody).all() and SEEN.in_front(behind, nobody).all()
-    assert not SEEN.in_front(behind, first).any()
+    before, after = SEEN.residuals(VIEWED), SEEN.residuals(behind)
+    assert before.in_front(~nobody).all() and after.in_front(nobody).all()
+    assert not after.in_front(first).any()
 
 
 @pytest.mark.filterwarnings("error")

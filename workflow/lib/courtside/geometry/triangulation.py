@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,7 +28,7 @@ USUAL = 0.4  # standard deviation of a keypoint, in units of the limit
 WIDER = 0.125  # the limit grows with the score to the power of minus this
 LEAST_SCORE = 1e-4  # for the limit, lower scores count as this
 BETTER = 0.9  # of its standard deviation: a point solved again is kept if its own is smaller
-BATCH = 20000  # points at a time: keeps the working set in the cache and memory flat
+BATCH = 5000  # points at a time: keeps the working set in the cache and memory flat
 
 
 @dataclass(frozen=True)
@@ -54,10 +55,9 @@ def triangulate(xy: NDArray, weight: NDArray, cam_from_world: NDArray) -> NDArra
     Minimises an algebraic error: report the reprojection error beside it.
     """
     used = (weight > 0) & np.isfinite(xy).all(axis=-1)
-    rows = xy[..., None] * cam_from_world[:, None, 2:3, :] - cam_from_world[:, None, :2, :]
-    rows = np.where(used[..., None, None], rows * np.where(used, weight, 0)[..., None, None], 0.0)
-    stacked = rows.transpose(1, 0, 2, 3).reshape(xy.shape[1], -1, 4)
-    normal = stacked.transpose(0, 2, 1) @ stacked
+    places = np.where(used[:, None], xy.transpose(0, 2, 1), 0.0)
+    rows = places[:, :, None] * cam_from_world[:, None, 2, :, None] - cam_from_world[:, :2, :, None]
+    normal = _normal(rows, np.where(used, weight, 0.0) ** 2)
     xyz = solve_3x3(normal[:, :3, :3], -normal[:, :3, 3])
     xyz[used.sum(axis=0) < 2] = np.nan
     return xyz
@@ -77,7 +77,7 @@ def triangulate_all(cameras: Sequence[Camera], xy: NDArray) -> NDArray:
         xyz = _linear(views)
         for _ in range(SETTLING):
             xyz = views.stepped(xyz, views.weight)
-        fine = views.in_front(xyz, views.weight > 0)
+        fine = views.residuals(xyz).in_front(views.weight > 0)
         found[at[fine]] = xyz[fine]
     return found.reshape(*shape, 3)
 
@@ -263,26 +263,27 @@ def _select_and_refine(
 
     `limit_px` and `fade_px` are (C, N).
     """
-    xyz = _linear(views)
-    bad = np.flatnonzero(((views.distance(xyz) > limit_px) & (views.weight > 0)).any(axis=0))
+    xyz, usable, widest_px = _linear(views), views.weight > 0, WIDEST * limit_px
+    bad = np.flatnonzero(((views.residuals(xyz).distance > limit_px) & usable).any(axis=0))
     if len(bad):
         worst, last_px, times = views.of(bad), fade_px[:, bad], START
         while times > 1:
-            weight = _faded(worst, xyz[bad], times * last_px, np.inf)
-            xyz[bad] = worst.stepped(xyz[bad], weight)
+            xyz[bad] = _faded_step(worst, xyz[bad], times * last_px, np.inf)
             times /= GRADUATION
     for _ in range(SETTLING):
-        xyz = views.stepped(xyz, _faded(views, xyz, fade_px, WIDEST * limit_px))
-    accepted = _accept(views.distance(xyz), views.weight > 0, limit_px, min_views)
-    fine = (accepted.sum(axis=0) >= min_views) & views.in_front(xyz, accepted)
+        xyz = _faded_step(views, xyz, fade_px, widest_px)
+    there = views.residuals(xyz)
+    accepted = _accept(there.distance, usable, limit_px, min_views)
+    fine = (accepted.sum(axis=0) >= min_views) & there.in_front(accepted)
     xyz[~fine] = np.nan
     return xyz, accepted & fine
 
 
 def _linear(views: Views) -> NDArray:
     """Return points (N, 3) by weighted DLT, then one step of least squares."""
-    scale_px = np.sqrt(np.abs(np.linalg.det(views.px_per_plane)))
-    xyz = triangulate(views.xy, np.sqrt(views.weight) * scale_px, views.matrix)
+    slopes = views.px_per_plane
+    area_px2 = np.abs(slopes[:, 0, 0] * slopes[:, 1, 1] - slopes[:, 0, 1] * slopes[:, 1, 0])
+    xyz = triangulate(views.xy.mT, np.sqrt(views.weight * area_px2), views.matrix)
     return views.stepped(xyz, views.weight)
 
 
@@ -293,10 +294,14 @@ def _accept(error: NDArray, usable: NDArray, limit_px: NDArray, min_views: int) 
     return limits <= np.clip(enough, 1.0, WIDEST)
 
 
-def _faded(views: Views, xyz: NDArray, scale_px: NDArray, widest_px: NDArray | float) -> NDArray:
-    """Return Geman-McClure weights (C, N): an error of `scale_px` leaves a quarter."""
-    error = views.distance(xyz)
-    return views.weight / (1 + (error / scale_px) ** 2) ** 2 * (error <= widest_px)
+def _faded_step(
+    views: Views, xyz: NDArray, scale_px: NDArray, widest_px: NDArray | float
+) -> NDArray:
+    """Return points after a step with Geman-McClure weights: at `scale_px` a quarter is left."""
+    there = views.residuals(xyz)
+    square = there.distance**2
+    weight = views.weight / (1 + square / scale_px**2) ** 2 * (there.distance <= widest_px)
+    return views.stepped(xyz, weight, there)
 
 
 def _noise_covariance(
@@ -307,14 +312,12 @@ def _noise_covariance(
     `sigma_px` is that of a keypoint of weight 1, per axis. It may differ between views: weights are
     by score alone, and a point follows the near view with its larger errors.
     """
-    _, in_cam = views.residuals(np.nan_to_num(xyz))
-    weight = views.weight * accepted
-    rows, weighted = views.jacobians(in_cam, weight)
+    rows, depth = views.jacobians(views.residuals(np.nan_to_num(xyz)).in_cam)
+    weight = views.weight * accepted / depth**2
     # A camera that never sees a person may have no limit for it.
     variance = np.where(accepted, weight * np.square(sigma_px), 0.0)
-    noisy = np.ascontiguousarray((rows * variance.T.repeat(2, axis=1)[..., None]).mT)
-    inverse = inverse_3x3(weighted @ rows)
-    return inverse @ (noisy @ rows) @ inverse
+    inverse = inverse_3x3(_normal(rows, weight))
+    return inverse @ _normal(rows, variance) @ inverse
 
 
 def _reprojection_px(cameras: Sequence[Camera], xy: NDArray, xyz: NDArray) -> NDArray:
@@ -323,71 +326,95 @@ def _reprojection_px(cameras: Sequence[Camera], xy: NDArray, xyz: NDArray) -> ND
     return np.linalg.norm(projected - xy, axis=-1)
 
 
+@dataclass(frozen=True)
+class Residuals:
+    """How keypoints of C cameras differ from N points. Points come last: sums run along them."""
+
+    px: NDArray  # (C, 2, N)
+    in_cam: NDArray  # (C, 3, N) m: the points in each camera
+
+    @cached_property
+    def distance(self) -> NDArray:
+        """Distance (C, N) px of keypoints to the projected points."""
+        return np.sqrt(self.px[:, 0] ** 2 + self.px[:, 1] ** 2)
+
+    def in_front(self, which: NDArray) -> NDArray:
+        """Return which points (N,) are in front of all cameras that `which` (C, N) names."""
+        return ((self.in_cam[:, 2] > 0) | ~which).all(axis=0)
+
+
 class Views:
-    """Keypoints of C cameras: `xy` (C, N, 2) px, and `weight` (C, N) in px^-2, 1 for score 1.
+    """Views of N points by C cameras, of keypoints (C, N, 2) px.
+
+    Their `weight` (C, N) is in px^-2, 1 for score 1.
 
     Residuals are on the undistorted plane, times the slopes of the lens at the keypoint: to first
     order they are px of the picture, as the noise of keypoints is.
     """
 
     def __init__(self, cameras: Sequence[Camera], xy: NDArray, weight: NDArray) -> None:
-        self.xy = np.stack([undistort(c, points) for c, points in zip(cameras, xy, strict=True)])
-        self.weight = np.where(np.isfinite(self.xy).all(axis=-1), weight, 0.0)
-        self.xy = np.nan_to_num(self.xy)
+        plane = np.stack([undistort(c, points) for c, points in zip(cameras, xy, strict=True)])
+        self.weight = np.where(np.isfinite(plane).all(axis=-1), weight, 0.0)
+        plane = np.nan_to_num(plane)
+        self.xy = np.ascontiguousarray(plane.mT)  # (C, 2, N) on the undistorted plane
         self.matrix = np.stack([camera.cam_from_world for camera in cameras])
-        # (C, N, 2, 2) px: the derivative of places in the picture by those on the plane.
-        self.px_per_plane = np.stack(
-            [picture_slopes(camera, plane) for camera, plane in zip(cameras, self.xy, strict=True)]
-        )
+        slopes = [picture_slopes(*pair) for pair in zip(cameras, plane, strict=True)]
+        # (C, 2, 2, N) px: the derivative of places in the picture by those on the plane.
+        self.px_per_plane = np.ascontiguousarray(np.moveaxis(np.stack(slopes), 1, -1))
 
     def of(self, at: NDArray) -> Views:
         """Return the same views of some of the points only."""
         part = object.__new__(Views)
-        part.xy, part.weight, part.matrix = self.xy[:, at], self.weight[:, at], self.matrix
-        part.px_per_plane = self.px_per_plane[:, at]
+        part.xy, part.weight, part.matrix = self.xy[..., at], self.weight[:, at], self.matrix
+        part.px_per_plane = self.px_per_plane[..., at]
         return part
 
-    def residuals(self, xyz: NDArray) -> tuple[NDArray, NDArray]:
-        """Return residuals (C, N, 2) px and points in each camera (C, N, 3) m."""
-        rotation, shift = self.matrix[:, :, :3], self.matrix[:, :, 3]
-        in_cam = xyz[None] @ rotation.transpose(0, 2, 1) + shift[:, None]
-        depth = np.where(np.abs(in_cam[..., 2:]) < 1e-9, 1e-9, in_cam[..., 2:])
-        return self._in_picture((in_cam[..., :2] / depth - self.xy)[..., None])[..., 0], in_cam
+    def residuals(self, xyz: NDArray) -> Residuals:
+        """Return the residuals of points (N, 3)."""
+        in_cam = self.matrix[:, :, :3] @ xyz.T + self.matrix[:, :, 3:]
+        depth = np.where(np.abs(in_cam[:, 2:]) < 1e-9, 1e-9, in_cam[:, 2:])
+        plane = in_cam[:, :2] / depth - self.xy
+        return Residuals(self._in_picture(plane[:, :, None])[:, :, 0], in_cam)
 
-    def jacobians(self, in_cam: NDArray, weight: NDArray) -> tuple[NDArray, NDArray]:
-        """Return the derivative J (N, 2 C, 3) of residuals by points, and J'W (N, 3, 2 C).
+    def jacobians(self, in_cam: NDArray) -> tuple[NDArray, NDArray]:
+        """Return the derivative of residuals by points, times depth, and the depth (C, N) m.
 
-        NaN for a point at a camera, where two cameras in one place put it.
+        The derivative is (C, 2, 3, N) px. NaN for a point at a camera, where two cameras in one
+        place put it.
         """
-        depth = np.where(in_cam[..., 2:] == 0, np.nan, in_cam[..., 2:])
-        ratio = in_cam[..., :2] / depth
-        rows = self.matrix[:, None, :2, :3] - ratio[..., None] * self.matrix[:, None, 2:3, :3]
-        rows = self._in_picture(rows / depth[..., None])
-        weighted = rows * weight[..., None, None]
-        flat = rows.transpose(1, 0, 2, 3).reshape(rows.shape[1], -1, 3)
-        return flat, weighted.transpose(1, 3, 0, 2).reshape(rows.shape[1], 3, -1)
+        depth = np.where(in_cam[:, 2] == 0, np.nan, in_cam[:, 2])
+        ratio = (in_cam[:, :2] / depth[:, None])[:, :, None]
+        rows = ratio * -self.matrix[:, None, 2, :3, None]
+        rows += self.matrix[:, :2, :3, None]
+        return self._in_picture(rows), depth
 
     def _in_picture(self, plane: NDArray) -> NDArray:
-        """Return columns (C, N, 2, K) of small steps on the undistorted plane in px."""
-        along_x = self.px_per_plane[..., 0, None] * plane[..., :1, :]
-        return along_x + self.px_per_plane[..., 1, None] * plane[..., 1:, :]
+        """Return columns (C, 2, K, N) of small steps on the undistorted plane in px."""
+        steps = self.px_per_plane[:, :, 0, None] * plane[:, :1]
+        steps += self.px_per_plane[:, :, 1, None] * plane[:, 1:]
+        return steps
 
-    def stepped(self, xyz: NDArray, weight: NDArray) -> NDArray:
-        """Return points (N, 3) after a Gauss-Newton step; one whose system is singular stays."""
-        residual, in_cam = self.residuals(xyz)
-        rows, weighted = self.jacobians(in_cam, weight)
-        right = weighted @ residual.transpose(1, 0, 2).reshape(len(rows), -1, 1)
-        return xyz - np.nan_to_num(solve_3x3(weighted @ rows, right[..., 0]))
+    def stepped(self, xyz: NDArray, weight: NDArray, there: Residuals | None = None) -> NDArray:
+        """Return points (N, 3) after a Gauss-Newton step; one whose system is singular stays.
 
-    def distance(self, xyz: NDArray) -> NDArray:
-        """Return the distance (C, N) px of keypoints to the projected points."""
-        residual, _ = self.residuals(xyz)
-        return np.sqrt(np.einsum("cni,cni->cn", residual, residual))
+        `there` are their residuals, if they are known.
+        """
+        there = there or self.residuals(xyz)
+        rows, depth = self.jacobians(there.in_cam)
+        by_depth = weight / depth
+        right = np.einsum("cikn,cin->nk", rows, there.px * by_depth[:, None])
+        step = solve_3x3(_normal(rows, by_depth / depth), right)
+        return xyz - np.where(np.isfinite(step), step, 0.0)
 
-    def in_front(self, xyz: NDArray, which: NDArray) -> NDArray:
-        """Return which points (N,) are in front of all cameras that `which` (C, N) names."""
-        _, in_cam = self.residuals(xyz)
-        return ((in_cam[..., 2] > 0) | ~which).all(axis=0)
+
+def _normal(rows: NDArray, weight: NDArray) -> NDArray:
+    """Return the normal matrices (N, K, K) of rows (C, 2, K, N) and weights (C, N)."""
+    size, weighted = rows.shape[2], rows * weight[:, None, None]
+    square = np.empty((size, size, rows.shape[-1]))
+    for i in range(size):
+        for j in range(i, size):
+            square[i, j] = square[j, i] = np.einsum("cin,cin->n", rows[:, :, i], weighted[:, :, j])
+    return square.transpose(2, 0, 1)
 
 
 def triangulate_plain(
@@ -419,7 +446,7 @@ def _plain(
     used = np.isfinite(xy).all(axis=-1) & np.isfinite(score) & (score >= min_score) & (score > 0)
     used &= used.sum(axis=0) >= min_views
     views = Views(cameras, xy, used.astype(float))
-    xyz = triangulate(views.xy, views.weight, views.matrix)
+    xyz = triangulate(views.xy.mT, views.weight, views.matrix)
     return Triangulated(
         xyz=xyz,
         covariance=_noise_covariance(views, xyz, used, 1.0),
