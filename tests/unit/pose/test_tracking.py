@@ -181,6 +181,18 @@ def test_scores_up_to_one_stay_and_missing_ones_are_not_counted():
     np.testing.assert_array_equal(cut.score[0], [[1, 1, np.nan], [np.nan] * 3])
 
 
+def test_scores_divided_by_too_much_are_told_where_nobody_is_found():
+    row = tracking.as_row(None, 3, None)
+    nobody = tracking.Track(
+        np.zeros(1), *(part[None, None] for part in row), np.zeros((1, 1, 2, 3))
+    )
+    assert (
+        "nobody was found, with scores divided by `full_score: 40`"
+        in tracking.limited(nobody, "any", 40)[1]
+    )
+    assert tracking.limited(nobody, "any", 1)[1] == ""  # an empty hall
+
+
 @pytest.mark.parametrize("finds", [True, False])
 def test_the_search_looks_near_the_foreground(finds):
     image = picture(200)

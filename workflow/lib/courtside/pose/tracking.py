@@ -77,7 +77,7 @@ def track_person(
 
 
 def limited(track: Track, model: str, full_score: float) -> tuple[Track, str]:
-    """Return a track with scores up to 1, and a warning if many were higher.
+    """Return a track with scores up to 1, and a warning if many were higher, or all too low.
 
     `full_score` is that of the network `model` in `models.yaml`, by which they were divided.
     """
@@ -87,6 +87,12 @@ def limited(track: Track, model: str, full_score: float) -> tuple[Track, str]:
             f"{model}: 5 % of its scores exceed {found * full_score:.3g}, and all from "
             f"{full_score:g} on count as 1, so that doubtful joints count as much as certain ones; "
             f"set `full_score: {found * full_score:.3g}` of {model} in config/models.yaml"
+        )
+    elif full_score > 1 and np.isnan(track.xy).all():
+        doubt = (
+            f"{model}: nobody was found, with scores divided by `full_score: {full_score:g}`; if "
+            "the video shows people, remove that key from config/models.yaml: a warning then names "
+            "the value to set"
         )
     return replace(track, score=np.clip(track.score, 0, 1)), doubt
 
