@@ -331,6 +331,16 @@ def test_of_a_doubtful_map_nothing_else_is_said(good, clicked, tmp_path, monkeyp
         aligned(good, tmp_path, marked, "paper-n12")
 
 
+def test_cameras_in_one_place_of_the_map_are_told_beside_other_faults(
+    good, clicked, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(quality, "ONE_PLACE", 2.0)
+    (warning,) = calibrated(good, tmp_path, clicked).warnings
+    assert_says(warning, [f"{CAMERAS[0]} and {CAMERAS[1]}", "in two places of the map"])
+    found = calibrated(good, tmp_path, mirrored(clicked))
+    assert_says(found.error, ["mirror image; exchange the names", "in two places of the map"])
+
+
 def noise(size=SETTINGS.size_px, seed=0):
     rng = np.random.default_rng(seed)
     rough = rng.normal(size=(size[1], size[0], 3))

@@ -8,7 +8,7 @@ from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records import tie_points
 from courtside.geometry import camera as camera_models
 from courtside.geometry import camera_fields
-from courtside.records.cameras import clicks
+from courtside.records.cameras import clicks, image_names
 from courtside.study.errors import InputError
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json
@@ -51,6 +51,9 @@ def main(
 def calibrate(record, clicks_csv, court_yaml, **options):
     """Return the result of `solve`; a doubtful map gives no warnings on clicks, court or names."""
     doubtful_map = quality.map_warning(record.support)
+    at = dict(zip(record.images, record.centres, strict=True))
+    fixed = {c.name: at[image_names.static(c.name)] for c in record.sfm_cameras}
+    one_place = quality.one_place(fixed, record.centres)
     if record.outcome:
         raise InputError(record.outcome)
     try:
@@ -58,9 +61,12 @@ def calibrate(record, clicks_csv, court_yaml, **options):
             raise InputError(record.fault)
         found, checked = solve(record, clicks_csv, court_yaml, **options)
     except InputError as error:
-        raise InputError(doubtful_map or str(error)) from error
+        raise InputError(
+            doubtful_map or "; ".join(filter(None, [str(error), one_place]))
+        ) from error
     if doubtful_map:
         checked["warnings"] = [doubtful_map] if court_yaml else [*checked["warnings"], doubtful_map]
+    checked["warnings"] += [one_place] * bool(one_place)
     return found, checked
 
 

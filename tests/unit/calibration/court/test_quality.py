@@ -116,7 +116,16 @@ def test_a_map_that_contradicts_a_pair_is_doubtful(above):
     assert quality.map_warning(support) == ""
     warning = quality.map_warning(support._replace(pair_share=0.244))
     assert warning.startswith("map doubtful: expected 30 % or more of the matches of static/side")
-    assert "000003.png" in warning and warning.endswith("found 24 %; take more bridging images")
+    assert "000003.png" in warning and "found 24 %; take more bridging images; if" in warning
+
+
+def test_fixed_cameras_in_one_place_of_the_map_are_told():
+    walk = np.random.default_rng(0).uniform(-5, 5, (30, 3))  # an extent of about 17
+    apart = {"c1": walk[0], "c2": walk[1], "c3": walk[0] + (0, 0.5, 0)}
+    assert quality.one_place(apart, walk) == ""
+    line = quality.one_place(apart | {"c3": walk[0] + (0, 0.05, 0)}, walk)
+    assert line.startswith("cameras c1 and c3: expected them in two places of the map")
+    assert "its ends look alike" in line and "\n" not in line
 
 
 def test_the_volume_of_a_court_without_lines_begins_in_its_corner_too():

@@ -3,7 +3,7 @@
 court: read, of_places, to_line_centres, Court, ClickedPoints
 line_edges: named, post, middle_line, stretches, paint: edges and areas of the painted lines;
     crossings, click_covariances, click_variances: how exactly clicks show where edges cross
-sfm_alignment: reconstruct, align, paper_frame, check, stretch, refuse_exchanged_cameras
+sfm_alignment: reconstruct, align, paper_frame, check, stretch, refuse_misplaced_cameras
 joint_adjustment: condense, condense_free, solve, solve_by_edges, solve_by_scatter,
     solve_with_factors, free, Ties, Solution: tie points with clicked court points
 resection: dlt, nonlinear: one camera from known points, by `one_camera`

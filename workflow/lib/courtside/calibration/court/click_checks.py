@@ -202,10 +202,10 @@ def check(
     `sigma_px` is as for `find_wrong_clicks`; `table` is from `leave_one_out`, None where that
     fails. `inwards`, the shift of all clicks towards line centres and its sigma, is from
     `inward_shift`, by default from `inward_shift_of_points`; `adjust` is as for
-    `sfm_alignment.refuse_exchanged_cameras`, `error_modes_m` as for `sfm_alignment.stretch`. Raises
+    `sfm_alignment.refuse_misplaced_cameras`, `error_modes_m` as for `sfm_alignment.stretch`. Raises
     `InputError` if the points cannot be this court: see `sfm_alignment.check`.
     """
-    sfm_alignment.refuse_exchanged_cameras(court, cameras, clicks, adjust)
+    sfm_alignment.refuse_misplaced_cameras(court, cameras, clicks, adjust)
     xyz = sfm_alignment.reconstruct(cameras, clicks)
     warnings = sfm_alignment.check(court, xyz, cameras, error_modes_m)
     if table is None:

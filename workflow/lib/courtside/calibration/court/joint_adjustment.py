@@ -147,7 +147,7 @@ def condense(
         part = next(adjusted(clicks, straightened=True))
         return _fixed_cameras(part.network, fixed, part.fixed, sizes)
 
-    sfm_alignment.refuse_exchanged_cameras(court, cameras, clicks, adjusted_cameras)
+    sfm_alignment.refuse_misplaced_cameras(court, cameras, clicks, adjusted_cameras)
     parts = list(adjusted(clicks, sfm_alignment.misses_court(court, cameras, clicks)))
     return _condensed(parts, tuple(fixed), sizes), parts
 

@@ -1,7 +1,8 @@
 """Checks of calibrated cameras without the truth, and the errors to expect of them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,9 @@ from courtside.study.errors import InputError
 # (docs/measured/running.md): wrong maps explained 0.24 or less of one pair, good ones 0.36 or more
 # of all.
 SUPPORTED = 0.3
+# ASSUME: of the extent of a map. Cameras that a map joined to the wrong end of a symmetric hall
+# were 0.1 to 0.6 % from those opposite, others 40 % or more.
+ONE_PLACE = 0.01
 # ASSUME: heights of a match, from the floor to a player's reach; the grid is about 2 m wide on a
 # badminton court.
 HEIGHTS_M = (0.0, 1.0, 2.0, 3.0)
@@ -148,8 +152,27 @@ def map_warning(support: Support) -> str:
     return (
         f"map doubtful: expected {100 * SUPPORTED:.0f} % or more of the matches of {one} with "
         f"{other} to agree with it, found {100 * support.pair_share:.0f} %; take more bridging "
-        "images"
+        "images; if parts of the hall look alike, put bags or posters into some of them"
     )
+
+
+def one_place(centres: Mapping[str, NDArray], others: NDArray) -> str:
+    """Return in one line which fixed cameras stand in one place of a map, empty if none do.
+
+    `centres` (3,) are those of the fixed cameras, `others` (V, 3) of all images. In a hall with
+    equal ends a walk can join a camera to the wrong end: one that stands opposite another then
+    seems to stand where the other does.
+    """
+    extent = np.linalg.norm(np.ptp(others, axis=0))
+    for one, other in combinations(centres, 2):
+        if np.linalg.norm(centres[one] - centres[other]) < ONE_PLACE * extent:
+            return (
+                f"cameras {one} and {other}: expected them in two places of the map, found them "
+                f"within {100 * ONE_PLACE:g} % of its extent; if they stand apart in the hall, its "
+                "ends look alike and the walk joined one of them to the wrong end: film the walk "
+                "without a break until close beside both, with bags or posters at one end"
+            )
+    return ""
 
 
 def leave_one_out_errors(

@@ -1,7 +1,7 @@
 """Align structure from motion to the court, by the published frame or a robust similarity.
 
-This module also detects exchanged camera files: the clicks of each of two cameras fit the pose of
-the other.
+This module also detects exchanged camera files, where the clicks of each of two cameras fit the
+pose of the other, and cameras turned to the other end of the court.
 """
 
 from collections.abc import Callable, Sequence
@@ -23,8 +23,8 @@ FLAT = 0.01  # ASSUME: relative to the longest extent: points lower than this al
 FITTING = 0.01  # ASSUME: of the court's length: points nearer than this fit
 # Of the court's length: structure from motion of 12 small pictures was bent by up to half of this.
 MAX_BEND = 0.1
-# ASSUME: points must fit this many times better with the clicks of two cameras exchanged.
-EXCHANGE_GAIN = 5.0
+# ASSUME: points must fit this many times better after a change of the clicks of some cameras.
+CHANGE_GAIN = 5.0
 CHECKED = 6  # points among which `click_checks.find_wrong_clicks` finds nearly every wrong click
 MOST_SUBSETS = 10000  # of three points each: all of 40 points
 
@@ -224,21 +224,24 @@ def _affine_agree(design: NDArray, places: NDArray) -> NDArray:
     return distance[best] <= max(4 * middle[best], 1e-9 * np.abs(places).max())
 
 
-def refuse_exchanged_cameras(
+def refuse_misplaced_cameras(
     court: Court,
     cameras: Sequence[Camera],
     clicks: ClickedPoints,
     adjust: Callable[[ClickedPoints], Sequence[Camera]] | None = None,
 ) -> None:
-    """Raise `InputError` if the clicks fit the court only after those of two cameras are exchanged.
+    """Raise `InputError` if the clicks fit the court only after those of some cameras are changed.
 
-    Then the files of these cameras may be exchanged. Other faults of the clicks are not looked for.
+    That is after half a turn of the court for some cameras: they are named from the other end, or
+    the ends of the hall look alike and the walk joined the cameras to the wrong one. Or after those
+    of two cameras are exchanged: their files may be exchanged. Other faults of the clicks are not
+    looked for.
 
     Parameters
     ----------
     cameras : in one frame, of structure from motion, which no click has shaped. Adjusted cameras
-        have followed their clicks as far as the ties allow: of these an exchange is found only
-        where the ties withstood it
+        have followed their clicks as far as the ties allow: of these a fault is found only where
+        the ties withstood it
     adjust : function from clicks to the fixed cameras after a joint adjustment with them. With few
         pictures, structure from motion is bent by more than the scatter of clicks: points that
         this bend can explain are judged after the adjustment
@@ -249,23 +252,68 @@ def refuse_exchanged_cameras(
     off_m = _off_m(court, cameras, clicks, adjust)
     if off_m < near_m:
         return
-    for one, other in combinations([camera.name for camera in cameras], 2):
-        exchanged = {**clicks, one: clicks[other], other: clicks[one]}
+    most_m = min(near_m, off_m / CHANGE_GAIN)
+    found = f"{100 * off_m:.0f} cm off" if np.isfinite(off_m) else "impossible"
+    expected = f"expected clicked court points to fit the walk, found them {found}, but"
+    pairs = combinations([camera.name for camera in cameras], 2)
+    exchanges = {(a, b): {**clicks, a: clicks[b], b: clicks[a]} for a, b in pairs}
+    apart_m = [_off_m(court, cameras, one) for one in exchanges.values()]
+    (turned, after_turn), turned_m = _turned(court, cameras, clicks)
+    if turned_m < min(apart_m, default=np.inf):
+        better_m = _off_m(court, cameras, after_turn, adjust)
+        if better_m < most_m:
+            raise InputError(_turned_line(turned, f"{expected} {100 * better_m:.0f} cm off"))
+    for (one, other), exchanged in exchanges.items():
         better_m = _off_m(court, cameras, exchanged, adjust)
-        if better_m < min(near_m, off_m / EXCHANGE_GAIN):
-            found = f"{100 * off_m:.0f} cm off" if np.isfinite(off_m) else "impossible"
+        if better_m < most_m:
             raise InputError(
-                f"cameras {one} and {other}: expected clicked court points to fit the walk, found "
-                f"them {found}, but {100 * better_m:.0f} cm off with the clicks of the two "
-                "exchanged: the camera files may be exchanged; correct their names in the "
-                "session, or in the court points"
+                f"cameras {one} and {other}: {expected} {100 * better_m:.0f} cm off with the "
+                "clicks of the two exchanged: the camera files may be exchanged; correct their "
+                "names in the session, or in the court points"
             )
+
+
+def _turned(
+    court: Court, cameras: Sequence[Camera], clicks: ClickedPoints
+) -> tuple[tuple[tuple[str, ...], ClickedPoints], float]:
+    """Return the cameras, up to half of all, whose clicks fit best after half a turn; and clicks.
+
+    With the misfit, m, before adjustment: infinite where the court has no other end, and of two
+    cameras alone, for these fit after half a turn, too, once their clicks have bent them.
+    """
+    other_end = court.other_end()
+    there = other_end >= 0
+    names = [camera.name for camera in cameras]
+    if len(names) < 3:
+        return ((), clicks), np.inf
+
+    def after_turn(name: str) -> NDArray:
+        xy = np.full((len(court.points), 2), np.nan)
+        xy[other_end[there]] = np.asarray(clicks[name], float)[there]
+        return xy
+
+    sizes = range(1, len(names) // 2 + 1)
+    some = [chosen for size in sizes for chosen in combinations(names, size)]
+    tried = [{**clicks, **{name: after_turn(name) for name in chosen}} for chosen in some]
+    off_m = [_off_m(court, cameras, one) for one in tried]
+    best = int(np.argmin(off_m))
+    return (some[best], tried[best]), off_m[best]
+
+
+def _turned_line(names: Sequence[str], found: str) -> str:
+    listed = ", ".join(names)
+    return (
+        f"camera{'s' * (len(names) > 1)} {listed}: {found} after half a turn of the court there "
+        "alone: either the points are named from the other end there, or both ends of the hall "
+        "look alike and the walk joined the picture to the wrong one; if the names are right, film "
+        f"the walk without a break until close beside {listed}, with bags or posters at one end"
+    )
 
 
 def misses_court(court: Court, cameras: Sequence[Camera], clicks: ClickedPoints) -> bool:
     """Return whether most court points miss the court by more than the scatter of clicks.
 
-    Then the model is bent, or clicks are wrong. Arguments as for `refuse_exchanged_cameras`.
+    Then the model is bent, or clicks are wrong. Arguments as for `refuse_misplaced_cameras`.
     """
     return _off_m(court, cameras, clicks) >= FITTING * np.max(court.size_m)
 

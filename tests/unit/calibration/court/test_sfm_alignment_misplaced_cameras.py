@@ -1,4 +1,4 @@
-"""Exchanged camera files are told from everything else that can be wrong with clicks."""
+"""Exchanged camera files, and cameras at the wrong end, are told from other faults of clicks."""
 
 from functools import partial
 from pathlib import Path
@@ -21,7 +21,10 @@ from fixtures.cameras.scene import look_at, opencv_projection
 
 COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
 SFM_FROM_WORLD = similarity.Sim3(0.4, np.eye(3)[[1, 2, 0]], np.array([1.0, 2, 3]))
-PLACES = {"side": (-18, 6.7, 1.9), "back": (3.05, -14.3, 2.1), "corner": (-9, -7, 5.0)}
+PLACES = {
+    "side": (-18, 6.7, 1.9), "back": (3.05, -14.3, 2.1), "corner": (-9, -7, 5.0),
+    "far": (14, 22, 4.0),
+}  # fmt: skip
 
 
 def in_sfm(names):
@@ -52,11 +55,40 @@ def test_two_exchanged_cameras_are_named(names, pair):
     one, other = pair
     clicks[one], clicks[other] = clicks[other], clicks[one]
     check = partial(click_checks.check, sigma_px=0.3, table=None)
-    for refuse in (sfm_alignment.refuse_exchanged_cameras, check):
+    for refuse in (sfm_alignment.refuse_misplaced_cameras, check):
         with pytest.raises(InputError, match="the camera files may be exchanged") as caught:
             refuse(COURT, fixed, clicks)
         message = str(caught.value)
         assert message.startswith(f"cameras {one} and {other}: expected") and "\n" not in message
+
+
+def half_a_turn(camera):
+    """Return a camera of the model where the court seems to be seen from the other end."""
+    turn = np.diag([-1.0, -1, 1])
+    about = similarity.Sim3(1.0, turn, np.array([*COURT.size_m, 0.0]))
+    return SFM_FROM_WORLD.camera(about.camera(SFM_FROM_WORLD.inverse().camera(camera)))
+
+
+@pytest.mark.parametrize("wrong", [("far",), ("corner",), ("side", "far")])
+def test_cameras_that_the_walk_joined_to_the_wrong_end_are_named(wrong):
+    fixed = in_sfm(["side", "back", "corner", "far"])
+    clicks = clicks_of(fixed)
+    joined = [half_a_turn(one) if one.name in wrong else one for one in fixed]
+    with pytest.raises(InputError, match="both ends of the hall look alike") as caught:
+        sfm_alignment.refuse_misplaced_cameras(COURT, joined, clicks)
+    message = str(caught.value)
+    named = set(message.partition(":")[0].replace(",", "").split()[1:])
+    others = {one.name for one in fixed} - set(wrong)
+    assert named == set(wrong) or (len(wrong) == 2 and named == others)  # relative to each other
+    assert "close beside" in message and "\n" not in message
+
+
+def test_points_named_from_the_other_end_in_one_camera_are_told_as_such():
+    fixed = in_sfm(["side", "back", "corner"])
+    clicks = clicks_of(fixed)
+    clicks["back"] = clicks["back"][np.argsort(COURT.other_end())]
+    with pytest.raises(InputError, match=r"camera back: .* named from the other end"):
+        sfm_alignment.refuse_misplaced_cameras(COURT, fixed, clicks)
 
 
 def mirrored(clicks):
@@ -83,13 +115,13 @@ def few(clicks):
 @pytest.mark.parametrize("tamper", [dict, mirrored, wrong_click, shuffled, few])
 def test_no_other_fault_is_taken_for_an_exchange(tamper):
     fixed = in_sfm(["side", "back", "corner"])
-    sfm_alignment.refuse_exchanged_cameras(COURT, fixed, tamper(clicks_of(fixed)))
+    sfm_alignment.refuse_misplaced_cameras(COURT, fixed, tamper(clicks_of(fixed)))
 
 
 def test_another_court_is_not_taken_for_an_exchange():
     tennis = court.read(Path(__file__).parents[4] / "config" / "courts" / "tennis.yaml")
     fixed = in_sfm(["side", "back"])
-    sfm_alignment.refuse_exchanged_cameras(tennis, fixed, clicks_of(fixed))
+    sfm_alignment.refuse_misplaced_cameras(tennis, fixed, clicks_of(fixed))
     with pytest.raises(
         InputError, match=r"tennis \(10.97 m by 23.77 m\).* give the right court file"
     ):
