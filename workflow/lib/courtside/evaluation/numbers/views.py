@@ -258,7 +258,10 @@ SHOWN = {
     },
     **{
         name: {"what": "{row}", "found": "{found}", **made("found")}
-        for name in ("hall-points", "file-evidence", "mapping-checks", "costs", "batches")
+        for name in (
+            *("hall-points", "file-evidence", "mapping-checks", "costs", "batches"),
+            "fewer-cameras",
+        )
     },
     "held": {
         "stated 90 % of": "{row}",
