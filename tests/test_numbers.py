@@ -65,6 +65,18 @@ def test_the_halls_that_the_text_names_are_those_whose_interval_contains_0():
     assert len(ends) == 6 and set(re.findall("`(.*?)`", named)) == open_halls
 
 
+def test_the_readme_tells_the_two_re_enacted_walks_apart_with_the_numbers_of_the_register():
+    text = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
+    halls = {f"`{name}` (plain hall, layout {name[-1]})": name for name in ("plain-a", "plain-b")}
+    of = {
+        (n.part, halls[n.row]): n for n in numbers() if n.table == "calibration" and n.row in halls
+    }
+    walk = of["paper", "plain-a"]
+    assert f"({walk.n_failed} of its {walk.n + walk.n_failed} trials in `plain-a` failed" in text
+    a, b = (of["paper_global", name].printed for name in halls.values())
+    assert f"[{a} and {b} cm]" in text
+
+
 def program(path, *words):
     command = [sys.executable, str(ROOT / path), *map(str, words)]
     return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
