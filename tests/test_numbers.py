@@ -49,6 +49,17 @@ def test_every_number_says_where_it_comes_from():
         assert number.sessions or number.origin != register.STUDY
 
 
+def test_selectors_name_what_tells_rows_of_one_file_apart():
+    """Clicks twice and three times as bad, and differences of rackets, are in the same files."""
+    for number in numbers():
+        if number.origin == register.STUDY and number.table.startswith(
+            ("calibration", "published")
+        ):
+            assert "in-sample" in number.selector and "click_strength" in number.selector
+        if number.source == "figures/badminton_fig12.csv":
+            assert "tips empty" in number.selector
+
+
 def test_published_numbers_are_those_of_their_tables():
     documents = register.Source(ROOT)
     for number in numbers():
