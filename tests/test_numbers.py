@@ -85,7 +85,7 @@ def test_the_readme_tells_the_two_re_enacted_walks_apart_with_the_numbers_of_the
     walk = of["paper", "plain-a"]
     assert f"({walk.n_failed} of its {walk.n + walk.n_failed} trials in `plain-a` failed" in text
     a, b = (of["paper_global", name].printed for name in halls.values())
-    assert f"[{a} and {b} cm]" in text
+    assert f"[{a} cm in `plain-a`, {b} cm in `plain-b`]" in text
 
 
 def program(path, *words):
