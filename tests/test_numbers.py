@@ -49,6 +49,17 @@ def test_every_number_says_where_it_comes_from():
         assert number.sessions or number.origin != register.STUDY
 
 
+def test_selectors_name_what_tells_rows_of_one_file_apart():
+    """Clicks twice and three times as bad, and differences of rackets, are in the same files."""
+    for number in numbers():
+        if number.origin == register.STUDY and number.table.startswith(
+            ("calibration", "published")
+        ):
+            assert "in-sample" in number.selector and "click_strength" in number.selector
+        if number.source == "figures/badminton_fig12.csv":
+            assert "tips empty" in number.selector
+
+
 def test_published_numbers_are_those_of_their_tables():
     documents = register.Source(ROOT)
     for number in numbers():
@@ -63,6 +74,18 @@ def test_the_halls_that_the_text_names_are_those_whose_interval_contains_0():
     named = re.search(r"interval of the difference contains 0 in [^(]*\(([^)]*)\)", text)[1]
     open_halls = {name for name, low, high in ends if float(low) <= 0 <= float(high)}
     assert len(ends) == 6 and set(re.findall("`(.*?)`", named)) == open_halls
+
+
+def test_the_readme_tells_the_two_re_enacted_walks_apart_with_the_numbers_of_the_register():
+    text = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
+    halls = {f"`{name}` (plain hall, layout {name[-1]})": name for name in ("plain-a", "plain-b")}
+    of = {
+        (n.part, halls[n.row]): n for n in numbers() if n.table == "calibration" and n.row in halls
+    }
+    walk = of["paper", "plain-a"]
+    assert f"({walk.n_failed} of its {walk.n + walk.n_failed} trials in `plain-a` failed" in text
+    a, b = (of["paper_global", name].printed for name in halls.values())
+    assert f"[{a} cm in `plain-a`, {b} cm in `plain-b`]" in text
 
 
 def program(path, *words):

@@ -17,10 +17,11 @@ def test_the_network_of_the_tables_is_the_default_one():
 def test_every_take_is_shown_raw_filtered_and_corrected(source, value):
     found = players.takes(source)
     assert {n.row for n in found} == {
-        "`players-b/footwork`: all cameras",
-        "`players-b/shot`: all cameras",
+        f"`players-b/{take}`: {cameras}"
+        for take in ("footwork", "shot")
+        for cameras in ("all cameras", "2 cameras")
     }
-    row = "`players-b/footwork`"
+    row = "`players-b/footwork`: all cameras"
     shown = [value(found, row, f"{stage}_median").printed for stage in players.STAGES]
     assert shown == ["46", "45", "24"]
 
@@ -44,11 +45,18 @@ def test_angles_of_takes_are_weighted_with_their_frames(source, value):
 
 
 def test_measures_are_of_the_furthest_person_and_the_clocks_of_the_take(source, value):
+    found, row = players.measures(source), "`players-b/footwork`: all cameras"
+    assert value(found, row, "neck_far").printed == "-0.4"
+    assert value(found, row, "neck_held").printed == "70"
+    assert value(found, row, "clock").printed == "-2.5"
+    assert value(found, row, "clocks_within").printed == "2"
+
+
+def test_clocks_stand_only_beside_the_cameras_that_they_were_found_with(source, value):
     found = players.measures(source)
-    assert value(found, "`players-b/footwork`", "neck_far").printed == "-0.4"
-    assert value(found, "`players-b/footwork`", "neck_held").printed == "70"
-    assert value(found, "`players-b/footwork`", "clock").printed == "-2.5"
-    assert value(found, "`players-b/footwork`", "clocks_within").printed == "2"
+    fewer = {n.part for n in found if n.row == "`players-b/footwork`: 2 cameras"}
+    assert "neck_far" in fewer
+    assert not fewer & set(players.CLOCKS)
 
 
 def test_a_rule_without_words_is_shown_by_its_name():

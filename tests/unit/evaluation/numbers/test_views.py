@@ -19,6 +19,15 @@ def test_cells_take_all_numbers_from_the_register(name):
     assert next(iter(VIEWS[name].columns.values())) == "{row}"
 
 
+@pytest.mark.parametrize("name", VIEWS)
+def test_raw_values_are_not_counted_for_corrected_errors(name):
+    """The filter leaves values out and fills gaps, so that each stage has its own number."""
+    cells = VIEWS[name].columns.values()
+    counted = [c for c in cells if re.search(r"\{raw_\w+\.n\}", c)]
+    if any("{corrected_" in c for c in cells):
+        assert all("{corrected_" in c for c in counted)
+
+
 def test_a_typed_number_is_found():
     assert typed("{a18} / {b_p95}") == []
     assert typed("{a} / 1.19") == ["1", "19"]

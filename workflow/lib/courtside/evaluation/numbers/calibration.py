@@ -12,6 +12,7 @@ from courtside.evaluation.tables.calibration import N_REFERENCE
 from courtside.statistics import intervals
 
 TABLE = "figures/calibration.csv"
+TRIALS = f"in-sample, N = {N_REFERENCE}, click_strength 1"  # which rows of the evaluations count
 MAPPER, PUBLISHED_MAPPER = "global", "incremental"  # of the default method, of the published one
 WAYS = {  # part: method, mapper, clicks
     "walk18": ("sfm", MAPPER, 18),
@@ -90,11 +91,11 @@ def calibrations(source: Source) -> list[Number]:
     build, named = Builder("calibration"), sessions(source)
     rows = trials(source, named)
     for session, of in rows.groupby("session", sort=False):
-        cut = Cut(source, f"{session}/evaluation/*.csv", "in-sample, N = 40", str(session))
+        cut = Cut(source, f"{session}/evaluation/*.csv", TRIALS, str(session))
         for part, group in of.groupby("part", sort=False):
             _one_way(build, label(of), (part, f"{part}_p95", f"{part}_points"), group, cut)
         _difference(build, label(of), of, cut)
-    cut = Cut(source, "*/evaluation/*.csv", "in-sample, N = 40", " ".join(named))
+    cut = Cut(source, "*/evaluation/*.csv", TRIALS, " ".join(named))
     _together(build, f"all {rows['hall'].nunique()} halls", rows, cut)
     return build.numbers
 
@@ -159,7 +160,7 @@ def ways(source: Source) -> list[Number]:
     rows = trials(source, named)
     for part, words in WORDS.items():
         for session, of in rows[rows["part"] == part].groupby("session", sort=False):
-            cut = Cut(source, f"{session}/evaluation/*.csv", "in-sample, N = 40", str(session))
+            cut = Cut(source, f"{session}/evaluation/*.csv", TRIALS, str(session))
             row = f"{words}; `{session}`"
             count = _one_way(build, row, ("median", "p95", "points"), of, cut)
             build.add(row, "xy", of["xy_cm"].median(), cut, f"{part}, xy_cm: median", **count)
@@ -173,7 +174,7 @@ def growth(source: Source) -> list[Number]:
         rows = trials(source, [session], "*")
         rows = rows[rows["part"] == "walk18"]
         for n_images, of in rows.groupby("n_bridging"):
-            where = f"N = {n_images:.0f}, walk18, in-sample"
+            where = f"N = {n_images:.0f}, walk18, in-sample, click_strength 1"
             file = f"{session}/evaluation/{MAPPER}-n{n_images:.0f}-o*.csv"
             cut = Cut(source, file, where, session)
             name = f"`{session}`, {of['structure'].nunique()} x {n_images:.0f} images"
@@ -196,8 +197,10 @@ def strengths(source: Source) -> list[Number]:
     for part in ("walk18", "walk8", "walk3", "known18"):
         of = table[key == "".join(map(str, WAYS[part]))]
         for _, row in of.sort_values(["session", "click_strength"], kind="stable").iterrows():
-            cut = Cut(source, TABLE, f"{row['session']}, {part}, N = 40, in-sample", row["session"])
-            name = f"`{row['session']}`, scatter x{row['click_strength']:g}"
+            strength = f"{row['click_strength']:g}"
+            where = f"{row['session']}, {part}, N = 40, in-sample, click_strength {strength}"
+            cut = Cut(source, TABLE, where, row["session"])
+            name = f"`{row['session']}`, scatter x{strength}"
             count: dict[str, Any] = {"n": row["n"], "n_failed": row["n_failed"]}
             ends = ("median", "p95")
             shown = {f"{part}_{end}": (f"volume_rms_cm_{end}", 2, "cm") for end in ends}

@@ -177,6 +177,8 @@ PATHS = {
 def measures(source: Source) -> list[Number]:
     """Return the errors of speeds, distances and clocks by take and cameras, the worst person."""
     build, table = Builder("players-measures"), source.table(TABLE)
+    # Views are left out after the clocks were found: those of fewer cameras are not their own.
+    table = table[(table["fusion"] == OURS) & table["clock_error_ms"].notna()]
     for file in source.names(f"*/evaluation/takes/*/kinematics/*/*-robust/{NETWORK}.csv"):
         parts, rows = file.split("/"), source.table(file)
         session, take, fusion = parts[0], parts[3], parts[6]
@@ -188,7 +190,7 @@ def measures(source: Source) -> list[Number]:
                 more: dict[str, Any] = {"decimals": decimals, "unit": unit, "n": of["n"].sum()}
                 build.add(row, f"{point}_{part}", value, cut, column, **more)
         same = (table["session"] == session) & (table["take"] == take) & (table["fusion"] == fusion)
-        for _, one in table[same & table["clock_error_ms"].notna()].iterrows():
+        for _, one in table[same].iterrows():
             cut = Cut(source, TABLE, f"{session}/{take}, {fusion}, raw", session)
             build.add_columns(row, one, CLOCKS, cut)
     return build.numbers

@@ -69,7 +69,8 @@ def _again(build: Builder, name: str, source: Source, session: str, n_images: fl
     way = table["method"] + table["n_clicks"].astype(str) + table["mapper"].fillna("")
     for part, wanted in ways.items():
         for _, row in table[way == wanted].iterrows():
-            cut = Cut(source, calibration.TABLE, f"{session}, {wanted}, N = {n_images}", session)
+            where = f"{session}, {wanted}, N = {n_images}, in-sample, click_strength 1"
+            cut = Cut(source, calibration.TABLE, where, session)
             shown = {
                 f"{part}_xy": ("xy_cm_median", 2, "cm"),
                 f"{part}_volume": ("volume_rms_cm_median", 2, "cm"),
@@ -85,7 +86,7 @@ def racket(source: Source) -> list[Number]:
     for (session, sigma_px), part in of.groupby(["session", "tip_sigma_px"]):
         name = f"`{session}`, ends clicked within {sigma_px:g} px"
         for _, row in theirs.iterrows():
-            cut = Cut(source, RACKET, f"mean_abs_mm, published, {row['reference']}", "")
+            cut = Cut(source, RACKET, f"mean_abs_mm, tips empty, published, {row['reference']}", "")
             more: dict[str, Any] = {"decimals": 1, "unit": "mm", "origin": PUBLISHED}
             build.add(name, THEIRS[row["reference"]], row["median"], cut, "median", **more)
         _ways(build, name, source, part[part["way"].isin(RACKETS)])
@@ -94,7 +95,8 @@ def racket(source: Source) -> list[Number]:
 
 def _ways(build: Builder, name: str, source: Source, part: pd.DataFrame) -> None:
     for _, row in part.iterrows():
-        where = f"mean_abs_mm, {row['session']}, {row['tip_sigma_px']:g} px, way {row['way']}"
+        where = f"mean_abs_mm, tips empty, {row['session']}, {row['tip_sigma_px']:g} px"
+        where += f", way {row['way']}"
         cut = Cut(source, RACKET, where, row["session"])
         shown = {row["way"]: ("mean", 1, "mm"), f"{row['way']}_ratio": ("ratio", 2, "")}
         build.add_columns(name, row, shown, cut, n=row["n"], n_failed=row["n_failed"])

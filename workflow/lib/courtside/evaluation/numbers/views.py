@@ -121,7 +121,7 @@ SHOWN = {
             )
             for stage in STAGES
         },
-        "angles": "{raw_bias.n}",
+        "angles, raw / corrected": "{raw_bias.n} / {corrected_bias.n}",
     },
     "networks": {
         "network; pictures": "{row}",
@@ -138,7 +138,7 @@ SHOWN = {
     "footage": {
         "footage, against which reference": "{row}",
         **_stages("{STAGE_median} / {STAGE_p90} / {STAGE_p95}"),
-        "joints": "{raw_median.n}",
+        "joints, raw / corrected": "{raw_median.n} / {corrected_median.n}",
         "measured": "{raw_median.origin}",
         "with": "{raw_median.command}",
     },
@@ -159,7 +159,7 @@ SHOWN = {
         "scale off, raw / corrected / by hand, %": (
             "{raw_scale} / {corrected_scale} / {hand_scale}"
         ),
-        "joints": "{raw_median.n}",
+        "joints, raw / corrected": "{raw_median.n} / {corrected_median.n}",
     },
     "body-model": {
         "measure, takes": "{row}",
@@ -215,7 +215,7 @@ SHOWN = {
         "in 90 % ellipsoids, %: raw / filtered / corrected": " / ".join(
             f"{{{stage}_coverage}}" for stage in STAGES
         ),
-        "n": "{raw_median.n}",
+        "joints, raw / corrected": "{raw_median.n} / {corrected_median.n}",
     },
     "views": {
         "take: cameras, rule": "{row}",
@@ -258,7 +258,10 @@ SHOWN = {
     },
     **{
         name: {"what": "{row}", "found": "{found}", **made("found")}
-        for name in ("hall-points", "file-evidence", "mapping-checks", "costs", "batches")
+        for name in (
+            *("hall-points", "file-evidence", "mapping-checks", "costs", "batches"),
+            "fewer-cameras",
+        )
     },
     "held": {
         "stated 90 % of": "{row}",
