@@ -103,6 +103,17 @@ def test_what_contacts_lack_is_told(caplog, lacking, remedy):
     assert ("longer" in line, "network" in line) == (remedy == "longer", remedy == "network")
 
 
+def test_a_foot_that_is_never_seen_is_told(caplog):
+    points, _ = walking_feet.record(walking_feet.gait(), 5.0)
+    feet.find(points, walking_feet.CUTOFFS)
+    assert not caplog.messages
+    points.xyz[:, :, points.joints.tolist().index("left_heel")] = np.nan
+    _, steps, _ = feet.find(points, walking_feet.CUTOFFS)
+    (line,) = caplog.messages
+    assert "p1: expected heel and toe of the left foot" in line
+    assert set(steps.foot) == {"right"}
+
+
 def test_the_leg_is_thigh_and_shank():
     points, _ = walking_feet.record(walking_feet.hop(), 3.0, sigma_m=0.0)
     assert 0.5 < feet.leg_length(points, 0) < 1.2

@@ -111,6 +111,12 @@ def test_the_step_rate_does_not_count_the_time_in_which_a_foot_is_not_seen(hidde
     assert rate["sigma"] > whole.loc["rally_1_step_rate", "sigma"]
 
 
+def test_steps_of_one_foot_have_no_step_rate():
+    found = values({"left": [], "right": run(8)["right"]})
+    assert found.loc["steps", "value"] == 8
+    assert np.isnan(found.loc["rally_1_step_rate", ["value", "sigma"]].astype(float)).all()
+
+
 def out_of_sight(since_s, until_s, n=40):
     """Return the feet of a run of 24 s, without what neither foot shows in between."""
     feet = {}

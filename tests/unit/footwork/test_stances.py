@@ -69,12 +69,54 @@ def drop_jump(height_m, flight_s, rate_hz):
     high = height_m - g / 2 * np.maximum(time_s - 1, 0) ** 2
     up_s = np.clip(time_s - leaves_s, 0, flight_s)
     high = np.where(time_s < lands_s, high, g / 2 * up_s * (flight_s - up_s))
-    xyz, _ = footwork.body(np.column_stack([0 * high, 0 * high, 1.45 + high]), time_s)
+    feet = dict.fromkeys(("ankle", "heel", "foot_index"), (0 * high, high))
+    return left_foot(feet, 1.45 + high, time_s), (lands_s, leaves_s, again_s)
+
+
+def left_foot(feet, neck_m, time_s, seed=0):
+    """Return filtered keypoints of a body whose left foot's parts go along and above the floor."""
+    xyz, _ = footwork.body(np.column_stack([0 * time_s, 0 * time_s, neck_m]), time_s)
     for part, y, z in (("ankle", 0.0, 0.08), ("heel", -0.05, 0.03), ("foot_index", 0.15, 0.02)):
-        place = np.column_stack([0 * high - 0.15, 0 * high + y, z + high])
+        along, high = feet[part]
+        place = np.column_stack([0 * time_s - 0.15, y + along, z + high])
         xyz[:, walker.SKELETON.index(f"left_{part}")] = place
-    made = footwork.record(xyz, time_s, 0.006, 0.0, np.random.default_rng(0))
-    return skeleton_filter.smooth(made, walking_feet.CUTOFF_HZ, 4), (lands_s, leaves_s, again_s)
+    made = footwork.record(xyz, time_s, 0.006, 0.0, np.random.default_rng(seed))
+    return skeleton_filter.smooth(made, walking_feet.CUTOFF_HZ, 4)
+
+
+def walk(m_s, stance_s, period_s, stands, seed, n=10, rate_hz=60):
+    """Return filtered keypoints of a walk, and when the left foot leaves the floor n times, s.
+
+    `stands`: from and until when heel and toe stand, shares of a stance. `m_s` < 0: backwards.
+    """
+    time_s, onset_s = np.arange((n + 2) * period_s * rate_hz) / rate_hz, period_s * np.arange(n)
+    feet = {}
+    for part, lift_m in (("heel", 0.1), ("foot_index", 0.06)):
+        lands, leaves = stance_s * np.array(stands[part])
+        swing = (time_s[:, None] - onset_s - leaves) / (period_s + lands - leaves)
+        share = np.clip(swing, 0, 1)
+        along = m_s * period_s * (share**2 * (3 - 2 * share)).sum(axis=1)
+        feet[part] = along, lift_m * np.sin(np.pi * share).sum(axis=1)
+    feet["ankle"] = feet["heel"]
+    points = left_foot(feet, np.full(len(time_s), 1.45), time_s, seed)
+    return points, onset_s + stance_s
+
+
+BACKWARDS = {"heel": (0.4, 1.0), "foot_index": (0.0, 0.88)}
+
+
+@pytest.mark.parametrize(("m_s", "stance_s", "period_s"), [(-1.0, 0.7, 1.1), (-1.4, 0.6, 1.0)])
+def test_backwards_a_foot_stands_until_its_heel_leaves(m_s, stance_s, period_s):
+    found = []
+    for seed in range(3):
+        points, leaves_s = walk(m_s, stance_s, period_s, BACKWARDS, seed)
+        own, _ = tracks.tracks(points, 0, "left", walking_feet.CUTOFFS)
+        stood, _ = stances.of_tracks(own, len(points.time_s))
+        ends = [(one.end_s, one.end_sigma_s) for one in stood[:-1]]
+        found += [(end - true, sigma) for (end, sigma), true in zip(ends, leaves_s, strict=True)]
+    error, sigma = np.array(found).T
+    assert abs(np.median(error)) < 0.025
+    assert np.mean(abs(error) <= 1.645 * sigma) >= 0.9
 
 
 @pytest.mark.parametrize("rate_hz", [30, 60, 120])

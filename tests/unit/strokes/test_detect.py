@@ -155,6 +155,16 @@ def test_frames_without_the_wrist_lower_the_quality():
     assert rows.speed_m_s[1:].equals(whole.speed_m_s[1:])
 
 
+@pytest.mark.parametrize("lost", ["left_elbow", "left_wrist"])
+def test_strokes_are_found_though_the_other_arm_is_never_seen(lost):
+    points, truth = strokes_made.take(seed=1, noise_m=0.004)
+    points.xyz[:, :, strokes_made.JOINTS.index(lost)] = np.nan
+    rows = detect.table(points, {"p1": "right"})
+    hits_s = [time_s for time_s in evaluation.hits(truth, "p1") if time_s < points.time_s[-1] - 0.3]
+    assert len(hits_s) >= 2
+    np.testing.assert_allclose(rows.time_s, hits_s, atol=0.07)
+
+
 def test_a_person_who_was_never_seen_has_no_strokes():
     points, _ = strokes_made.take(seed=1)
     points.xyz[:] = np.nan

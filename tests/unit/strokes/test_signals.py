@@ -27,6 +27,16 @@ def test_lengths_are_shares_of_arm_and_trunk():
     assert found.rate_hz == pytest.approx(30)
 
 
+@pytest.mark.parametrize(
+    ("lost", "size_m"),
+    [(["left_elbow"], 1.05), (["left_wrist"], 1.05), (["left_wrist", "right_wrist"], np.nan)],
+)
+def test_one_arm_is_enough_for_the_length_of_arms(lost, size_m):
+    points = carried(2.0)
+    points.xyz[:, :, [strokes_made.JOINTS.index(joint) for joint in lost]] = np.nan
+    assert signals.of_person(points, 0).size_m == pytest.approx(size_m, nan_ok=True)
+
+
 def test_at_the_edge_of_a_gap_a_wrist_has_no_speed():
     points = carried(1.0)
     at = strokes_made.JOINTS.index("left_wrist")

@@ -19,7 +19,8 @@ SUMMARY_COLUMNS = (
 )  # fmt: skip
 # measure, value, sigma, sigma_camera, unit, n
 Row = tuple[str, float, float, float, str, int]
-# Over which a largest speed is a mean: one frame with a large error would be the largest of all.
+# Over which a largest speed is a mean: one frame with a large error would be the largest of all. At
+# 10 frames per second it is one frame, but of joints filtered at 4.5 Hz.
 PEAK_S = 0.1
 # Left out beside gaps, at least one frame: splines have large errors at their ends. Noise of 4 mm,
 # filtered at 6 Hz, made the largest speed 0.028 m/s too high at 240 frames per second without one
@@ -133,7 +134,7 @@ def _peaks(time_s: NDArray, point: measures.Point) -> Iterator[Row]:
     step_s = float(np.median(np.diff(time_s))) if len(time_s) > 1 else PEAK_S
     inside = _inside(point.velocity, max(1, window(EDGE_S, 1 / step_s)))
     spread = point.covariance[1], point.camera_covariance[1]
-    n = max(3, window(PEAK_S, 1 / step_s))
+    n = max(1, window(PEAK_S, 1 / step_s))
     yield _peak("speed_max", "m/s", point.velocity, spread, inside, n, LARGEST_SPEED)
     n = max(1, window(CHANGE_S, 1 / step_s))
     change = _over(point.velocity, n, -1) / (n * step_s)

@@ -32,12 +32,13 @@ RAISED_M_S, RAISED_M, RAISED_SD_M = 0.9, 0.04, 0.04  # of the other end of a til
 # somebody who waits, does not stand: it rides on wheels, or is dragged. In the study's takes it
 # goes 0.35 m at most.
 FURTHEST_M, RIDES_M_S = 0.5, 0.15
-# Mean durations of states, s, and where they go: swing, heel, flat, toe.
+# Mean durations of states, s, and where they go: swing, heel, flat, toe. Forwards, a foot lands on
+# its heel and leaves with its toe; backwards the other way round (Winter, Pluck & Yang 1989).
 RATES = np.array(
     [
         [0.0, 0.35 / 0.3, 0.35 / 0.3, 0.3 / 0.3],
-        [0.0, 0.0, 1 / 0.07, 0.0],
-        [1 / 0.6, 0.0, 0.0, 1 / 0.25],
+        [1 / 0.3, 0.0, 1 / 0.07, 0.0],
+        [1 / 0.6, 0.5 / 0.6, 0.0, 1 / 0.25],
         [1 / 0.15, 0.0, 1 / 0.6, 0.0],
     ]
 )

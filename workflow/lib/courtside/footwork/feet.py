@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from courtside.footwork import hops, kinds, stances, tracks
 from courtside.records import footwork
@@ -32,7 +33,7 @@ def find(
             feet[side] = hops.cut(stood, own or ())
             probability[at, :, foot] = hops.lifted(points.time_s, known, feet[side], own or ())
         people[person] = feet, leg_length(points, at), own
-    _warn(points, known=np.isfinite(floor).any())
+    _warn(points, np.isfinite(floor).any(axis=2))
     contacts = footwork.Contacts(
         points.person_id,
         np.array(footwork.FEET),
@@ -44,10 +45,18 @@ def find(
     return contacts, *kinds.tables(people)
 
 
-def _warn(points: Keypoints3D, *, known: bool) -> None:
-    """Tell why there are no contacts, or why they are inaccurate."""
+def _warn(points: Keypoints3D, known: NDArray) -> None:
+    """Tell why contacts are missing or inaccurate; `known` (P, S): which feet are."""
     names = points.joints.tolist()
-    if not known:
+    for person, foot in np.argwhere(~known & known.any(axis=1, keepdims=True)):
+        log.logger.warning(
+            "%s: expected heel and toe of the %s foot in %d frames in a row, found none: contacts "
+            "and steps are those of the other foot alone",
+            points.person_id[person],
+            footwork.FEET[foot],
+            tracks.LEAST_FRAMES,
+        )
+    if not known.any():
         there = any(skeleton.heel_and_toe(names, side) for side in footwork.FEET)
         log.logger.warning(
             "%s: expected heels and toes of at least one foot in %d frames in a row, found none: "

@@ -157,7 +157,7 @@ def _rate(steps: pd.DataFrame, landed: pd.DataFrame) -> tuple[float, float, str,
 
     A landing counts if both are seen from the one before: in a gap nobody knows of landings.
     """
-    feet = steps.foot.nunique()
+    feet = len(footwork.FEET)
     spans = zip(landed.onset_s, landed.onset_s.shift(1), strict=True)
     seen = np.array(
         [

@@ -1,7 +1,6 @@
 """Signals for the detection of strokes: both wrists relative to the waist, and the trunk."""
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,13 +64,14 @@ def of_person(points: Keypoints3D, person: int) -> Signals:
     def joint(name: str) -> NDArray:
         return xyz[:, names.index(name)]
 
-    def length(*chain: str) -> float:
-        return sum(_usual(joint(a) - joint(b)) for a, b in pairwise(chain))
+    def length(above: str, below: str) -> float:  # of either arm: one may never be seen
+        lines = [joint(f"{side}_{above}") - joint(f"{side}_{below}") for side in HANDS]
+        return _usual(np.concatenate(lines))
 
     waist = (joint("left_hip") + joint("right_hip")) / 2
     shoulders = (joint("left_shoulder") + joint("right_shoulder")) / 2
-    arms_m = [length(f"{side}_shoulder", f"{side}_elbow", f"{side}_wrist") for side in HANDS]
-    size_m, arms = float(np.mean(arms_m)) + _usual(shoulders - waist), {}
+    arm_m, arms = length("shoulder", "elbow") + length("elbow", "wrist"), {}
+    size_m = arm_m + _usual(shoulders - waist)
     for side in HANDS:
         wrist = joint(f"{side}_wrist")
         known = reason[:, names.index(f"{side}_wrist")] == missing_reason.OK
