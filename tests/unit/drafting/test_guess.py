@@ -371,6 +371,27 @@ def test_a_folder_of_depth_goes_to_the_take_of_its_name():
     assert [(take, device) for take, device, _ in found.devices] == [("lob", "rgbd")]
 
 
+@pytest.mark.parametrize(
+    "takes",
+    [
+        ("P01_smash_1", "P01_smash_2", "P02_smash_1", "P02_smash_2"),
+        ("P01/trial1", "P01/trial2", "P02/trial1", "P02/trial2"),
+        ("smash_slow", "smash_fast", "lob_slow", "lob_fast", "smash"),
+    ],
+)
+def test_a_file_of_a_device_goes_to_the_take_that_shares_most_words_with_it(takes):
+    films = [f"{take}_cam{k}.mp4" for take in takes for k in (1, 2)]
+    found = guess(*films, *(f"{take}.bvh" for take in takes))
+    assert {film["cam1"].path: name for name, film in found.takes.items()} == {
+        r.path.replace(".bvh", "_cam1.mp4"): take for take, _, r in found.devices
+    }
+
+
+def test_a_file_of_a_device_that_two_takes_may_have_goes_to_none():
+    films = [f"{take}_cam{k}.mp4" for take in ("slow_smash", "slow_lob", "drive") for k in (1, 2)]
+    assert [take for take, *_ in guess(*films, "slow.bvh").devices] == [""]
+
+
 def keypoints(*paths):
     """Return the kinds of recordings: folders of keypoints of these names."""
     return dict.fromkeys((PurePosixPath(path).name for path in paths), "keypoints")
@@ -398,6 +419,15 @@ def test_keypoints_lie_beside_the_videos_that_they_were_made_from():
     assert [(r.path, why) for r, why in found.unused] == [
         ("gym/lob/pose/cam07_json", "keypoints of no camera and take found")
     ]
+
+
+def test_keypoints_go_to_the_take_that_has_no_other_words():
+    takes = ("lob slow", "serve slow", "serve")
+    folders = [f"{take}/pose/cam{k}_json" for take in takes for k in (1, 2)]
+    films = [f"{take}/cam{k}.mp4" for take in takes for k in (1, 2)]
+    found = guess(*films, *folders, **keypoints(*folders))
+    assert paths(found.keypoints["serve"]) == {f"cam{k}": f"serve/pose/cam{k}_json" for k in (1, 2)}
+    assert len(found.keypoints) == 3
 
 
 def test_keypoints_of_some_cameras_only_and_those_changed_by_another_program_are_left_out():

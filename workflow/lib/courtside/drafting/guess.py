@@ -131,6 +131,7 @@ def _place_keypoints(
         camera, words = camera_words.told(own[recording.path], cameras)
         only = len(found.takes) == 1
         near = [n for n in found.takes if only or (words and set(words) <= set(words_of([n])))]
+        near.sort(key=lambda name: len(words_of([name])))
         camera = camera if near and camera in found.takes[near[0]] else None
         place = found.keypoints.setdefault(near[0], {}) if near else {}
         _keep(found, place, recording, camera, "keypoints of no camera and take found")
@@ -207,12 +208,18 @@ def _sort_others(found: Guess, recordings: Iterable[Recording], own: Words) -> N
                 kind = recording.kind.replace("_", " ")
                 found.unused.append((recording, f"there is another {kind} file"))
         elif recording.kind in DEVICES and not alone:
-            words = set(own[recording.path])
-            near = [t for t in found.takes if set(words_of([t])) & words]
-            only = list(found.takes) if len(found.takes) == 1 else [""]
-            found.devices.append(((near or only)[0], DEVICES[recording.kind], recording))
+            take = _nearest(found.takes, set(own[recording.path]))
+            found.devices.append((take, DEVICES[recording.kind], recording))
         elif recording.kind in ("racket", "unusable"):
             found.unused.append((recording, recording.note or "clicked racket ends"))
+
+
+def _nearest(takes: Iterable[str], words: set[str]) -> str:
+    """Return the take that shares most words, of equals the one without others; empty if none."""
+    shared = {take: set(words_of([take])) & words for take in takes}
+    fits = {take: (len(said), said == set(words_of([take]))) for take, said in shared.items()}
+    near = [take for take, fit in fits.items() if fit == max(fits.values())]
+    return near[0] if len(near) == 1 else ""
 
 
 def _named(words: str, recordings: Iterable[Recording], otherwise: str) -> str:
