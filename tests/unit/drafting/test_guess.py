@@ -439,3 +439,22 @@ def test_keypoints_of_some_cameras_only_and_those_changed_by_another_program_are
     assert why["pose/cam1_json"] == "keypoints of some cameras of take take1 only"
     assert "changed" in why["pose-associated/cam1_json"]
     assert "changed" in why["pose-sync/cam2_json"]
+
+
+@pytest.mark.parametrize("drawn", ["cam{k}_pose.mp4", "cam{k}_img"])
+def test_pictures_with_keypoints_drawn_in_are_left_out(drawn):
+    films = [f"{take}/videos/cam{k}.mp4" for take in ("T1", "T2") for k in (1, 2)]
+    folders = [f"{take}/pose/cam{k}_json" for take in ("T1", "T2") for k in (1, 2)]
+    others = [f"{take}/pose/{drawn.format(k=k)}" for take in ("T1", "T2") for k in (1, 2)]
+    found = guess(*others, *folders, *films, **keypoints(*folders))
+    assert paths(found.takes["t1"]) == {f"cam{k}": f"T1/videos/cam{k}.mp4" for k in (1, 2)}
+    assert len(found.keypoints) == 2
+    assert not found.walks
+    told = {r.path.removeprefix("gym/"): why for r, why in found.unused}
+    assert sorted(told) == sorted(others)
+    assert all("the study needs the recording itself" in why for why in told.values())
+
+
+def test_recordings_in_folders_of_keypoints_that_do_not_say_that_they_are_drawn_are_takes():
+    assert len(guess("pose/cam1.mp4", "pose/cam2.mp4").takes["take1"]) == 2
+    assert len(guess("pose/GX010034.mp4", "pose/GX010107.mp4").takes["take1"]) == 2

@@ -9,6 +9,7 @@ from courtside.drafting.recordings import (
     CHANGED,
     D435I,
     DEVICES,
+    DRAWN,
     FOLDERS,
     RECORDERS,
     STATIC,
@@ -28,7 +29,7 @@ def guess(recordings: Sequence[Recording]) -> Guess:
     """Guess what each recording, in name order, is; every one is in the guess once."""
     found = Guess()
     recordings = _without_later_chapters(found, recordings)
-    recordings = _without_changed_keypoints(found, recordings)
+    recordings = _without_changed(found, recordings)
     if alone := _single_views(recordings):
         _place_single_views(found, alone)
         recordings = [recording for recording in recordings if recording not in alone]
@@ -67,14 +68,26 @@ def _without_later_chapters(found: Guess, recordings: Sequence[Recording]) -> li
     return kept
 
 
-def _without_changed_keypoints(found: Guess, recordings: Sequence[Recording]) -> list[Recording]:
-    """Leave out the keypoints that Pose2Sim has synchronised, associated or filtered itself."""
-    changed = [
-        r for r in recordings if r.kind == "keypoints" and CHANGED & set(words_of(r.parts[:-1]))
-    ]
-    why = "keypoints that another program changed; the study needs them as they were detected"
-    found.unused += [(recording, why) for recording in changed]
-    return [recording for recording in recordings if recording not in changed]
+def _without_changed(found: Guess, recordings: Sequence[Recording]) -> list[Recording]:
+    """Leave out the keypoints that Pose2Sim has changed, and the pictures that it has drawn in."""
+    kept = []
+    for recording in recordings:
+        folders = set(words_of(recording.parts[:-1]))
+        if recording.kind == "keypoints" and CHANGED & folders:
+            why = (
+                "keypoints that another program changed; the study needs them as they were detected"
+            )
+        elif (
+            recording.kind in ("video", "photos")
+            and "pose" in folders
+            and DRAWN & set(words_of(recording.parts[-1:])[-1:])
+        ):
+            why = "another program drew keypoints into it; the study needs the recording itself"
+        else:
+            kept.append(recording)
+            continue
+        found.unused.append((recording, why))
+    return kept
 
 
 def _single_views(recordings: Sequence[Recording]) -> list[Recording]:

@@ -21,6 +21,8 @@ FOLDERS |= {"recording", "recordings", "cam", "camera", "kamera"}
 FOLDERS |= {"json", "pose", "poses", "pose2d", "keypoints", "openpose", "alphapose", "rtmlib"}
 # Words of folders in which Pose2Sim keeps keypoints that it has changed itself.
 CHANGED = {"associated", "sync", "filtered"}
+# Ends of names of what it draws keypoints into: `pose/left_pose.mp4`, `pose/left_img/`.
+DRAWN = {"pose", "img"}
 DEVICES = {"bvh": "mocopi", "bag": "realsense", "depth": "rgbd"}  # by kind
 WEBCAM = "webcam"
 # Words at the end or the start of a name that say what recorded it, not what was recorded.
