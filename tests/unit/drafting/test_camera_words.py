@@ -136,6 +136,39 @@ def test_a_camera_that_films_no_take_of_others_walks():
     assert filmed == {"a": {"left": "a_left", "right": "a_right"}}
 
 
+@pytest.mark.parametrize(
+    ("cameras", "empty"),
+    [
+        ("front side ceiling", ()),
+        ("cam1 cam2 topcam", ()),
+        ("left right baseline", ()),
+        ("a b c", ("a_empty", "b_empty")),
+        ("north_east north_west top", ("north_east_empty",)),
+    ],
+)
+@pytest.mark.parametrize("pattern", ["<take>_<camera>", "<camera>_<take>", "<camera>/<take>"])
+def test_a_camera_of_another_kind_of_word_films_the_takes_of_others(cameras, empty, pattern):
+    every = cameras.split()
+    found, odd = takes(*each(pattern, camera=cameras, take="serve lob"), *empty, "gopro_hall")
+    assert found == {
+        take: {one: each(pattern, camera=one, take=take)[0] for one in every}
+        for take in ("serve", "lob")
+    }
+    assert odd == []
+
+
+def test_a_walk_with_the_words_of_a_take_is_told():
+    _, odd = takes(*each("<take>_<camera>", **SIDES, take="serve lob"), "serve_on_the_roof")
+    assert "serve_on_the_roof.mp4 was taken for a walk; if a fixed camera filmed it" in odd[0]
+
+
+def test_several_walks_without_a_camera_are_told():
+    found, odd = takes(*each("<camera>/walk1", camera="north south"))
+    assert found == {}
+    assert sum("was taken for a walk" in line for line in odd) == 2
+    assert takes("walk1")[1] == []
+
+
 def test_a_camera_of_more_words_goes_first():
     cameras = {"left": ("left",), "far_left": ("far", "left")}
     assert camera_words.told(("far", "left", "serve"), cameras) == ("far_left", ("serve",))

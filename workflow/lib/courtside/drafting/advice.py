@@ -106,9 +106,12 @@ def doubts(guess: Guess) -> Iterator[str]:
             "show one recording"
         )
     own = {word for camera in guess.cameras for word in words_of([camera])}
-    for walk in (walk for walk in guess.walks.values() if walk.kind == "video"):
+    takes = [set(words_of([take])) for take in guess.takes]
+    for walk in guess.walks.values():
         taken = any(uncounted(word) in own for word in walk.words)
-        if taken or (guess.cameras and not guess.takes and not is_called_walk(walk)):
+        taken = taken or any(words <= set(walk.words) for words in takes)
+        doubtful = not is_called_walk(walk) if guess.cameras else len(guess.walks) > 1
+        if taken or (doubtful and not takes and walk.kind == "video"):
             yield (
                 f"{walk.path} was taken for a walk; if a fixed camera filmed it, name the camera "
                 "and the take in its name"

@@ -21,8 +21,8 @@ NUMBERED = re.compile(
 )
 CAMERA = re.compile(
     NUMBERED.pattern
-    + r"|(left|right|centre|center|middle|back|front|side|rear|oblique|mirror|links|rechts|mitte)"
-    + r"[0-9]*"
+    + r"|(left|right|centre|center|middle|back|front|side|rear|top|oblique|mirror"
+    + r"|links|rechts|mitte|vorne|hinten|oben)[0-9]*"
 )
 Named = list[tuple[str, ...]]  # words of cameras, one of each video; empty where it names none
 
@@ -47,28 +47,29 @@ def of(
 
 
 def _beside(names: Named, videos: Sequence[Recording], own: Words) -> Named:
-    """Return cameras of which there is no recording of the empty hall, by takes that others film.
+    """Return more cameras: by words that a name has beside those of a take that others film.
 
     A name without other words may also be that of the walking camera, unless one is called so.
     """
-
-    def takes(words: tuple[str, ...]) -> set[tuple[str, ...]]:
-        named = [own[r.path] for r in videos if set(words) <= set(own[r.path])]
-        return {tuple(word for word in every if word not in words) for every in named}
-
-    filmed = dict.fromkeys(_of_videos(videos, own)[0])
-    cameras = set(filter(None, names))
-    if not cameras <= set(filmed):
-        return []
-    known = set().union(*map(takes, cameras))
-    known -= set() if any(is_called_walk(r) for r in videos) else {()}
-    return [one for one in filmed if one and one not in cameras and takes(one) & known]
+    cameras = {"_".join(words): words for words in filter(None, names)}
+    placed = [told(own[r.path], cameras) for r in videos if not called(r, STATIC)]
+    filmed = {words for camera, words in placed if camera}
+    filmed -= set() if any(is_called_walk(r) for r in videos) else {()}
+    more: dict[tuple[str, ...], None] = {}
+    for words in (words for camera, words in placed if camera is None):
+        for size in {1, *map(len, cameras.values())}:
+            for one in (words[at : at + size] for at in range(len(words) - size + 1)):
+                if told(words, {"": one})[1] in filmed and not WALK & set(map(uncounted, one)):
+                    more[one] = None
+    return list(more)
 
 
 def _of_videos(videos: Sequence[Recording], own: Words) -> tuple[Named, bool]:
     """Return the words of cameras in names of videos, and whether others may be meant."""
     names, doubtful = _known(videos, own)
-    return (names, doubtful) if len(set(filter(None, names))) > 1 else _differing(videos, own)
+    if len(set(filter(None, names))) > 1:
+        return names + _beside(names, videos, own), doubtful
+    return _differing(videos, own)
 
 
 def _known(videos: Sequence[Recording], own: Words) -> tuple[Named, bool]:
