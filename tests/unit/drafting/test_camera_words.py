@@ -128,6 +128,24 @@ def test_a_camera_without_a_recording_of_the_empty_hall_is_told_by_takes_of_othe
     assert len(takes("left_empty", "left", "right", "walk")[0]["take1"]) == 2
 
 
+@pytest.mark.parametrize(
+    "empty",
+    [
+        "empty_court_<camera>",
+        "<camera>_empty_hall",
+        "<camera>/empty court",
+        "<camera>/leere Halle",
+        "<camera>/Leeraufnahme",
+    ],
+)
+@pytest.mark.parametrize("cameras", ["left right", "cam1 cam2", "tall low"])
+def test_words_of_the_hall_name_no_camera(empty, cameras):
+    names = each("<take>_<camera>", take="serve lob", camera=cameras)
+    found, odd = takes(*names, *each(empty, camera=cameras), "walk")
+    assert {tuple(take) for take in found.values()} == {tuple(sorted(cameras.split()))}
+    assert (list(found), odd) == (["lob", "serve"], [])
+
+
 def test_a_camera_that_films_no_take_of_others_walks():
     assert takes(*EMPTY, "left", "right", "gopro1")[0] == {
         "take1": {"left": "left", "right": "right"}

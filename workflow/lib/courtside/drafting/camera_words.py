@@ -33,6 +33,10 @@ def of(
     """Return the words that name each camera, by its name, and whether others may be meant."""
     empty = [r for r in recordings if r.kind in ("video", "photo") and called(r, STATIC)]
     names = [tuple(w for w in own[r.path] if uncounted(w) not in STATIC) for r in empty]
+    # What no other video says is of the hall, as `court` of `empty_court_left`.
+    said = {uncounted(w) for r in videos if not called(r, STATIC) for w in own[r.path]}
+    filming = [tuple(w for w in words if uncounted(w) in said) for words in names]
+    names = filming if any(filming) else names
     doubtful = False
     if any(names):
         names += _beside(names, videos, own)

@@ -12,7 +12,7 @@ from courtside.drafting.names import words_of
 # Words that mark a recording of the empty court, of the carried camera, of a chessboard, and words
 # that say nothing, as people name files in English, German and French.
 STATIC = {"empty", "static", "still", "background", "bg", "vacant", "nobody", "blank"}
-STATIC |= {"leer", "vide"}
+STATIC |= {"leer", "leere", "leeraufnahme", "leerbild", "vide"}
 WALK = {"walk", "walking", "mobile", "moving", "handheld", "bridge", "bridging", "sweep", "gang"}
 BOARD = {"board", "boards", "chess", "chessboard", "checker", "checkerboard"}
 BOARD |= {"calib", "calibration", "intrinsic", "intrinsics", "int"}
