@@ -100,8 +100,9 @@ def test_unknown_words_may_be_cameras_or_takes():
 
 
 def test_the_words_of_two_cameras_in_a_name_are_told():
-    _, odd = takes(*each("<camera>/<leg>_leg", **SIDES, leg="left right"), *EMPTY)
-    assert any("can be read in several ways" in line for line in odd)
+    for pattern in ("<camera>/<leg>_leg", "<leg>_1_<camera>"):
+        _, odd = takes(*each(pattern, **SIDES, leg="left right"), *EMPTY)
+        assert any("can be read in several ways" in line for line in odd)
 
 
 def test_names_with_take_before_camera_need_no_look():

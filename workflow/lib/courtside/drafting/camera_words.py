@@ -47,7 +47,8 @@ def of(
             if _are_trials(videos, own, counted):
                 names = [(uncounted(word),) for word in counted]
     cameras = {"_".join(words): words for words in dict.fromkeys(filter(None, names))}
-    return cameras, doubtful or any(_names_several(own[r.path], cameras) for r in videos)
+    parted = without_trials(videos, own, cameras)
+    return cameras, doubtful or any(_names_several(parted[r.path], cameras) for r in videos)
 
 
 def _beside(names: Named, videos: Sequence[Recording], own: Words) -> Named:
