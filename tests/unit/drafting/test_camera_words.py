@@ -188,6 +188,15 @@ def test_several_walks_without_a_camera_are_told():
     assert takes("walk1")[1] == []
 
 
+@pytest.mark.parametrize("pattern", ["<camera>_<n>", "<camera>/trial<n>", "trial<n>_<camera>"])
+@pytest.mark.parametrize("cameras", ["GoPro1 GoPro2 iPhone1", "GoPro-9 iPhone-13 iPhone-14"])
+def test_cameras_are_told_by_gopro_and_iphone_as_people_write_them(pattern, cameras):
+    found, odd = takes(*each(pattern, camera=cameras, n="1 2"))
+    assert [name[-1] for name in found] == ["1", "2"]
+    assert all(len(take) == 3 for take in found.values())
+    assert odd == []
+
+
 def test_a_camera_of_more_words_goes_first():
     cameras = {"left": ("left",), "far_left": ("far", "left")}
     assert camera_words.told(("far", "left", "serve"), cameras) == ("far_left", ("serve",))

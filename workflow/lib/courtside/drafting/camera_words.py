@@ -17,7 +17,7 @@ from courtside.drafting.recordings import (
 )
 
 NUMBERED = re.compile(
-    r"(cam|camera|c|gopro|gp|view|kamera|phone|iphone|pixel|dslr|miqus|oqus|arqus)[0-9]+"
+    r"(cam|camera|c|gopro|gp|view|kamera|phone|iphone|ipad|pixel|dslr|miqus|oqus|arqus)[0-9]+"
 )
 CAMERA = re.compile(
     NUMBERED.pattern

@@ -118,6 +118,7 @@ def _plain(text: str) -> str:
     text = unicodedata.normalize("NFKC", text)  # digits and letters of full width
     text = "".join(LETTERS.get(letter.lower(), letter) for letter in text)
     text = "".join(_without_accents(text))
+    text = re.sub("GoPro|iPhone|iPad", lambda found: found[0].title(), text)  # one word each
     text = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)
     return KNOWN.sub(lambda found: f" {MEANING[found[0].lower()]} ", _lower_cyrillic(text))
 
