@@ -99,6 +99,16 @@ def test_unknown_words_may_be_cameras_or_takes():
     assert takes("serve_tall", "serve_low")[1] == []
 
 
+@pytest.mark.parametrize("pattern", ["<camera>/<take>", "<camera>/<take>_<camera>"])
+def test_of_words_that_may_be_cameras_or_takes_lengths_choose(pattern):
+    lengths_s = {"serve": 20.0, "lob": 31.0, "drive": 45.0}
+    of = {take: each(pattern, camera="net tribune", take=take) for take in lengths_s}
+    lengths = {name: lengths_s[take] for take, names in of.items() for name in names}
+    found, odd = takes(*lengths, **lengths)
+    assert {take: [*films.values()] for take, films in found.items()} == of
+    assert "net, tribune were taken for cameras" in odd[0]
+
+
 def test_the_words_of_two_cameras_in_a_name_are_told():
     for pattern in ("<camera>/<leg>_leg", "<leg>_1_<camera>"):
         _, odd = takes(*each(pattern, **SIDES, leg="left right"), *EMPTY)

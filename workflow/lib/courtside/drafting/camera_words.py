@@ -104,17 +104,35 @@ def _known(videos: Sequence[Recording], own: Words) -> tuple[Named, bool]:
 
 
 def _differing(videos: Iterable[Recording], own: Words) -> tuple[Named, bool]:
-    """Return the last words by which otherwise equal names differ, and whether others do, too."""
-    named = [own[r.path] for r in videos if own[r.path] and not called(r, WALK | STATIC)]
+    """Return the words by which otherwise equal names differ, and whether others do, too.
+
+    The last ones by which recordings of one take are about as long as each other, if any.
+    """
+    films = [r for r in videos if own[r.path] and not called(r, WALK | STATIC)]
+    named = [(r, _once(own[r.path])) for r in films]
     places = set()
-    for one, other in combinations(named, 2):
+    for (_, one), (_, other) in combinations(named, 2):
         differ = [at for at, pair in enumerate(zip(one, other, strict=False)) if len(set(pair)) > 1]
         if len(one) == len(other) and len(differ) == 1:
             places.add(differ[0] - len(one))
     if not places:
         return [], False
-    last = max(places)
-    return [words[last:][:1] for words in named if len(words) >= -last], len(places) > 1
+    last = max([place for place in places if _takes_fit(named, place)] or places)
+    return [words[last:][:1] for _, words in named if len(words) >= -last], len(places) > 1
+
+
+def _once(words: tuple[str, ...]) -> tuple[str, ...]:
+    """Return words without those said before; a number that is said again is something else."""
+    return tuple(w for at, w in enumerate(words) if w.isdigit() or w not in words[:at])
+
+
+def _takes_fit(named: Iterable[tuple[Recording, tuple[str, ...]]], place: int) -> bool:
+    """Say whether lengths of recordings fit whose words differ in one place alone."""
+    takes: dict[tuple[str, ...], list[Recording]] = {}
+    for recording, words in named:
+        if len(words) >= -place:
+            takes.setdefault(words[:place] + words[place:][1:], []).append(recording)
+    return all(map(lengths_fit, takes.values()))
 
 
 def _counted(names: Named) -> list[str]:
