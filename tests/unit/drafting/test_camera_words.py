@@ -147,6 +147,7 @@ def test_a_camera_without_a_recording_of_the_empty_hall_is_told_by_takes_of_othe
         "<camera>/empty court",
         "<camera>/leere Halle",
         "<camera>/Leeraufnahme",
+        "empty_hall_<camera>_20260503",
     ],
 )
 @pytest.mark.parametrize("cameras", ["left right", "cam1 cam2", "tall low"])
@@ -187,8 +188,9 @@ def test_a_camera_of_another_kind_of_word_films_the_takes_of_others(cameras, emp
 
 
 def test_a_walk_with_the_words_of_a_take_is_told():
-    _, odd = takes(*each("<take>_<camera>", **SIDES, take="serve lob"), "serve_on_the_roof")
-    assert "serve_on_the_roof.mp4 was taken for a walk; if a fixed camera filmed it" in odd[0]
+    for take in ("serve", "スマッシュ"):
+        _, odd = takes(*each("<take>_<camera>", **SIDES, take=f"{take} lob"), f"{take}_on_the_roof")
+        assert f"{take}_on_the_roof.mp4 was taken for a walk; if a fixed camera" in odd[0]
 
 
 def test_several_walks_without_a_camera_are_told():
@@ -196,6 +198,14 @@ def test_several_walks_without_a_camera_are_told():
     assert found == {}
     assert sum("was taken for a walk" in line for line in odd) == 2
     assert takes("walk1")[1] == []
+
+
+@pytest.mark.parametrize("date", ["20260503", "2026-05-03"])
+def test_a_date_behind_the_word_of_a_camera_is_no_number_of_it(date):
+    names = each(f"<take>_<camera>_{date}", camera="net east west", take="a b")
+    found, odd = takes(*names, "net_empty", "east_empty")
+    assert [list(films) for films in found.values()] == 2 * [["east", "net", "west"]]
+    assert odd == []
 
 
 @pytest.mark.parametrize("pattern", ["<camera>_<n>", "<camera>/trial<n>", "trial<n>_<camera>"])

@@ -2,8 +2,7 @@
 
 from collections.abc import Iterator
 
-from courtside.drafting import draft
-from courtside.drafting.names import words_of
+from courtside.drafting import draft, names
 from courtside.drafting.recordings import Guess, Take, is_called_walk, lengths_fit, uncounted
 from courtside.study.errors import StrPath
 from courtside.study.methods import NEEDS_COURT
@@ -105,11 +104,13 @@ def doubts(guess: Guess) -> Iterator[str]:
             f"for cameras, {', '.join(guess.takes)} for takes; check that the videos of each take "
             "show one recording"
         )
-    own = {word for camera in guess.cameras for word in words_of([camera])}
-    takes = [set(words_of([take])) for take in guess.takes]
+    own = {word for camera in guess.cameras for word in names.words_of([camera])}
+    takes = [set(names.words_of([take])) for take in guess.takes]
     for walk in guess.walks.values():
-        taken = any(uncounted(word) in own for word in walk.words)
-        taken = taken or any(words <= set(walk.words) for words in takes)
+        said = set(
+            names.words_of([names.name("_".join(walk.words), "walk")])
+        )  # spelled as takes are
+        taken = any(uncounted(word) in own for word in said) or any(take <= said for take in takes)
         doubtful = not is_called_walk(walk) if guess.cameras else len(guess.walks) > 1
         if taken or (doubtful and not takes and walk.kind == "video"):
             yield (
