@@ -111,3 +111,18 @@ def test_videos_of_unlike_lengths_in_a_take_are_told():
     assert line == (
         "Odd: take clip1 has videos of 14.0 to 24.0 s; check that they show one recording"
     )
+
+
+def test_takes_of_as_many_frames_in_each_camera_may_be_copies():
+    def told(**n_frames):
+        films = [
+            recording(f"data/north/{name}.mp4", n_frames=count) for name, count in n_frames.items()
+        ]
+        return [line for line in advice.to_check(guessed(*films), "n", "c", "s") if "copy" in line]
+
+    one = {"a_left": 610, "a_right": 633, "b_left": 700, "b_right": 690}
+    assert told(**one, old_a_left=610, old_a_right=633) == [
+        "Odd: takes a and old_a have as many frames in each camera; is one a copy?"
+    ]
+    assert told(**one) == []
+    assert told(a_left=600, a_right=600, b_left=600, b_right=600) == []  # a fixed length

@@ -458,3 +458,20 @@ def test_pictures_with_keypoints_drawn_in_are_left_out(drawn):
 def test_recordings_in_folders_of_keypoints_that_do_not_say_that_they_are_drawn_are_takes():
     assert len(guess("pose/cam1.mp4", "pose/cam2.mp4").takes["take1"]) == 2
     assert len(guess("pose/GX010034.mp4", "pose/GX010107.mp4").takes["take1"]) == 2
+
+
+@pytest.mark.parametrize(
+    "other",
+    ["cam1_chessboard.mp4", "intrinsics/cam1.mp4", "calibration/calib.mp4", "cam1_board.jpg"],
+)
+def test_a_video_of_a_chessboard_is_left_out(other):
+    films = [f"serve_cam{k}.mp4" for k in (1, 2)]
+    found = guess(*films, other, "calibration/walk.mp4", "calibration/cam2_empty.mp4")
+    assert paths(found.takes["serve"]) == {"cam1": films[0], "cam2": films[1]}
+    assert [paths(found.walks), paths(found.static)] == [
+        {"calibration_walk": "calibration/walk.mp4"},
+        {"cam2": "calibration/cam2_empty.mp4"},
+    ]
+    ((left_out, why),) = found.unused
+    assert left_out.path == f"gym/{other}"
+    assert "chessboard" in why

@@ -83,6 +83,7 @@ def _odd(guess: Guess) -> Iterator[str]:
             yield f"camera {camera} has pictures of {found} pixels"
     for name, take in guess.takes.items():
         yield from _odd_take(name, take)
+    yield from _copies(guess)
     yield from doubts(guess)
     yield from _only_video(guess)
     filmed = [recording for take in guess.takes.values() for recording in take.values()]
@@ -117,6 +118,16 @@ def doubts(guess: Guess) -> Iterator[str]:
                 f"{walk.path} was taken for a walk; if a fixed camera filmed it, name the camera "
                 "and the take in its name"
             )
+
+
+def _copies(guess: Guess) -> Iterator[str]:
+    """Yield takes of as many frames in each camera as an earlier one, where cameras differ."""
+    seen: dict[frozenset, str] = {}
+    for name, take in guess.takes.items():
+        lengths = frozenset((camera, r.n_frames) for camera, r in take.items())
+        other = seen.setdefault(lengths, name)
+        if other != name and len({r.n_frames for r in take.values()}) > 1:
+            yield f"takes {other} and {name} have as many frames in each camera; is one a copy?"
 
 
 def _only_video(guess: Guess) -> Iterator[str]:

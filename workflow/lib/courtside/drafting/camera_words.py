@@ -31,12 +31,7 @@ def of(
     recordings: Iterable[Recording], videos: Sequence[Recording], own: Words
 ) -> tuple[Words, bool]:
     """Return the words that name each camera, by its name, and whether others may be meant."""
-    empty = [r for r in recordings if r.kind in ("video", "photo") and called(r, STATIC)]
-    names = [tuple(w for w in own[r.path] if uncounted(w) not in STATIC) for r in empty]
-    # What no other video says is of the hall, as `court` of `empty_court_left`.
-    said = {uncounted(w) for r in videos if not called(r, STATIC) for w in own[r.path]}
-    filming = [tuple(w for w in words if uncounted(w) in said) for words in names]
-    names = filming if any(filming) else names
+    names = _of_empty(recordings, videos, own)
     doubtful = False
     if any(names):
         names += _beside(names, videos, own)
@@ -49,6 +44,20 @@ def of(
     cameras = {"_".join(words): words for words in dict.fromkeys(filter(None, names))}
     parted = without_trials(videos, own, cameras)
     return cameras, doubtful or any(_names_several(parted[r.path], cameras) for r in videos)
+
+
+def _of_empty(recordings: Iterable[Recording], videos: Sequence[Recording], own: Words) -> Named:
+    """Return the words of cameras in names of recordings of the empty court.
+
+    What no video of a take says is of the hall, as `court` of `empty_court_left`.
+    """
+    empty = [r for r in recordings if r.kind in ("video", "photo") and called(r, STATIC)]
+    names = [tuple(w for w in own[r.path] if uncounted(w) not in STATIC) for r in empty]
+    others = [r for r in videos if not called(r, STATIC)]
+    films = [r for r in others if not is_called_walk(r)] or others
+    said = {uncounted(word) for film in films for word in own[film.path]}
+    filming = [tuple(w for w in words if uncounted(w) in said) for words in names]
+    return filming if any(filming) else names
 
 
 def _beside(names: Named, videos: Sequence[Recording], own: Words) -> Named:

@@ -28,8 +28,7 @@ from courtside.drafting.recordings import (
 def guess(recordings: Sequence[Recording]) -> Guess:
     """Guess what each recording, in name order, is; every one is in the guess once."""
     found = Guess()
-    recordings = _without_later_chapters(found, recordings)
-    recordings = _without_changed(found, recordings)
+    recordings = _without_others(found, recordings)
     if alone := _single_views(recordings):
         _place_single_views(found, alone)
         recordings = [recording for recording in recordings if recording not in alone]
@@ -53,41 +52,38 @@ def guess(recordings: Sequence[Recording]) -> Guess:
     return found
 
 
-def _without_later_chapters(found: Guess, recordings: Sequence[Recording]) -> list[Recording]:
-    """Leave out the files in which a camera went on with a recording."""
+def _without_others(found: Guess, recordings: Iterable[Recording]) -> list[Recording]:
+    """Leave out what is neither of the empty court, nor of a walk, nor of a take."""
     kept = []
     for recording in recordings:
-        if recording.device and recording.device.chapter > 1:
-            why = (
-                f"chapter {recording.device.chapter} of a recording that its camera cut up; join "
-                "the chapters by `python workflow/join_chapters.py`, and keep them elsewhere"
-            )
+        if why := _what_else(recording):
             found.unused.append((recording, why))
         else:
             kept.append(recording)
     return kept
 
 
-def _without_changed(found: Guess, recordings: Sequence[Recording]) -> list[Recording]:
-    """Leave out the keypoints that Pose2Sim has changed, and the pictures that it has drawn in."""
-    kept = []
-    for recording in recordings:
-        folders = set(words_of(recording.parts[:-1]))
-        if recording.kind == "keypoints" and CHANGED & folders:
-            why = (
-                "keypoints that another program changed; the study needs them as they were detected"
-            )
-        elif (
-            recording.kind in ("video", "photos")
-            and "pose" in folders
-            and DRAWN & set(words_of(recording.parts[-1:])[-1:])
-        ):
-            why = "another program drew keypoints into it; the study needs the recording itself"
-        else:
-            kept.append(recording)
-            continue
-        found.unused.append((recording, why))
-    return kept
+def _what_else(recording: Recording) -> str:
+    """Say why a recording is of no use: a later chapter, of Pose2Sim's making, of a chessboard."""
+    folders = set(words_of(recording.parts[:-1]))
+    ends = set(words_of(recording.parts[-1:])[-1:])
+    if recording.device and recording.device.chapter > 1:
+        return (
+            f"chapter {recording.device.chapter} of a recording that its camera cut up; join the "
+            "chapters by `python workflow/join_chapters.py`, and keep them elsewhere"
+        )
+    if recording.kind == "keypoints" and CHANGED & folders:
+        return "keypoints that another program changed; the study needs them as they were detected"
+    if recording.kind in ("video", "photos") and "pose" in folders and DRAWN & ends:
+        return "another program drew keypoints into it; the study needs the recording itself"
+    # `int` is also what a joint does
+    board = called(recording, BOARD - {"int"}) and not called(recording, WALK | STATIC)
+    if recording.kind in ("video", "photo") and board:
+        return (
+            "of a chessboard or a calibration, by its name; put pictures of a chessboard into a "
+            "folder of their own, or rename it"
+        )
+    return ""
 
 
 def _single_views(recordings: Sequence[Recording]) -> list[Recording]:
