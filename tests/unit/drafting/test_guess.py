@@ -475,3 +475,11 @@ def test_a_video_of_a_chessboard_is_left_out(other):
     ((left_out, why),) = found.unused
     assert left_out.path == f"gym/{other}"
     assert "chessboard" in why
+
+
+def test_small_pictures_on_cards_of_sony_are_no_walks_and_no_pictures_of_the_empty_court():
+    films = [f"{camera}/C000{k}.MP4" for camera in ("left", "right") for k in (1, 2)]
+    found = guess(*films, "left/THMBNL", "right/THMBNL/C0001T01.jpg")
+    assert len(found.takes) == 2
+    assert not found.walks and not found.static
+    assert len(found.unused) == 2

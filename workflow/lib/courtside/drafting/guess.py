@@ -76,6 +76,8 @@ def _what_else(recording: Recording) -> str:
         return "keypoints that another program changed; the study needs them as they were detected"
     if recording.kind in ("video", "photos") and "pose" in folders and DRAWN & ends:
         return "another program drew keypoints into it; the study needs the recording itself"
+    if "thmbnl" in recording.words:
+        return "a small picture that a camera of Sony keeps of a video"
     # `int` is also what a joint does
     board = called(recording, BOARD - {"int"}) and not called(recording, WALK | STATIC)
     if recording.kind in ("video", "photo") and board:
