@@ -126,3 +126,15 @@ def test_takes_of_as_many_frames_in_each_camera_may_be_copies():
     ]
     assert told(**one) == []
     assert told(a_left=600, a_right=600, b_left=600, b_right=600) == []  # a fixed length
+
+
+def test_a_static_trial_of_a_person_may_be_the_empty_court():
+    def told(*names):
+        films = [recording(f"data/north/{name}.mp4") for name in names]
+        said = advice.to_check(guessed(*TAKE, *films), "n", "c", "s")
+        return [line for line in said if "if a person stands there" in line]
+
+    (line,) = told("static_left", "static_right")
+    assert line.startswith("Odd: data/north/static_left.mp4 and the other videos called `static`")
+    assert told("static_left") == told("static_empty_left", "static_empty_right") == []
+    assert told("neutral_left", "neutral_right") == []

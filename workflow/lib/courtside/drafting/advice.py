@@ -3,7 +3,14 @@
 from collections.abc import Iterator
 
 from courtside.drafting import draft, names
-from courtside.drafting.recordings import Guess, Take, is_called_walk, lengths_fit, uncounted
+from courtside.drafting.recordings import (
+    STATIC,
+    Guess,
+    Take,
+    is_called_walk,
+    lengths_fit,
+    uncounted,
+)
 from courtside.study.errors import StrPath
 from courtside.study.methods import NEEDS_COURT
 
@@ -84,6 +91,7 @@ def _odd(guess: Guess) -> Iterator[str]:
     for name, take in guess.takes.items():
         yield from _odd_take(name, take)
     yield from _copies(guess)
+    yield from _static_trial(guess)
     yield from doubts(guess)
     yield from _only_video(guess)
     filmed = [recording for take in guess.takes.values() for recording in take.values()]
@@ -128,6 +136,18 @@ def _copies(guess: Guess) -> Iterator[str]:
         other = seen.setdefault(lengths, name)
         if other != name and len({r.n_frames for r in take.values()}) > 1:
             yield f"takes {other} and {name} have as many frames in each camera; is one a copy?"
+
+
+def _static_trial(guess: Guess) -> Iterator[str]:
+    """Yield videos of all cameras called `static`, as also the trial of a standing person is."""
+    empty = list(guess.static.values())
+    said = {word for r in empty for word in map(uncounted, r.words)} & STATIC
+    filmed = len(empty) == len(guess.cameras) and all(r.kind == "video" for r in empty)
+    if guess.takes and filmed and said == {"static"}:
+        yield (
+            f"{empty[0].path} and the other videos called `static` were taken for the empty court; "
+            "if a person stands there, call them `neutral`"
+        )
 
 
 def _only_video(guess: Guess) -> Iterator[str]:
