@@ -187,6 +187,13 @@ def test_a_camera_of_another_kind_of_word_films_the_takes_of_others(cameras, emp
     assert odd == []
 
 
+def test_takes_that_share_no_camera_are_told():
+    found, odd = takes("trial1/A_00", "trial1/C_05", "trial2/A_01", "trial2/C_06")
+    assert [len(take) for take in found.values()] == [2, 2]
+    assert not set(found["trial1"]) & set(found["trial2"])
+    assert any("can be read in several ways" in line for line in odd)
+
+
 def test_a_walk_with_the_words_of_a_take_is_told():
     for take in ("serve", "スマッシュ"):
         _, odd = takes(*each("<take>_<camera>", **SIDES, take=f"{take} lob"), f"{take}_on_the_roof")

@@ -107,7 +107,8 @@ def doubts(guess: Guess) -> Iterator[str]:
             f"no name tells which videos are of one take: those of {', '.join(guess.by_order)} "
             "were put together in the order of each camera's files; check them"
         )
-    if guess.doubtful and any(guess.takes.values()):
+    once = all(len(guess.films(camera)) < 2 for camera in guess.cameras)
+    if any(guess.takes.values()) and (guess.doubtful or (once and len(guess.takes) > 1)):
         yield (
             f"the file names can be read in several ways: {', '.join(guess.cameras)} were taken "
             f"for cameras, {', '.join(guess.takes)} for takes; check that the videos of each take "
