@@ -139,6 +139,12 @@ def test_a_camera_without_a_recording_of_the_empty_hall_is_told_by_takes_of_othe
     assert len(takes("left_empty", "left", "right", "walk")[0]["take1"]) == 2
 
 
+def test_words_of_the_hall_name_no_camera_where_players_walk():
+    names = each("walk<n>_<camera>", n="1 2", **SIDES)
+    found, _ = takes(*names, "empty_hall_left", "empty_hall_right", "hall")
+    assert list(map(list, found.values())) == 2 * [["left", "right"]]
+
+
 @pytest.mark.parametrize(
     "empty",
     [

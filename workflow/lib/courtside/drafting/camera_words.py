@@ -53,11 +53,13 @@ def _of_empty(recordings: Iterable[Recording], videos: Sequence[Recording], own:
     """
     empty = [r for r in recordings if r.kind in ("video", "photo") and called(r, STATIC)]
     names = [tuple(w for w in own[r.path] if uncounted(w) not in STATIC) for r in empty]
-    others = [r for r in videos if not called(r, STATIC)]
-    films = [r for r in others if not is_called_walk(r)] or others
-    said = {uncounted(word) for film in films for word in own[film.path]}
-    filming = [tuple(w for w in words if uncounted(w) in said) for words in names]
-    return filming if any(filming) else names
+    films = [r for r in videos if not called(r, STATIC)]
+    for walks in (False, True):  # players may walk
+        said = {uncounted(w) for r in films if is_called_walk(r) == walks for w in own[r.path]}
+        filming = [tuple(w for w in words if uncounted(w) in said) for words in names]
+        if any(filming) and (len(set(filming)) > 1 or len(set(names)) == 1):
+            return filming
+    return names
 
 
 def _beside(names: Named, videos: Sequence[Recording], own: Words) -> Named:
