@@ -117,9 +117,8 @@ def doubts(guess: Guess) -> Iterator[str]:
     own = {word for camera in guess.cameras for word in names.words_of([camera])}
     takes = [set(names.words_of([take])) for take in guess.takes]
     for walk in guess.walks.values():
-        said = set(
-            names.words_of([names.name("_".join(walk.words), "walk")])
-        )  # spelled as takes are
+        spelled = names.name("_".join(walk.words), "walk")  # as takes are
+        said = {*walk.words, *names.words_of([spelled])}
         taken = any(uncounted(word) in own for word in said) or any(take <= said for take in takes)
         doubtful = not is_called_walk(walk) if guess.cameras else len(guess.walks) > 1
         if taken or (doubtful and not takes and walk.kind == "video"):

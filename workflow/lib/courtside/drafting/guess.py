@@ -78,7 +78,7 @@ def _what_else(recording: Recording) -> str:
         return "another program drew keypoints into it; the study needs the recording itself"
     if "thmbnl" in recording.words:
         return "a small picture that a camera of Sony keeps of a video"
-    # `int` is also what a joint does
+    # `int` may also be an internal rotation
     board = called(recording, BOARD - {"int"}) and not called(recording, WALK | STATIC)
     if recording.kind in ("video", "photo") and board:
         return (

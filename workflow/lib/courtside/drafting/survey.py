@@ -39,7 +39,9 @@ DEPTH = (
     "colour.mp4 and depth/ (config/README.md); write photos with 8 bits"
 )
 # Folders that cameras make on their cards; they say nothing.
-OF_CARDS = re.compile("DCIM|PRIVATE|M4ROOT|CLIP|[0-9]{3}[A-Z0-9_]{5}")
+OF_CARDS = re.compile(
+    "DCIM|PRIVATE|M4ROOT|CLIP|[1-9][0-9]{2}(GOPRO|MEDIA|APPLE|CANON|MSDCF|NIKON|_PANA|_FUJI)"
+)
 EMPTY = "an empty folder; copy its recordings into it, or delete it"
 
 
