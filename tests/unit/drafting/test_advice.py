@@ -111,3 +111,30 @@ def test_videos_of_unlike_lengths_in_a_take_are_told():
     assert line == (
         "Odd: take clip1 has videos of 14.0 to 24.0 s; check that they show one recording"
     )
+
+
+def test_takes_of_as_many_frames_in_each_camera_may_be_copies():
+    def told(**n_frames):
+        films = [
+            recording(f"data/north/{name}.mp4", n_frames=count) for name, count in n_frames.items()
+        ]
+        return [line for line in advice.to_check(guessed(*films), "n", "c", "s") if "copy" in line]
+
+    one = {"a_left": 610, "a_right": 633, "b_left": 700, "b_right": 690}
+    assert told(**one, old_a_left=610, old_a_right=633) == [
+        "Odd: takes a and old_a have as many frames in each camera; is one a copy?"
+    ]
+    assert told(**one) == []
+    assert told(a_left=600, a_right=600, b_left=600, b_right=600) == []  # a fixed length
+
+
+def test_a_static_trial_of_a_person_may_be_the_empty_court():
+    def told(*names):
+        films = [recording(f"data/north/{name}.mp4") for name in names]
+        said = advice.to_check(guessed(*TAKE, *films), "n", "c", "s")
+        return [line for line in said if "if a person stands there" in line]
+
+    (line,) = told("static_left", "static_right")
+    assert line.startswith("Odd: data/north/static_left.mp4 and the other videos called `static`")
+    assert told("static_left") == told("static_empty_left", "static_empty_right") == []
+    assert told("neutral_left", "neutral_right") == []

@@ -99,9 +99,20 @@ def test_unknown_words_may_be_cameras_or_takes():
     assert takes("serve_tall", "serve_low")[1] == []
 
 
+@pytest.mark.parametrize("pattern", ["<camera>/<take>", "<camera>/<take>_<camera>"])
+def test_of_words_that_may_be_cameras_or_takes_lengths_choose(pattern):
+    lengths_s = {"serve": 20.0, "lob": 31.0, "drive": 45.0}
+    of = {take: each(pattern, camera="net tribune", take=take) for take in lengths_s}
+    lengths = {name: lengths_s[take] for take, names in of.items() for name in names}
+    found, odd = takes(*lengths, **lengths)
+    assert {take: [*films.values()] for take, films in found.items()} == of
+    assert "net, tribune were taken for cameras" in odd[0]
+
+
 def test_the_words_of_two_cameras_in_a_name_are_told():
-    _, odd = takes(*each("<camera>/<leg>_leg", **SIDES, leg="left right"), *EMPTY)
-    assert any("can be read in several ways" in line for line in odd)
+    for pattern in ("<camera>/<leg>_leg", "<leg>_1_<camera>"):
+        _, odd = takes(*each(pattern, **SIDES, leg="left right"), *EMPTY)
+        assert any("can be read in several ways" in line for line in odd)
 
 
 def test_names_with_take_before_camera_need_no_look():
@@ -128,12 +139,95 @@ def test_a_camera_without_a_recording_of_the_empty_hall_is_told_by_takes_of_othe
     assert len(takes("left_empty", "left", "right", "walk")[0]["take1"]) == 2
 
 
+def test_words_of_the_hall_name_no_camera_where_players_walk():
+    names = each("walk<n>_<camera>", n="1 2", **SIDES)
+    found, _ = takes(*names, "empty_hall_left", "empty_hall_right", "hall")
+    assert list(map(list, found.values())) == 2 * [["left", "right"]]
+
+
+@pytest.mark.parametrize(
+    "empty",
+    [
+        "empty_court_<camera>",
+        "<camera>_empty_hall",
+        "<camera>/empty court",
+        "<camera>/leere Halle",
+        "<camera>/Leeraufnahme",
+        "empty_hall_<camera>_20260503",
+    ],
+)
+@pytest.mark.parametrize("cameras", ["left right", "cam1 cam2", "tall low"])
+def test_words_of_the_hall_name_no_camera(empty, cameras):
+    names = each("<take>_<camera>", take="serve lob", camera=cameras)
+    found, odd = takes(*names, *each(empty, camera=cameras), "walk")
+    assert {tuple(take) for take in found.values()} == {tuple(sorted(cameras.split()))}
+    assert (list(found), odd) == (["lob", "serve"], [])
+
+
 def test_a_camera_that_films_no_take_of_others_walks():
     assert takes(*EMPTY, "left", "right", "gopro1")[0] == {
         "take1": {"left": "left", "right": "right"}
     }
     filmed = takes(*EMPTY, "a_left", "a_right", "round_gopro1")[0]
     assert filmed == {"a": {"left": "a_left", "right": "a_right"}}
+
+
+@pytest.mark.parametrize(
+    ("cameras", "empty"),
+    [
+        ("front side ceiling", ()),
+        ("cam1 cam2 topcam", ()),
+        ("left right baseline", ()),
+        ("a b c", ("a_empty", "b_empty")),
+        ("north_east north_west top", ("north_east_empty",)),
+    ],
+)
+@pytest.mark.parametrize("pattern", ["<take>_<camera>", "<camera>_<take>", "<camera>/<take>"])
+def test_a_camera_of_another_kind_of_word_films_the_takes_of_others(cameras, empty, pattern):
+    every = cameras.split()
+    found, odd = takes(*each(pattern, camera=cameras, take="serve lob"), *empty, "gopro_hall")
+    assert found == {
+        take: {one: each(pattern, camera=one, take=take)[0] for one in every}
+        for take in ("serve", "lob")
+    }
+    assert odd == []
+
+
+def test_takes_that_share_no_camera_are_told():
+    found, odd = takes("trial1/A_00", "trial1/C_05", "trial2/A_01", "trial2/C_06")
+    assert [len(take) for take in found.values()] == [2, 2]
+    assert not set(found["trial1"]) & set(found["trial2"])
+    assert any("can be read in several ways" in line for line in odd)
+
+
+def test_a_walk_with_the_words_of_a_take_is_told():
+    for take in ("serve", "スマッシュ"):
+        _, odd = takes(*each("<take>_<camera>", **SIDES, take=f"{take} lob"), f"{take}_on_the_roof")
+        assert f"{take}_on_the_roof.mp4 was taken for a walk; if a fixed camera" in odd[0]
+
+
+def test_several_walks_without_a_camera_are_told():
+    found, odd = takes(*each("<camera>/walk1", camera="north south"))
+    assert found == {}
+    assert sum("was taken for a walk" in line for line in odd) == 2
+    assert takes("walk1")[1] == []
+
+
+@pytest.mark.parametrize("date", ["20260503", "2026-05-03"])
+def test_a_date_behind_the_word_of_a_camera_is_no_number_of_it(date):
+    names = each(f"<take>_<camera>_{date}", camera="net east west", take="a b")
+    found, odd = takes(*names, "net_empty", "east_empty")
+    assert [list(films) for films in found.values()] == 2 * [["east", "net", "west"]]
+    assert odd == []
+
+
+@pytest.mark.parametrize("pattern", ["<camera>_<n>", "<camera>/trial<n>", "trial<n>_<camera>"])
+@pytest.mark.parametrize("cameras", ["GoPro1 GoPro2 iPhone1", "GoPro-9 iPhone-13 iPhone-14"])
+def test_cameras_are_told_by_gopro_and_iphone_as_people_write_them(pattern, cameras):
+    found, odd = takes(*each(pattern, camera=cameras, n="1 2"))
+    assert [name[-1] for name in found] == ["1", "2"]
+    assert all(len(take) == 3 for take in found.values())
+    assert odd == []
 
 
 def test_a_camera_of_more_words_goes_first():

@@ -17,6 +17,18 @@ MOMENT = datetime(2024, 1, 2, 10, 11, 12)
         ("20240102_101112", "20240102_101112", MOMENT),
         ("2024-01-02 10-11-12", "2024-01-02 10-11-12", MOMENT),
         ("2024-01-02_10-11-12", "2024-01-02_10-11-12", MOMENT),
+        ("WIN_20240102_10_11_12_Pro", "win_20240102_10_11_12_pro", MOMENT),
+        ("DJI_20240102101112_0001_D", "dji_20240102101112_0001_d", MOMENT),
+        ("DJI_0001", "dji_0001", None),
+        ("VID-20240102-WA0001", "vid-20240102-wa0001", None),
+        (
+            "WhatsApp Video 2024-01-02 at 10.11.12",
+            "whatsapp video 2024-01-02 at 10.11.12",
+            None,
+        ),
+        ("DSCF0001", "dscf0001", None),
+        ("P1000123", "p1000123", None),
+        ("IMG_E0123", "img_e0123", None),
         ("IMG_1234", "img_1234", None),
         ("MVI_0007", "mvi_0007", None),
         ("GX010123", "gx010123", None),
@@ -43,7 +55,18 @@ def test_qualisys_says_camera_and_serial_number():
 
 
 @pytest.mark.parametrize(
-    "stem", ["cam01", "c01", "smash1_left", "IMG", "gx12", "2024", "take_2024_01", "GX0101234x"]
+    "stem",
+    [
+        "cam01",
+        "c01",
+        "smash1_left",
+        "IMG",
+        "gx12",
+        "2024",
+        "take_2024_01",
+        "GX0101234x",
+        "P01_0123",
+    ],
 )
 def test_usual_names_are_nobodys(stem):
     assert device_names.read(stem) is None

@@ -371,6 +371,27 @@ def test_a_folder_of_depth_goes_to_the_take_of_its_name():
     assert [(take, device) for take, device, _ in found.devices] == [("lob", "rgbd")]
 
 
+@pytest.mark.parametrize(
+    "takes",
+    [
+        ("P01_smash_1", "P01_smash_2", "P02_smash_1", "P02_smash_2"),
+        ("P01/trial1", "P01/trial2", "P02/trial1", "P02/trial2"),
+        ("smash_slow", "smash_fast", "lob_slow", "lob_fast", "smash"),
+    ],
+)
+def test_a_file_of_a_device_goes_to_the_take_that_shares_most_words_with_it(takes):
+    films = [f"{take}_cam{k}.mp4" for take in takes for k in (1, 2)]
+    found = guess(*films, *(f"{take}.bvh" for take in takes))
+    assert {film["cam1"].path: name for name, film in found.takes.items()} == {
+        r.path.replace(".bvh", "_cam1.mp4"): take for take, _, r in found.devices
+    }
+
+
+def test_a_file_of_a_device_that_two_takes_may_have_goes_to_none():
+    films = [f"{take}_cam{k}.mp4" for take in ("slow_smash", "slow_lob", "drive") for k in (1, 2)]
+    assert [take for take, *_ in guess(*films, "slow.bvh").devices] == [""]
+
+
 def keypoints(*paths):
     """Return the kinds of recordings: folders of keypoints of these names."""
     return dict.fromkeys((PurePosixPath(path).name for path in paths), "keypoints")
@@ -400,6 +421,15 @@ def test_keypoints_lie_beside_the_videos_that_they_were_made_from():
     ]
 
 
+def test_keypoints_go_to_the_take_that_has_no_other_words():
+    takes = ("lob slow", "serve slow", "serve")
+    folders = [f"{take}/pose/cam{k}_json" for take in takes for k in (1, 2)]
+    films = [f"{take}/cam{k}.mp4" for take in takes for k in (1, 2)]
+    found = guess(*films, *folders, **keypoints(*folders))
+    assert paths(found.keypoints["serve"]) == {f"cam{k}": f"serve/pose/cam{k}_json" for k in (1, 2)}
+    assert len(found.keypoints) == 3
+
+
 def test_keypoints_of_some_cameras_only_and_those_changed_by_another_program_are_left_out():
     films = [f"videos/cam{k}.mp4" for k in (1, 2)]
     folders = ["pose/cam1_json", "pose-associated/cam1_json", "pose-sync/cam2_json"]
@@ -409,3 +439,47 @@ def test_keypoints_of_some_cameras_only_and_those_changed_by_another_program_are
     assert why["pose/cam1_json"] == "keypoints of some cameras of take take1 only"
     assert "changed" in why["pose-associated/cam1_json"]
     assert "changed" in why["pose-sync/cam2_json"]
+
+
+@pytest.mark.parametrize("drawn", ["cam{k}_pose.mp4", "cam{k}_img"])
+def test_pictures_with_keypoints_drawn_in_are_left_out(drawn):
+    films = [f"{take}/videos/cam{k}.mp4" for take in ("T1", "T2") for k in (1, 2)]
+    folders = [f"{take}/pose/cam{k}_json" for take in ("T1", "T2") for k in (1, 2)]
+    others = [f"{take}/pose/{drawn.format(k=k)}" for take in ("T1", "T2") for k in (1, 2)]
+    found = guess(*others, *folders, *films, **keypoints(*folders))
+    assert paths(found.takes["t1"]) == {f"cam{k}": f"T1/videos/cam{k}.mp4" for k in (1, 2)}
+    assert len(found.keypoints) == 2
+    assert not found.walks
+    told = {r.path.removeprefix("gym/"): why for r, why in found.unused}
+    assert sorted(told) == sorted(others)
+    assert all("the study needs the recording itself" in why for why in told.values())
+
+
+def test_recordings_in_folders_of_keypoints_that_do_not_say_that_they_are_drawn_are_takes():
+    assert len(guess("pose/cam1.mp4", "pose/cam2.mp4").takes["take1"]) == 2
+    assert len(guess("pose/GX010034.mp4", "pose/GX010107.mp4").takes["take1"]) == 2
+
+
+@pytest.mark.parametrize(
+    "other",
+    ["cam1_chessboard.mp4", "intrinsics/cam1.mp4", "calibration/calib.mp4", "cam1_board.jpg"],
+)
+def test_a_video_of_a_chessboard_is_left_out(other):
+    films = [f"serve_cam{k}.mp4" for k in (1, 2)]
+    found = guess(*films, other, "calibration/walk.mp4", "calibration/cam2_empty.mp4")
+    assert paths(found.takes["serve"]) == {"cam1": films[0], "cam2": films[1]}
+    assert [paths(found.walks), paths(found.static)] == [
+        {"calibration_walk": "calibration/walk.mp4"},
+        {"cam2": "calibration/cam2_empty.mp4"},
+    ]
+    ((left_out, why),) = found.unused
+    assert left_out.path == f"gym/{other}"
+    assert "chessboard" in why
+
+
+def test_small_pictures_on_cards_of_sony_are_no_walks_and_no_pictures_of_the_empty_court():
+    films = [f"{camera}/C000{k}.MP4" for camera in ("left", "right") for k in (1, 2)]
+    found = guess(*films, "left/THMBNL", "right/THMBNL/C0001T01.jpg")
+    assert len(found.takes) == 2
+    assert not found.walks and not found.static
+    assert len(found.unused) == 2

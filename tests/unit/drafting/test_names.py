@@ -12,6 +12,8 @@ from courtside.study.configuration import configuration
         (["smash1_left"], ("smash1", "left")),
         (["Cam 01-takeTwo"], ("cam01", "take", "two")),
         (["left", "GX010034"], ("left", "gx010034")),
+        (["left_20260503"], ("left", "20260503")),
+        (["iPhone 13", "leftGoPro2"], ("iphone13", "left", "gopro2")),
         (["2026-05-01 smash (2)"], ("2026", "05", "01", "smash2")),
         (["Schläger_Übung"], ("schlager", "ubung")),
         (["コート"], ("コート",)),

@@ -99,6 +99,19 @@ def test_a_table_of_another_key_is_told_with_the_key(tmp_path, columns, key):
     assert (found.kind, found.note) == ("unusable", note)
 
 
+def test_folders_that_cameras_make_on_their_cards_say_nothing(tmp_path):
+    said = "20260503/101SMITH/left.mp4"
+    for path in ("A/DCIM/100GOPRO/GX010034.MP4", "B/PRIVATE/M4ROOT/CLIP/C0001.MP4", said):
+        (tmp_path / path).parent.mkdir(parents=True)
+        (tmp_path / path).write_bytes(b"")
+    found = survey.survey(tmp_path, root=tmp_path)
+    assert sorted(r.parts for r in found) == [
+        ("20260503", "101SMITH", "left"),
+        ("A", "GX010034"),
+        ("B", "C0001"),
+    ]
+
+
 def test_folders_of_keypoints_are_found(tmp_path):
     for name, count in (("cam1_json", 26), ("odd_json", 7), ("nobody_json", 0)):
         (tmp_path / "pose" / name).mkdir(parents=True)

@@ -2,9 +2,15 @@
 
 from collections.abc import Iterator
 
-from courtside.drafting import draft
-from courtside.drafting.names import words_of
-from courtside.drafting.recordings import Guess, Take, is_called_walk, lengths_fit, uncounted
+from courtside.drafting import draft, names
+from courtside.drafting.recordings import (
+    STATIC,
+    Guess,
+    Take,
+    is_called_walk,
+    lengths_fit,
+    uncounted,
+)
 from courtside.study.errors import StrPath
 from courtside.study.methods import NEEDS_COURT
 
@@ -84,6 +90,8 @@ def _odd(guess: Guess) -> Iterator[str]:
             yield f"camera {camera} has pictures of {found} pixels"
     for name, take in guess.takes.items():
         yield from _odd_take(name, take)
+    yield from _copies(guess)
+    yield from _static_trial(guess)
     yield from doubts(guess)
     yield from _only_video(guess)
     filmed = [recording for take in guess.takes.values() for recording in take.values()]
@@ -99,20 +107,47 @@ def doubts(guess: Guess) -> Iterator[str]:
             f"no name tells which videos are of one take: those of {', '.join(guess.by_order)} "
             "were put together in the order of each camera's files; check them"
         )
-    if guess.doubtful and any(guess.takes.values()):
+    once = all(len(guess.films(camera)) < 2 for camera in guess.cameras)
+    if any(guess.takes.values()) and (guess.doubtful or (once and len(guess.takes) > 1)):
         yield (
             f"the file names can be read in several ways: {', '.join(guess.cameras)} were taken "
             f"for cameras, {', '.join(guess.takes)} for takes; check that the videos of each take "
             "show one recording"
         )
-    own = {word for camera in guess.cameras for word in words_of([camera])}
-    for walk in (walk for walk in guess.walks.values() if walk.kind == "video"):
-        taken = any(uncounted(word) in own for word in walk.words)
-        if taken or (guess.cameras and not guess.takes and not is_called_walk(walk)):
+    own = {word for camera in guess.cameras for word in names.words_of([camera])}
+    takes = [set(names.words_of([take])) for take in guess.takes]
+    for walk in guess.walks.values():
+        spelled = names.name("_".join(walk.words), "walk")  # as takes are
+        said = {*walk.words, *names.words_of([spelled])}
+        taken = any(uncounted(word) in own for word in said) or any(take <= said for take in takes)
+        doubtful = not is_called_walk(walk) if guess.cameras else len(guess.walks) > 1
+        if taken or (doubtful and not takes and walk.kind == "video"):
             yield (
                 f"{walk.path} was taken for a walk; if a fixed camera filmed it, name the camera "
                 "and the take in its name"
             )
+
+
+def _copies(guess: Guess) -> Iterator[str]:
+    """Yield takes of as many frames in each camera as an earlier one, where cameras differ."""
+    seen: dict[frozenset, str] = {}
+    for name, take in guess.takes.items():
+        lengths = frozenset((camera, r.n_frames) for camera, r in take.items())
+        other = seen.setdefault(lengths, name)
+        if other != name and len({r.n_frames for r in take.values()}) > 1:
+            yield f"takes {other} and {name} have as many frames in each camera; is one a copy?"
+
+
+def _static_trial(guess: Guess) -> Iterator[str]:
+    """Yield videos of all cameras called `static`, as also the trial of a standing person is."""
+    empty = list(guess.static.values())
+    said = {word for r in empty for word in map(uncounted, r.words)} & STATIC
+    filmed = len(empty) == len(guess.cameras) and all(r.kind == "video" for r in empty)
+    if guess.takes and filmed and said == {"static"}:
+        yield (
+            f"{empty[0].path} and the other videos called `static` were taken for the empty court; "
+            "if a person stands there, call them `neutral`"
+        )
 
 
 def _only_video(guess: Guess) -> Iterator[str]:

@@ -17,12 +17,12 @@ from courtside.drafting.recordings import (
 )
 
 NUMBERED = re.compile(
-    r"(cam|camera|c|gopro|gp|view|kamera|phone|iphone|pixel|dslr|miqus|oqus|arqus)[0-9]+"
+    r"(cam|camera|c|gopro|gp|view|kamera|phone|iphone|ipad|pixel|dslr|miqus|oqus|arqus)[0-9]+"
 )
 CAMERA = re.compile(
     NUMBERED.pattern
-    + r"|(left|right|centre|center|middle|back|front|side|rear|oblique|mirror|links|rechts|mitte)"
-    + r"[0-9]*"
+    + r"|(left|right|centre|center|middle|back|front|side|rear|top|oblique|mirror"
+    + r"|links|rechts|mitte|vorne|hinten|oben)[0-9]*"
 )
 Named = list[tuple[str, ...]]  # words of cameras, one of each video; empty where it names none
 
@@ -31,8 +31,7 @@ def of(
     recordings: Iterable[Recording], videos: Sequence[Recording], own: Words
 ) -> tuple[Words, bool]:
     """Return the words that name each camera, by its name, and whether others may be meant."""
-    empty = [r for r in recordings if r.kind in ("video", "photo") and called(r, STATIC)]
-    names = [tuple(w for w in own[r.path] if uncounted(w) not in STATIC) for r in empty]
+    names = _of_empty(recordings, videos, own)
     doubtful = False
     if any(names):
         names += _beside(names, videos, own)
@@ -43,32 +42,50 @@ def of(
             if _are_trials(videos, own, counted):
                 names = [(uncounted(word),) for word in counted]
     cameras = {"_".join(words): words for words in dict.fromkeys(filter(None, names))}
-    return cameras, doubtful or any(_names_several(own[r.path], cameras) for r in videos)
+    parted = without_trials(videos, own, cameras)
+    return cameras, doubtful or any(_names_several(parted[r.path], cameras) for r in videos)
+
+
+def _of_empty(recordings: Iterable[Recording], videos: Sequence[Recording], own: Words) -> Named:
+    """Return the words of cameras in names of recordings of the empty court.
+
+    What no video of a take says is of the hall, as `court` of `empty_court_left`.
+    """
+    empty = [r for r in recordings if r.kind in ("video", "photo") and called(r, STATIC)]
+    names = [tuple(w for w in own[r.path] if uncounted(w) not in STATIC) for r in empty]
+    films = [r for r in videos if not called(r, STATIC)]
+    for walks in (False, True):  # players may walk
+        said = {uncounted(w) for r in films if is_called_walk(r) == walks for w in own[r.path]}
+        filming = [tuple(w for w in words if uncounted(w) in said) for words in names]
+        if any(filming) and (len(set(filming)) > 1 or len(set(names)) == 1):
+            return filming
+    return names
 
 
 def _beside(names: Named, videos: Sequence[Recording], own: Words) -> Named:
-    """Return cameras of which there is no recording of the empty hall, by takes that others film.
+    """Return more cameras: by words that a name has beside those of a take that others film.
 
     A name without other words may also be that of the walking camera, unless one is called so.
     """
-
-    def takes(words: tuple[str, ...]) -> set[tuple[str, ...]]:
-        named = [own[r.path] for r in videos if set(words) <= set(own[r.path])]
-        return {tuple(word for word in every if word not in words) for every in named}
-
-    filmed = dict.fromkeys(_of_videos(videos, own)[0])
-    cameras = set(filter(None, names))
-    if not cameras <= set(filmed):
-        return []
-    known = set().union(*map(takes, cameras))
-    known -= set() if any(is_called_walk(r) for r in videos) else {()}
-    return [one for one in filmed if one and one not in cameras and takes(one) & known]
+    cameras = {"_".join(words): words for words in filter(None, names)}
+    placed = [told(own[r.path], cameras) for r in videos if not called(r, STATIC)]
+    filmed = {words for camera, words in placed if camera}
+    filmed -= set() if any(is_called_walk(r) for r in videos) else {()}
+    more: dict[tuple[str, ...], None] = {}
+    for words in (words for camera, words in placed if camera is None):
+        for size in {1, *map(len, cameras.values())}:
+            for one in (words[at : at + size] for at in range(len(words) - size + 1)):
+                if told(words, {"": one})[1] in filmed and not WALK & set(map(uncounted, one)):
+                    more[one] = None
+    return list(more)
 
 
 def _of_videos(videos: Sequence[Recording], own: Words) -> tuple[Named, bool]:
     """Return the words of cameras in names of videos, and whether others may be meant."""
     names, doubtful = _known(videos, own)
-    return (names, doubtful) if len(set(filter(None, names))) > 1 else _differing(videos, own)
+    if len(set(filter(None, names))) > 1:
+        return names + _beside(names, videos, own), doubtful
+    return _differing(videos, own)
 
 
 def _known(videos: Sequence[Recording], own: Words) -> tuple[Named, bool]:
@@ -98,17 +115,35 @@ def _known(videos: Sequence[Recording], own: Words) -> tuple[Named, bool]:
 
 
 def _differing(videos: Iterable[Recording], own: Words) -> tuple[Named, bool]:
-    """Return the last words by which otherwise equal names differ, and whether others do, too."""
-    named = [own[r.path] for r in videos if own[r.path] and not called(r, WALK | STATIC)]
+    """Return the words by which otherwise equal names differ, and whether others do, too.
+
+    The last ones by which recordings of one take are about as long as each other, if any.
+    """
+    films = [r for r in videos if own[r.path] and not called(r, WALK | STATIC)]
+    named = [(r, _once(own[r.path])) for r in films]
     places = set()
-    for one, other in combinations(named, 2):
+    for (_, one), (_, other) in combinations(named, 2):
         differ = [at for at, pair in enumerate(zip(one, other, strict=False)) if len(set(pair)) > 1]
         if len(one) == len(other) and len(differ) == 1:
             places.add(differ[0] - len(one))
     if not places:
         return [], False
-    last = max(places)
-    return [words[last:][:1] for words in named if len(words) >= -last], len(places) > 1
+    last = max([place for place in places if _takes_fit(named, place)] or places)
+    return [words[last:][:1] for _, words in named if len(words) >= -last], len(places) > 1
+
+
+def _once(words: tuple[str, ...]) -> tuple[str, ...]:
+    """Return words without those said before; a number that is said again is something else."""
+    return tuple(w for at, w in enumerate(words) if w.isdigit() or w not in words[:at])
+
+
+def _takes_fit(named: Iterable[tuple[Recording, tuple[str, ...]]], place: int) -> bool:
+    """Say whether lengths of recordings fit whose words differ in one place alone."""
+    takes: dict[tuple[str, ...], list[Recording]] = {}
+    for recording, words in named:
+        if len(words) >= -place:
+            takes.setdefault(words[:place] + words[place:][1:], []).append(recording)
+    return all(map(lengths_fit, takes.values()))
 
 
 def _counted(names: Named) -> list[str]:

@@ -24,7 +24,7 @@ class DeviceName:
 
 
 DATE = r"(?P<y>20\d\d)(?P<mo>[01]\d)(?P<d>[0-3]\d)"
-TIME = r"(?P<h>[0-2]\d)(?P<mi>[0-5]\d)(?P<s>[0-5]\d)"
+TIME = r"(?P<h>[0-2]\d)_?(?P<mi>[0-5]\d)_?(?P<s>[0-5]\d)"
 EDGE, END = r"(?<![A-Za-z0-9])", r"(?![A-Za-z0-9])"
 
 
@@ -70,8 +70,24 @@ FORMS: tuple[tuple[re.Pattern, Callable[[re.Match], dict]], ...] = (
         ),
         _moment,
     ),
-    (re.compile(rf"{EDGE}(?:(?:VID|PXL|MVIMG|IMG)_)?{DATE}_{TIME}(?:\d{{3}})?{END}"), _moment),
-    (re.compile(rf"{EDGE}(?:IMG|MVI|DSC|DSCN|MOV)_?\d{{4,5}}{END}", re.IGNORECASE), _nothing),
+    (
+        re.compile(
+            rf"{EDGE}(?:(?:VID|PXL|MVIMG|IMG|WIN|DJI)_)?{DATE}_?{TIME}"
+            rf"(?:\d{{3}}|_Pro|_\d{{4}}(?:_[A-Z])?)?{END}"
+        ),
+        _moment,
+    ),
+    (  # of WhatsApp: when it was sent
+        re.compile(rf"{EDGE}(?:VID-\d{{8}}-WA\d{{4}}|WhatsApp Video [\d-]+ at [\d.]+){END}"),
+        _nothing,
+    ),
+    (
+        re.compile(
+            rf"{EDGE}(?:IMG|IMG_E|MVI|DSC|DSCN|DSCF|MOV|DJI)_?\d{{4,5}}{END}", re.IGNORECASE
+        ),
+        _nothing,
+    ),
+    (re.compile(rf"{EDGE}P1\d{{6}}{END}"), _nothing),  # Panasonic
     (re.compile(rf"{EDGE}C\d{{4}}{END}", re.IGNORECASE), _nothing),  # Sony
 )
 

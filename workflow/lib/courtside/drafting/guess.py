@@ -9,6 +9,7 @@ from courtside.drafting.recordings import (
     CHANGED,
     D435I,
     DEVICES,
+    DRAWN,
     FOLDERS,
     RECORDERS,
     STATIC,
@@ -27,8 +28,7 @@ from courtside.drafting.recordings import (
 def guess(recordings: Sequence[Recording]) -> Guess:
     """Guess what each recording, in name order, is; every one is in the guess once."""
     found = Guess()
-    recordings = _without_later_chapters(found, recordings)
-    recordings = _without_changed_keypoints(found, recordings)
+    recordings = _without_others(found, recordings)
     if alone := _single_views(recordings):
         _place_single_views(found, alone)
         recordings = [recording for recording in recordings if recording not in alone]
@@ -52,29 +52,40 @@ def guess(recordings: Sequence[Recording]) -> Guess:
     return found
 
 
-def _without_later_chapters(found: Guess, recordings: Sequence[Recording]) -> list[Recording]:
-    """Leave out the files in which a camera went on with a recording."""
+def _without_others(found: Guess, recordings: Iterable[Recording]) -> list[Recording]:
+    """Leave out what is neither of the empty court, nor of a walk, nor of a take."""
     kept = []
     for recording in recordings:
-        if recording.device and recording.device.chapter > 1:
-            why = (
-                f"chapter {recording.device.chapter} of a recording that its camera cut up; join "
-                "the chapters by `python workflow/join_chapters.py`, and keep them elsewhere"
-            )
+        if why := _what_else(recording):
             found.unused.append((recording, why))
         else:
             kept.append(recording)
     return kept
 
 
-def _without_changed_keypoints(found: Guess, recordings: Sequence[Recording]) -> list[Recording]:
-    """Leave out the keypoints that Pose2Sim has synchronised, associated or filtered itself."""
-    changed = [
-        r for r in recordings if r.kind == "keypoints" and CHANGED & set(words_of(r.parts[:-1]))
-    ]
-    why = "keypoints that another program changed; the study needs them as they were detected"
-    found.unused += [(recording, why) for recording in changed]
-    return [recording for recording in recordings if recording not in changed]
+def _what_else(recording: Recording) -> str:
+    """Say why a recording is of no use: a later chapter, of Pose2Sim's making, of a chessboard."""
+    folders = set(words_of(recording.parts[:-1]))
+    ends = set(words_of(recording.parts[-1:])[-1:])
+    if recording.device and recording.device.chapter > 1:
+        return (
+            f"chapter {recording.device.chapter} of a recording that its camera cut up; join the "
+            "chapters by `python workflow/join_chapters.py`, and keep them elsewhere"
+        )
+    if recording.kind == "keypoints" and CHANGED & folders:
+        return "keypoints that another program changed; the study needs them as they were detected"
+    if recording.kind in ("video", "photos") and "pose" in folders and DRAWN & ends:
+        return "another program drew keypoints into it; the study needs the recording itself"
+    if "thmbnl" in recording.words:
+        return "a small picture that a camera of Sony keeps of a video"
+    # `int` may also be an internal rotation
+    board = called(recording, BOARD - {"int"}) and not called(recording, WALK | STATIC)
+    if recording.kind in ("video", "photo") and board:
+        return (
+            "of a chessboard or a calibration, by its name; put pictures of a chessboard into a "
+            "folder of their own, or rename it"
+        )
+    return ""
 
 
 def _single_views(recordings: Sequence[Recording]) -> list[Recording]:
@@ -131,6 +142,7 @@ def _place_keypoints(
         camera, words = camera_words.told(own[recording.path], cameras)
         only = len(found.takes) == 1
         near = [n for n in found.takes if only or (words and set(words) <= set(words_of([n])))]
+        near.sort(key=lambda name: len(words_of([name])))
         camera = camera if near and camera in found.takes[near[0]] else None
         place = found.keypoints.setdefault(near[0], {}) if near else {}
         _keep(found, place, recording, camera, "keypoints of no camera and take found")
@@ -207,12 +219,18 @@ def _sort_others(found: Guess, recordings: Iterable[Recording], own: Words) -> N
                 kind = recording.kind.replace("_", " ")
                 found.unused.append((recording, f"there is another {kind} file"))
         elif recording.kind in DEVICES and not alone:
-            words = set(own[recording.path])
-            near = [t for t in found.takes if set(words_of([t])) & words]
-            only = list(found.takes) if len(found.takes) == 1 else [""]
-            found.devices.append(((near or only)[0], DEVICES[recording.kind], recording))
+            take = _nearest(found.takes, set(own[recording.path]))
+            found.devices.append((take, DEVICES[recording.kind], recording))
         elif recording.kind in ("racket", "unusable"):
             found.unused.append((recording, recording.note or "clicked racket ends"))
+
+
+def _nearest(takes: Iterable[str], words: set[str]) -> str:
+    """Return the take that shares most words, of equals the one without others; empty if none."""
+    shared = {take: set(words_of([take])) & words for take in takes}
+    fits = {take: (len(said), said == set(words_of([take]))) for take, said in shared.items()}
+    near = [take for take, fit in fits.items() if fit == max(fits.values())]
+    return near[0] if len(near) == 1 else ""
 
 
 def _named(words: str, recordings: Iterable[Recording], otherwise: str) -> str:

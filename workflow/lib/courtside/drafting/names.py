@@ -12,6 +12,7 @@ from collections.abc import Collection, Iterable, Iterator
 from courtside.study.configuration import configuration
 
 LONGEST = 55  # of the 64 letters of a name; the others are for `walk_` and the number of `distinct`
+DATE = re.compile(r"20\d\d([01]\d[0-3]\d)?")  # or a year; no number of a camera or take
 WORD = re.compile(r"[A-Za-z]+[0-9]*|[0-9]+|[^\W\d_]+")
 SIGNS = re.compile("[^a-z0-9]+")  # between the words of a name
 LETTERS = {"ß": "ss", "æ": "ae", "œ": "oe", "ø": "o", "đ": "d", "ł": "l", "þ": "th"}
@@ -50,14 +51,15 @@ SPELLED = {
 def words_of(parts: Iterable[str]) -> tuple[str, ...]:
     """Split the names of folders and of a file without its suffix into words.
 
-    Lower case, without accents, known words in English; a number belongs to the word before it:
-    `Cam 01-takeTwo` gives `cam01`, `take`, `two`, and `左カメラ2` gives `left`, `cam2`.
+    Lower case, without accents, known words in English; a number belongs to the word before it,
+    but for a date: `Cam 01-takeTwo` gives `cam01`, `take`, `two`, and `左カメラ2` gives `left`,
+    `cam2`.
     """
     found: list[str] = []
     for part in parts:
         own: list[str] = []
         for word in WORD.findall(_plain(part)):
-            if word.isdigit() and own and not own[-1][-1].isdigit():
+            if word.isdigit() and own and not (own[-1][-1].isdigit() or DATE.fullmatch(word)):
                 own[-1] += word
             else:
                 own.append(word)
@@ -118,6 +120,7 @@ def _plain(text: str) -> str:
     text = unicodedata.normalize("NFKC", text)  # digits and letters of full width
     text = "".join(LETTERS.get(letter.lower(), letter) for letter in text)
     text = "".join(_without_accents(text))
+    text = re.sub("GoPro|iPhone|iPad", lambda found: found[0].title(), text)  # one word each
     text = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)
     return KNOWN.sub(lambda found: f" {MEANING[found[0].lower()]} ", _lower_cyrillic(text))
 

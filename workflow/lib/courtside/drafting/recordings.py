@@ -12,7 +12,7 @@ from courtside.drafting.names import words_of
 # Words that mark a recording of the empty court, of the carried camera, of a chessboard, and words
 # that say nothing, as people name files in English, German and French.
 STATIC = {"empty", "static", "still", "background", "bg", "vacant", "nobody", "blank"}
-STATIC |= {"leer", "vide"}
+STATIC |= {"leer", "leere", "leeraufnahme", "leerbild", "vide"}
 WALK = {"walk", "walking", "mobile", "moving", "handheld", "bridge", "bridging", "sweep", "gang"}
 BOARD = {"board", "boards", "chess", "chessboard", "checker", "checkerboard"}
 BOARD |= {"calib", "calibration", "intrinsic", "intrinsics", "int"}
@@ -21,6 +21,8 @@ FOLDERS |= {"recording", "recordings", "cam", "camera", "kamera"}
 FOLDERS |= {"json", "pose", "poses", "pose2d", "keypoints", "openpose", "alphapose", "rtmlib"}
 # Words of folders in which Pose2Sim keeps keypoints that it has changed itself.
 CHANGED = {"associated", "sync", "filtered"}
+# Ends of names of what it draws keypoints into: `pose/left_pose.mp4`, `pose/left_img/`.
+DRAWN = {"pose", "img"}
 DEVICES = {"bvh": "mocopi", "bag": "realsense", "depth": "rgbd"}  # by kind
 WEBCAM = "webcam"
 # Words at the end or the start of a name that say what recorded it, not what was recorded.

@@ -3,6 +3,7 @@
 import csv
 import math
 import os
+import re
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -36,6 +37,10 @@ RACKET = {"take", "camera", "frame_idx", "end"}
 DEPTH = (
     "16 bits and one channel, as pictures of depth: a depth camera's folder has cameras.toml, "
     "colour.mp4 and depth/ (config/README.md); write photos with 8 bits"
+)
+# Folders that cameras make on their cards; they say nothing.
+OF_CARDS = re.compile(
+    "DCIM|PRIVATE|M4ROOT|CLIP|[1-9][0-9]{2}(GOPRO|MEDIA|APPLE|CANON|MSDCF|NIKON|_PANA|_FUJI)"
 )
 EMPTY = "an empty folder; copy its recordings into it, or delete it"
 
@@ -106,7 +111,8 @@ def _reads_no_photo(path: Path) -> bool:
 def _described(path: Path, folder: Path, root: StrPath, reader: Reader) -> Recording | None:
     """Return the `Recording` of a file; None if it is none."""
     inside = path.relative_to(folder)
-    parts = (*inside.parts[:-1], inside.stem or path.resolve().name)
+    folders = [part for part in inside.parts[:-1] if not OF_CARDS.fullmatch(part)]
+    parts = (*folders, inside.stem or path.resolve().name)
     keys: dict[str, Any] = {"path": written(path, root), "parts": parts}
     if any(not letter.isprintable() for letter in keys["path"]):
         return Recording(**keys, kind="unusable", note="a control character in its name; rename it")
