@@ -80,7 +80,12 @@ def _what_else(recording: Recording) -> str:
         return "a small picture that a camera of Sony keeps of a video"
     # `int` may also be an internal rotation
     board = called(recording, BOARD - {"int"}) and not called(recording, WALK | STATIC)
-    if recording.kind in ("video", "photo") and board:
+    if recording.kind == "video" and board:
+        return (
+            "of a chessboard or a calibration, by its name; a board that several cameras film "
+            "calibrates them (`board: videos`, config/README.md); rename it if it shows a take"
+        )
+    if recording.kind == "photo" and board:
         return (
             "of a chessboard or a calibration, by its name; put pictures of a chessboard into a "
             "folder of their own, or rename it"
