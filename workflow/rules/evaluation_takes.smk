@@ -171,8 +171,8 @@ rule evaluate_source_angles:
 
 rule evaluate_body_frames:
     input:
-        body_npz=of_job(devices.bodies, corrected=False),
-        frame_json=of_job(devices.bodies, paths.BODY_FRAME, corrected=False),
+        body_npz=of_job(devices.bodies),
+        frame_json=of_job(devices.bodies, paths.BODY_FRAME),
         truth_npz=paths.TRUE_TAKE,
         derived_yaml=CONFIG / paths.DERIVED_JOINTS_YAML,
     output:
@@ -183,7 +183,7 @@ rule evaluate_body_frames:
         code=code("evaluate_body_frames.py"),
         labels=lambda w: dict(w.items()),
         person=lambda w: take_of(w).person_of_devices,
-        owners=of_job(devices.clocks, corrected=False),
+        owners=of_job(devices.clocks),
     script:
         "../scripts/evaluate_body_frames.py"
 

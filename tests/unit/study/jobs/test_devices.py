@@ -133,8 +133,8 @@ def test_errors_that_are_not_stated_are_told_in_one_line(job, study):
 
 
 def test_bodies_and_body_frames_of_all_sources(job):
-    frames = devices.bodies(job(**CLAPS), paths.BODY_FRAME, corrected=False)
-    names = ("d415-depth", "d415-rgb", "mocopi")
+    frames = devices.bodies(job(**CLAPS), paths.BODY_FRAME)
+    names = ("d415-depth", "d415-rgb", "mocopi", "mocopi-corrected")
     assert frames == [f"{FOLDER}/body/{name}.blazepose-full.json" for name in names]
     assert len(devices.bodies(job(**CLAPS))) == 4
 

@@ -52,10 +52,9 @@ MOUNT_DEG = {
 BODY = 0.04  # logarithm of the factor on all bones
 STRETCH = 0.06  # the same on one kind of bone
 UNEVEN = 0.02  # the same between left and right
-# Constant offset of vision's joint from the skeleton's, in the axes of the joint's parent.
+# Constant offset of vision's joint from the skeleton's, in the axes of the joint's parent. One in
+# vision's axes would pay for bones that shrink: a player faces a depth camera.
 OFFSET_M = 0.01
-# Constant error of vision's joint in vision's own axes: a depth camera sees skin, not joints.
-BIAS_M = 0.015
 TILT_DEG = 5.0  # what a first estimate leaves of the turn between both frames
 PLACE_M = 0.5  # what a first estimate leaves of the shift between both frames
 # Least correlation time of vision's errors: a network errs alike while a pose lasts.
@@ -135,7 +134,6 @@ class Fit:
             for name in self.segments.stretches
         ]
         deviation[layout["offset"]] = OFFSET_M
-        deviation[layout["bias"]] = BIAS_M
         deviation[layout["tilt"]] = np.radians(TILT_DEG)
         deviation[layout["place"]] = PLACE_M
         deviation[layout["lag"]] = max(lag_s, 1e-6)

@@ -36,8 +36,8 @@ class Model:
 
     Per frame, `slow` (P,) holds a rotation vector per segment, the heading and the root's shift.
     `fixed` (Q,) holds a rotation vector per segment, the logarithms of stretches, an offset per
-    observed joint in the axes of its parent and one in vision's, the frame's tilt (rotation vector)
-    and shift, and the clock's shift in seconds. The methods take `slow` as (N, P).
+    observed joint in the axes of its parent, the frame's tilt (rotation vector) and shift, and the
+    clock's shift in seconds. The methods take `slow` as (N, P).
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class Model:
         n, d = len(segments.names), len(self.observed)
         self.slow, self.n_slow = _layout({"turn": 3 * n, "heading": 1, "shift": 3})
         sizes = {"mount": 3 * n, "stretch": len(segments.stretches), "offset": 3 * d}
-        sizes |= {"bias": 3 * d, "tilt": 3, "place": 3, "lag": 1}
+        sizes |= {"tilt": 3, "place": 3, "lag": 1}
         self.fixed, self.n_fixed = _layout(sizes)
         self.paths = [path(hierarchy, joint) for joint in self.observed]
         self.owner = self._owners()
@@ -95,7 +95,7 @@ class Model:
                 xyz[:, row] += _turned(world[:, parent], bone + offsets[row] * (joint == path[-1]))
         xyz += (frames.translation[:, self.paths[0][0]] + slow[:, self.slow["shift"]])[:, None]
         tilt = rotations.rotation_from_rodrigues(fixed[self.fixed["tilt"]])
-        return xyz @ tilt.T + self._shift(fixed)
+        return xyz @ tilt.T + fixed[self.fixed["place"]]
 
     def linear(
         self, frames: Frames, slow: NDArray, fixed: NDArray
@@ -161,13 +161,7 @@ class Model:
         lever = rotations.left_jacobians(tilt)
         by_fixed[..., self.fixed["tilt"]] = -rotations.cross_matrices(xyz) @ lever
         by_fixed[..., self.fixed["place"]] = np.eye(3)
-        for row in range(len(self.observed)):
-            start = self.fixed["bias"].start + 3 * row
-            by_fixed[:, row, :, start : start + 3] = np.eye(3)
-        return xyz + self._shift(fixed), by_slow, by_fixed
-
-    def _shift(self, fixed: NDArray) -> NDArray:
-        return fixed[self.fixed["place"]] + fixed[self.fixed["bias"]].reshape(-1, 3)
+        return xyz + fixed[self.fixed["place"]], by_slow, by_fixed
 
 
 def _turned(matrices: NDArray, vectors: NDArray) -> NDArray:

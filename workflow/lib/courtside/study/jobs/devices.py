@@ -62,9 +62,9 @@ def skeletons(job: Job) -> dict[str, str]:
     return {name: source.skeleton for name, source in sources(job).items()}
 
 
-def bodies(job: Job, pattern: str = paths.BODY, corrected: bool = True) -> list[str]:
+def bodies(job: Job, pattern: str = paths.BODY) -> list[str]:
     """Return the aligned skeletons of all sources of a take, or another file of each."""
-    return job.of_each(pattern, source=sources(job, corrected))
+    return job.of_each(pattern, source=sources(job))
 
 
 def skeleton_file(job: Job) -> Path:
