@@ -25,6 +25,7 @@ FITTING = 0.01  # ASSUME: of the court's length: points nearer than this fit
 MAX_BEND = 0.1
 # ASSUME: points must fit this many times better after a change of the clicks of some cameras.
 CHANGE_GAIN = 5.0
+MOST_TURNED = 4  # cameras tried together: there are 40 s of subsets of 16 cameras
 CHECKED = 6  # points among which `click_checks.find_wrong_clicks` finds nearly every wrong click
 MOST_SUBSETS = 10000  # of three points each: all of 40 points
 
@@ -276,10 +277,11 @@ def refuse_misplaced_cameras(
 def _turned(
     court: Court, cameras: Sequence[Camera], clicks: ClickedPoints
 ) -> tuple[tuple[tuple[str, ...], ClickedPoints], float]:
-    """Return the cameras, up to half of all, whose clicks fit best after half a turn; and clicks.
+    """Return the cameras whose clicks fit best after half a turn, these clicks, and their misfit.
 
-    With the misfit, m, before adjustment: infinite where the court has no other end, and of two
-    cameras alone, for these fit after half a turn, too, once their clicks have bent them.
+    The cameras are half of all at most: then the others are turned. The misfit, m, is that before
+    adjustment. It is infinite where the court has no other end, and of two cameras: once their
+    clicks have bent them, these fit after half a turn, too.
     """
     other_end = court.other_end()
     there = other_end >= 0
@@ -292,7 +294,7 @@ def _turned(
         xy[other_end[there]] = np.asarray(clicks[name], float)[there]
         return xy
 
-    sizes = range(1, len(names) // 2 + 1)
+    sizes = range(1, min(len(names) // 2, MOST_TURNED) + 1)
     some = [chosen for size in sizes for chosen in combinations(names, size)]
     tried = [{**clicks, **{name: after_turn(name) for name in chosen}} for chosen in some]
     off_m = [_off_m(court, cameras, one) for one in tried]
