@@ -77,22 +77,16 @@ def solve(record, clicks_csv, court_yaml, *, pictures, search=None, **options):
         return found, quality.check_maps(*record.n_maps) | expected
     court = court_files.read(court_yaml)
     marked = clicks.read(clicks_csv, list(record.ties.cameras), list(court.points))
-    if not pictures:
-        return quality.adjust_and_check(court, record.ties, marked, **options)
-    shown = zip(record.ties.cameras, map(images.read, pictures), strict=True)
-    constraints = walk_and_lines.of_pictures(
-        record.ties, marked, court, dict(shown), **search, **options
-    )
-    found, checked = quality.adjust_and_check(
-        court,
-        record.ties,
-        marked,
-        solved=constraints.solution,
-        lines=constraints.knowledge,
-        **options,
-    )
-    told = {"warnings": [*checked["warnings"], *constraints.warnings]}
-    return found, checked | constraints.summary() | told | {"remarks": constraints.remarks}
+    if pictures:
+        shown = dict(zip(record.ties.cameras, map(images.read, pictures), strict=True))
+        found, checked = walk_and_lines.adjust_and_check(
+            court, record.ties, marked, shown, search, **options
+        )
+    else:
+        found, checked = quality.adjust_and_check(court, record.ties, marked, **options)
+    sunken = quality.sunken(court, record.xyz)
+    checked["warnings"] += [sunken] * bool(sunken)
+    return found, checked
 
 
 if __name__ == "__main__":

@@ -128,6 +128,18 @@ def test_fixed_cameras_in_one_place_of_the_map_are_told():
     assert "its ends look alike" in line and "\n" not in line
 
 
+@pytest.mark.parametrize(("lower_m", "told"), [(0.0, False), (1.2, True)])
+def test_a_map_below_the_floor_of_the_court_is_told(lower_m, told):
+    rng = np.random.default_rng(0)
+    floor = np.column_stack([rng.uniform(-2, 8, (30, 2)), rng.uniform(0, 0.1, 30)])
+    walls = np.column_stack([rng.uniform(20, 30, (200, 2)), rng.uniform(-3, -2, 200)])  # far away
+    line = quality.sunken(COURT, np.concatenate([floor - (0, 0, lower_m), walls]))
+    assert bool(line) is told
+    if told:
+        assert "1.1 m or more below it; click the same court in all cameras" in line
+        assert quality.sunken(COURT, floor[:9] - (0, 0, lower_m)) == ""  # too few to tell
+
+
 def test_the_volume_of_a_court_without_lines_begins_in_its_corner_too():
     cameras = fixed()
     spread = CameraCovariance([one.name for one in cameras], np.eye(28) * 1e-4)

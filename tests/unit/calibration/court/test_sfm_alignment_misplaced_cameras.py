@@ -128,14 +128,16 @@ def test_another_court_is_not_taken_for_an_exchange():
         sfm_alignment.check(tennis, sfm_alignment.reconstruct(fixed, clicks_of(fixed)))
 
 
-@pytest.mark.parametrize("seed", [0, 1])
-def test_cameras_that_the_exchanged_clicks_have_bent_are_judged_after_adjustment(seed):
-    """Weak ties leave the cameras to the wrong clicks: the right ones fit only after another."""
+WEIGHTS = {"click_sigma_px": 2.0, "click_bias_px": 0.0, "click_loss": 3.0}
+
+
+def tied(seed):
+    """Return weak ties of two cameras, their true cameras, and right clicks."""
     truth = networks_made.exact_lens_prior(networks_made.make(4, 30, noise_px=1.0))
     rng, names = np.random.default_rng(seed), ("side", "back")
+    fixed = networks_made.fixed_cameras(truth, names)
     right = {
-        c.name: opencv_projection(c, COURT.xyz) + 0.7 * rng.normal(size=(18, 2))
-        for c in networks_made.fixed_cameras(truth, names)
+        c.name: opencv_projection(c, COURT.xyz) + 0.7 * rng.normal(size=(18, 2)) for c in fixed
     }
     ties, _ = joint_adjustment.condense(
         truth,
@@ -153,10 +155,28 @@ def test_cameras_that_the_exchanged_clicks_have_bent_are_judged_after_adjustment
         max_points=10**6,
         seed=0,
     )
+    return ties, fixed, right
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_cameras_that_the_exchanged_clicks_have_bent_are_judged_after_adjustment(seed):
+    """Weak ties leave the cameras to the wrong clicks: the right ones fit only after another."""
+    ties, _, right = tied(seed)
     clicks = {"side": right["back"], "back": right["side"]}
-    weights = {"click_sigma_px": 2.0, "click_bias_px": 0.0, "click_loss": 3.0}
     with pytest.raises(InputError, match=r"cameras side and back: .* files may be exchanged"):
-        quality.adjust_and_check(COURT, ties, clicks, **weights)
-    _, checked = quality.adjust_and_check(COURT, ties, right, **weights)
+        quality.adjust_and_check(COURT, ties, clicks, **WEIGHTS)
+    _, checked = quality.adjust_and_check(COURT, ties, right, **WEIGHTS)
     assert checked["warnings"] == []
     assert 0.1 < checked["expected_volume_rms_cm"] < 10 and checked["volume_seen"] == 1
+
+
+def test_a_camera_of_whose_points_several_are_of_another_court_is_named():
+    """Their own scatter hides each of them: no single click is told."""
+    ties, (_, back), right = tied(0)
+    other = opencv_projection(back, np.add(COURT.xyz, (8.0, 0, 0)))
+    far = COURT.xyz[:, 1] > 9
+    clicks = {**right, "back": np.where(far[:, None], other, right["back"])}
+    _, checked = quality.adjust_and_check(COURT, ties, clicks, **WEIGHTS)
+    (line,) = checked["warnings"]
+    assert line.startswith("camera back: expected its clicks to fit the walk")
+    assert "points of another court" in line

@@ -24,6 +24,11 @@ SUPPORTED = 0.3
 # ASSUME: of the extent of a map. Cameras that a map joined to the wrong end of a symmetric hall
 # were 0.1 to 0.6 % from those opposite, others 40 % or more.
 ONE_PLACE = 0.01
+# ASSUME: of points of a map near a court. In 65 maps at most 9 % were lower; with two cameras
+# clicked on neighbouring courts all were 1 m lower or more.
+SUNKEN_M, BESIDE_M, LEAST_POINTS = 0.2, 3.0, 10
+# ASSUME: of a camera's clicks; good ones had at most 4, four points of another court 400.
+MOST_FACTOR = 30.0
 # ASSUME: heights of a match, from the floor to a player's reach; the grid is about 2 m wide on a
 # badminton court.
 HEIGHTS_M = (0.0, 1.0, 2.0, 3.0)
@@ -94,8 +99,26 @@ def adjust_and_check(
         adjust=adjust,
         error_modes_m=point_covariance.field(solved.network, solved.covariance)(court.xyz),
     )
+    quality["warnings"] += _scattered(solved, quality["warnings"])
     quality |= expected_volume(court, solved.cameras, solved.named)
     return solved, quality | {"variance_factors": _variance_factors(solved)}
+
+
+def _scattered(solved: joint_adjustment.Solution, told: Sequence[str]) -> list[str]:
+    """Return a line on the camera whose clicks scatter most, if too much and none of it is told.
+
+    Where several clicks of a camera are wrong, their own scatter hides each of them.
+    """
+    factor = solved.factors.clicks.max(axis=1)
+    worst = int(factor.argmax())
+    name = solved.cameras[worst].name
+    if factor[worst] < MOST_FACTOR or any(line.startswith(f"camera {name}: ") for line in told):
+        return []
+    return [
+        f"camera {name}: expected its clicks to fit the walk and the other clicks as good ones do, "
+        f"found them {np.sqrt(factor[worst]):.0f} times as far off; several are wrong, such as "
+        "points of another court: look at them on the page for clicking"
+    ]
 
 
 def _inwards(court, ties, clicks, factors, **weights) -> tuple[float, float]:
@@ -173,6 +196,25 @@ def one_place(centres: Mapping[str, NDArray], others: NDArray) -> str:
                 "without a break until close beside both, with bags or posters at one end"
             )
     return ""
+
+
+def sunken(court: Court, xyz: NDArray) -> str:
+    """Return in one line that a map lies below the floor of the court, empty if it does not.
+
+    `xyz` (N, 3) m are the map's points in the court's frame. Two cameras beside each other that
+    were clicked on different courts of a row agree with each other: only the scale is wrong.
+    """
+    if court.placed:
+        return ""
+    reach = court.xyz[:, :2].min(axis=0) - BESIDE_M, court.xyz[:, :2].max(axis=0) + BESIDE_M
+    height_m = xyz[((xyz[:, :2] > reach[0]) & (xyz[:, :2] < reach[1])).all(axis=1), 2]
+    if len(height_m) < LEAST_POINTS or np.median(height_m) > -SUNKEN_M:
+        return ""
+    return (
+        "court points: expected the points of the walk's map on the floor or above it, found most "
+        f"of {len(height_m)} near the court {-np.median(height_m):.1f} m or more below it; click "
+        "the same court in all cameras, and check that its file has its size"
+    )
 
 
 def leave_one_out_errors(

@@ -123,7 +123,8 @@ def check(
         raise InputError(
             f"court points: expected them near those of {court.name} ({short_m:g} m by {long_m:g} "
             f"m), found most {100 * off_m:.0f} cm off after the best alignment; give the right "
-            "court file, or correct the names of points and cameras in the clicks"
+            "court file, correct the names of points and cameras in the clicks, or click the same "
+            "court in all cameras"
         )
     below = [c.name for c in cameras if world_from_sfm.camera(c).centre_in_world[2] < 0]
     if below:

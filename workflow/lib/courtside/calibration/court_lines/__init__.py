@@ -8,6 +8,7 @@ placements: find: camera positions that project lines of the court onto lines of
 refinement: refine, uncertainty: a camera adjusted until the lines fit, and its uncertainty
 search: find, fault, Candidate: the cameras that explain a picture best, and why one is rejected
 edges: measure, Edges: painted lines measured in a picture, stretch by stretch
-walk_and_lines: of_pictures, LineConstraints: cameras of a walk adjusted together with lines
+walk_and_lines: adjust_and_check, of_pictures, LineConstraints: cameras of a walk adjusted
+    together with lines
 verdict: examine, judge, Verdict: found, ambiguous or not found, and why; ends of symmetric courts
 """

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from courtside.calibration.bundle import conversion, problem, solver
 from courtside.calibration.bundle.problem import IMAGE, POSE, Network
-from courtside.calibration.court import joint_adjustment, line_edges
+from courtside.calibration.court import joint_adjustment, line_edges, quality
 from courtside.calibration.court.court import ClickedPoints, Court
 from courtside.calibration.court.joint_adjustment import Solution, Ties
 from courtside.calibration.court_lines import edges
@@ -59,6 +59,26 @@ class LineConstraints:
         off = {name: round(value, 2) for name, value in self.off_sigmas.items()}
         painting = {"painting_mm": round(1000 * self.painting_m, 2)}
         return {"lines": {"n_edges": self.n_edges, "off_sigmas": off, **painting}}
+
+
+def adjust_and_check(
+    court: Court,
+    ties: Ties,
+    clicks: ClickedPoints,
+    pictures: Mapping[str, NDArray],
+    search: Mapping[str, Any],
+    **options: Any,
+) -> tuple[Solution, dict[str, Any]]:
+    """Adjust the fixed cameras with clicks and lines, and check them: `quality.adjust_and_check`.
+
+    `search` are options of `of_pictures`. The result also holds the summary of the lines.
+    """
+    found = of_pictures(ties, clicks, court, pictures, **search, **options)
+    solved, checked = quality.adjust_and_check(
+        court, ties, clicks, solved=found.solution, lines=found.knowledge, **options
+    )
+    told = {"warnings": [*checked["warnings"], *found.warnings], "remarks": found.remarks}
+    return solved, checked | found.summary() | told
 
 
 def of_pictures(
