@@ -2,8 +2,9 @@
 
     python benchmarks/correct_real_footage.py RECORDINGS [--results results]
 
-RECORDINGS is a folder with `trc/Balancing_for_IK.trc` of the same videos, as Pose2Sim's
-demonstration made it from OpenPose's keypoints: another markerless result with other joint
+RECORDINGS is a folder with OpenPose's keypoints of the same videos (`openpose_body25b/`), which are
+triangulated by the study's mended cameras, and with `trc/Balancing_for_IK.trc`, which Pose2Sim's
+demonstration made from them by the faulty file: another markerless result with other joint
 definitions, not truth. Writes docs/numbers/real_footage.csv, a source of docs/make_tables.py.
 """
 
@@ -14,34 +15,50 @@ from pathlib import Path
 import numpy as np
 
 import real_footage
+import real_people
 import stated
+from real_people import STAGES
 from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
-from courtside.records.keypoints import keypoints, skeleton
+from courtside.geometry import camera, triangulation
 
-TAKE = f"walk-4cams/takes/balancing/{{stage}}/file/all-robust/{real_footage.NETWORK}.npz"
-STAGES = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
+SESSION = "walk-4cams"
+TAKE = f"{SESSION}/takes/balancing/{{stage}}/file/all-robust/{real_footage.NETWORK}.npz"
 LABEL = (
     "real, `walk-4cams/balancing`, against OpenPose's joints in Pose2Sim's TRC, which rests on the "
     "original, faulty calibration file (no truth)"
 )
+BESIDE = "`walk-4cams`, against OpenPose's keypoints by the mended cameras"
 COMMAND = "`python benchmarks/correct_real_footage.py RECORDINGS`"
 
 
-def rows(results, theirs):
-    """Yield the rows of the table, stage by stage."""
-    for stage, word in STAGES.items():
-        points = keypoints.read_3d(results / TAKE.format(stage=stage))
-        own = [points.joints.tolist().index(joint) for joint in skeleton.JOINTS]
-        apart = real_footage.distances_mm(points.xyz[0][:, own], theirs)
+def openpose(recordings, cameras):
+    """Return (T, 12, 3) m of OpenPose's keypoints, triangulated by the cameras of the study."""
+    seen = np.stack([real_footage.openpose(recordings, at + 1) for at in range(len(cameras))])
+    flat = seen[..., :2].reshape(len(seen), -1, 2), seen[..., 2].reshape(len(seen), -1)
+    found = triangulation.triangulate_robust(cameras, *flat, **real_footage.LIKE_POSE2SIM)
+    return found.xyz.reshape(seen.shape[1], -1, 3)
+
+
+def rows(stages, theirs):
+    """Yield the rows of the table `footage`, stage by stage."""
+    for word, xyz in stages.items():
+        apart = real_footage.distances_mm(xyz, theirs)
         known = apart[np.isfinite(apart)]
         found = {"median": np.median(known), "p90": np.percentile(known, 90)}
         for part, value in {**found, "p95": np.percentile(known, 95)}.items():
             counts = [known.size, apart.size - known.size]
-            about = ["footage", LABEL, f"{word}_{part}", f"{value:.1f}", "mm", "walk-4cams"]
+            about = ["footage", LABEL, f"{word}_{part}", f"{value:.1f}", "mm", SESSION]
             yield [*about, *counts, "benchmark", COMMAND]
+
+
+def beside(stages, theirs):
+    """Return the rows of the table `real-people`; OpenPose's frames are `LATER`."""
+    later = {word: xyz[real_footage.LATER :] for word, xyz in stages.items()}
+    theirs = theirs[: len(later["raw"])]
+    return list(real_people.rows(BESIDE, SESSION, later, theirs, COMMAND))
 
 
 if __name__ == "__main__":
@@ -49,5 +66,13 @@ if __name__ == "__main__":
     parser.add_argument("recordings", type=Path)
     parser.add_argument("--results", type=Path, default=ROOT / "results")
     given = parser.parse_args()
-    table = rows(given.results, real_footage.reference(given.recordings))
-    stated.write(ROOT / stated.FOLDER / "real_footage.csv", table)
+    made = {
+        word: real_people.limbs(given.results / TAKE.format(stage=stage))
+        for stage, word in STAGES.items()
+    }
+    known = camera.read_toml(given.results / SESSION / "calibration" / "file" / "cameras.toml")
+    found = rows(made, real_footage.reference(given.recordings))
+    stated.write(
+        ROOT / stated.FOLDER / "real_footage.csv",
+        [*found, *beside(made, openpose(given.recordings, known))],
+    )

@@ -26,8 +26,10 @@ import yaml
 from scipy.spatial.transform import Rotation
 
 import marker_system
+import real_people
 import stated
 from many_sessions import copied
+from real_people import STAGES
 from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
@@ -63,12 +65,14 @@ REFINED = {  # by session and calibration, in the table `ways`
     ("hall-markers", "known"): "court points alone",
     (GIVEN, "file"): "file as given, camera 8 wrong",
 }
-STAGES = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
 FUSED = "takes/play/{stage}/{way}/all-robust/{model}.npz"
 # Of the marker system, wrong in the first 2 s: the study and the hand annotations agree with each
 # other there, to 38 mm in the median, and both are 0.2 to 0.5 m from it.
 DOUBTFUL = ("left_ankle",)
 LABEL = "real, basketball player in a marker suit, sports hall, against the marker system's joints"
+# Their shoulders are joints, unlike those of the marker system.
+SET_BY_HAND = marker_system.JOINTS | {"left_shoulder": "LShoulder", "right_shoulder": "RShoulder"}
+BY_HAND = "hall, against joints set by hand"
 COMMAND = "`python benchmarks/hall_markers.py DATA`"
 
 
@@ -155,12 +159,12 @@ def truth(data):
     return table["time_s"].to_numpy(), np.stack(places, axis=1)
 
 
-def by_hand(data, cameras, rate_hz):
+def by_hand(data, cameras, rate_hz, joints=tuple(marker_system.JOINTS)):
     """Return times (T,) s and joints (T, J, 3) m set by hand, triangulated by these cameras."""
     table = pd.read_csv(data / "annotations.csv")
-    shape = (len(cameras), table["frame_idx"].max() + 1, len(marker_system.JOINTS))
+    shape = (len(cameras), table["frame_idx"].max() + 1, len(joints))
     xy = np.full((*shape, 2), np.nan)
-    names = {theirs: at for at, theirs in enumerate(marker_system.JOINTS.values())}
+    names = {SET_BY_HAND[joint]: at for at, joint in enumerate(joints)}
     order = {camera.name: at for at, camera in enumerate(cameras)}
     table = table[table["joint"].isin(names) & table["camera"].isin(order)]
     at = table["camera"].map(order), table["frame_idx"], table["joint"].map(names)
@@ -190,6 +194,19 @@ def measured(results, data, model, ways=WAYS):
         unknown = np.full((*xyz.shape, 3), np.nan)
         table = marker_system.table(names, found, unknown, rate_hz, DOUBTFUL)
         yield way, "hand", found, table
+
+
+def rows_by_hand(results, data, model, way="file"):
+    """Return the rows of the table `real-people`: without alignment, the pictures are the same."""
+    files = {
+        word: FUSED.format(stage=stage, way=way, model=model) for stage, word in STAGES.items()
+    }
+    rate_hz = keypoints.read_3d(results / files["raw"]).rate_hz
+    cameras = camera_models.read_toml(results / "calibration" / way / "cameras.toml")
+    _, other = by_hand(data, cameras, rate_hz, skeleton.JOINTS)
+    stages = {word: real_people.limbs(results / file)[: len(other)] for word, file in files.items()}
+    other = other[: len(stages["raw"])]
+    return list(real_people.rows(BY_HAND, "hall-markers", stages, other, COMMAND))
 
 
 def way_rows(results, data, model):
@@ -269,6 +286,7 @@ def main():
         results = given.results or run(folder, given.data.resolve(), given.model)
         found = list(measured(results, given.data, given.model))
         ways = list(way_rows(results, given.data, given.model))
+        beside = rows_by_hand(results, given.data, given.model)
     for way, stage, fit, table in found:
         print(f"\n{WAYS[way]}, {stage}: the markers' clock is found {fit.shift_s:.3f} s "
               f"ahead; scale {fit.scale:.4f}, not fitted")  # fmt: skip
@@ -279,7 +297,7 @@ def main():
     if given.model == NETWORK:
         stated.write(
             ROOT / stated.FOLDER / "hall_markers.csv",
-            [*register_rows(rows(found)), *stated.joined(register_rows(ways))],
+            [*register_rows(rows(found)), *beside, *stated.joined(register_rows(ways))],
         )
 
 

@@ -4,12 +4,12 @@
 
 DEMO is Pose2Sim's demonstration of one person with what its wheel lacks beside
 `calibration/Calib.qca.txt`: `trc/Balancing_for_IK.trc`, and OpenPose's keypoints in
-`openpose_body25b/cam1_json` to `cam4_json`. For both calibrations and both stages (raw, filtered)
-the table gives, of the study's own keypoints: static points against their views (root mean square
-per axis), accepted views by camera, variation of limb lengths, and 12 limb joints against
-OpenPose's keypoints triangulated by the same cameras, in the study's way and in a way close to
-Pose2Sim's, and against Pose2Sim's TRC, which rests on the file as it is. OpenPose's keypoints show
-the video's frames one later (`LATER`).
+`openpose_body25b/cam1_json` to `cam4_json`. For both calibrations and all stages (raw, filtered,
+corrected) the table gives, of the study's own keypoints: static points against their views (root
+mean square per axis), accepted views by camera, variation of limb lengths, and 12 limb joints
+against OpenPose's keypoints triangulated by the same cameras, in the study's way and in a way close
+to Pose2Sim's, and against Pose2Sim's TRC, which rests on the file as it is. OpenPose's keypoints
+show the video's frames one later (`LATER`).
 """
 
 import argparse
@@ -17,6 +17,7 @@ import json
 import sys
 import tempfile
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -25,6 +26,7 @@ from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 sys.path.insert(0, str(ROOT / "workflow" / "scripts"))
+import correct_joints
 import filter_motion
 
 from courtside.calibration import file_formats
@@ -75,13 +77,18 @@ def reference(folder):
     return xyz[:, [joints.index(f"{side[0].upper()}{part.capitalize()}") for side, part in words]]
 
 
-def filtered(points, step):
-    """Return filtered skeletons, as the study filters them."""
+def stages(points, cameras, step, sex_of):
+    """Return raw skeletons, and filtered and corrected ones as the study makes them."""
     with tempfile.TemporaryDirectory() as folder:
-        raw, made = Path(folder) / "raw.npz", Path(folder) / "filtered.npz"
-        keypoints.write_3d(raw, points)
-        filter_motion.main(raw, SKELETON, made, Path(folder) / "cutoffs.csv", **step)
-        return keypoints.read_3d(made)
+        names = ("raw", "filtered", "corrected")
+        paths = SimpleNamespace(**{name: Path(folder) / f"{name}.npz" for name in names})
+        paths.cutoffs, paths.cameras = Path(folder) / "cutoffs.csv", Path(folder) / "cameras.toml"
+        paths.skeleton, paths.offsets = SKELETON, CONFIG / "joint_offsets" / f"{NETWORK}.csv"
+        keypoints.write_3d(paths.raw, points)
+        camera_models.write_toml(paths.cameras, cameras, source="given")
+        filter_motion.main(paths.raw, SKELETON, paths.filtered, paths.cutoffs, **step)
+        correct_joints.main(paths, paths.corrected, max_gap_s=step["max_gap_s"], sex_of=sex_of)
+        return {name: keypoints.read_3d(getattr(paths, name)) for name in names}
 
 
 def distances_mm(xyz, other):
@@ -105,10 +112,10 @@ def limb_variation(points):
     return np.median(found), np.max(found)
 
 
-def measured(cameras, seen, others, demo, step):
+def measured(cameras, seen, others, demo, step, sex_of):
     """Yield rows (stage, measure, value, unit) of one calibration."""
     shape = skeleton.read(SKELETON)
-    raw = fusion.triangulate_take(cameras, seen, shape, ["p1"], **step["triangulate"])
+    raw = fusion.triangulate_take(cameras, seen, shape, list(sex_of), **step["triangulate"])
     limbs = [list(raw.joints).index(name) for name in skeleton.JOINTS]
     for at, camera in enumerate(cameras):
         accepted = raw.accepted[0][:, limbs, at].mean()
@@ -125,7 +132,7 @@ def measured(cameras, seen, others, demo, step):
     for name, options in (("triangulated alike", own), ("as Pose2Sim", LIKE_POSE2SIM)):
         xyz = triangulation.triangulate_robust(cameras, *flat, **options).xyz
         compared[f"OpenPose, same cameras, {name}"] = xyz.reshape(-1, len(limbs), 3)
-    for stage, points in (("raw", raw), ("filtered", filtered(raw, step["filter_motion"]))):
+    for stage, points in stages(raw, cameras, step["filter_motion"], sex_of).items():
         for name, other in compared.items():
             median, high = apart_mm(points.xyz[0][:, limbs], other)
             yield stage, f"{name}, median", median, "mm"
@@ -143,6 +150,7 @@ def main():
     given = parser.parse_args()
     session = yaml_files.read(CONFIG / "sessions" / "walk-4cams.yaml")
     step = yaml_files.read(CONFIG / "config.yaml")
+    sex_of = {name: one["sex"] for name, one in session["subjects"].items()}
     names = list(session["cameras"])
     take = given.results / "takes" / "balancing"
     named = people.read(take / "people" / "file" / f"{NETWORK}.npz")
@@ -158,7 +166,7 @@ def main():
         rows.append((label, "", "static points", off_px, "px"))
         crops = {name: (one or {}).get("crop_px") for name, one in session["cameras"].items()}
         shown = [camera_models.crop(c, crops[c.name]) if crops[c.name] else c for c in found]
-        rows += [(label, *row) for row in measured(shown, seen, others, given.demo, step)]
+        rows += [(label, *row) for row in measured(shown, seen, others, given.demo, step, sex_of)]
     table = pd.DataFrame(rows, columns=["calibration", "stage", "measure", "value", "unit"])
     print(table.to_string(index=False))
     if given.csv:

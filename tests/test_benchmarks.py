@@ -34,6 +34,7 @@ import opensim_angles
 import opensim_ik
 import pose_batches
 import real_footage
+import real_people
 import rows
 import run_log
 import structure_from_motion
@@ -285,14 +286,68 @@ def test_mapping_seeds_gives_each_script_what_it_takes(tmp_path, monkeypatch):
     assert called == 2 * ["map_images", "adjust_network"]
 
 
-def test_real_footage_gives_its_script_what_it_takes(monkeypatch):
-    main = mock.create_autospec(real_footage.filter_motion.main)
-    monkeypatch.setattr(real_footage.filter_motion, "main", main)
+def test_real_footage_gives_its_scripts_what_they_take(monkeypatch):
+    scripts = (real_footage.filter_motion, real_footage.correct_joints)
+    mains = [mock.create_autospec(script.main) for script in scripts]
+    for script, main in zip(scripts, mains, strict=True):
+        monkeypatch.setattr(script, "main", main)
     monkeypatch.setattr(real_footage.keypoints, "write_3d", mock.Mock())
     monkeypatch.setattr(real_footage.keypoints, "read_3d", mock.Mock())
     config = yaml_files.read(ROOT / "config" / "config.yaml")
-    real_footage.filtered(mock.Mock(), config["filter_motion"])
-    main.assert_called_once()
+    cameras = court_cameras.right_cameras()
+    made = real_footage.stages(mock.Mock(), cameras, config["filter_motion"], {"p1": "m"})
+    assert list(made) == ["raw", "filtered", "corrected"]
+    for main in mains:
+        main.assert_called_once()
+    needed = {"raw", "filtered", "cameras", "cutoffs", "skeleton", "offsets"}
+    assert needed <= set(vars(mains[1].call_args.args[0]))
+
+
+PERSON_M = {"shoulder": 1.4, "elbow": 1.1, "wrist": 0.85, "hip": 0.9, "knee": 0.5, "ankle": 0.1}
+
+
+def standing():
+    """Return the limb joints (3, 12, 3) m of a person who stands upright, arms hanging."""
+    names = [joint.split("_") for joint in skeleton.JOINTS]
+    one = [(0.15 if side == "left" else -0.15, 0, PERSON_M[part]) for side, part in names]
+    return np.array([one] * 3)
+
+
+def test_recorded_people_are_compared_stage_by_stage():
+    other = standing()
+    corrected = other.copy()
+    at = [joint.endswith("shoulder") for joint in skeleton.JOINTS]
+    corrected[:, at, 2] -= 0.04
+    corrected[:, [joint.endswith("knee") for joint in skeleton.JOINTS], 1] += 0.1
+    corrected[0, skeleton.JOINTS.index("left_shoulder")] = np.nan
+    stages = {"raw": other, "corrected": corrected}
+    found = {
+        (row[1].removeprefix("hall: "), row[2]): row
+        for row in real_people.rows("hall", "session", stages, other, "command")
+    }
+    distance = "shoulders, distance, median / 90 %, mm"
+    assert found[distance, "raw_first"][3] == "0" and found[distance, "corrected_first"][3] == "40"
+    assert found[distance, "corrected_first"][6:8] == [5, 1]
+    arms = {key[1]: row[3] for key, row in found.items() if key[0].startswith("upper arms")}
+    firsts = [arms[f"{stage}_first"] for stage in ("raw", "corrected", "reference")]
+    assert firsts == ["300", "260", "300"]
+    bent = [row[3] for key, row in found.items() if "left hip flexion" in key[0]]
+    assert bent == ["+0.0", "0.0", "+14.0", "14.0"]  # 0.1 m forwards of 0.4
+
+
+def test_shoulders_set_by_hand_are_triangulated(tmp_path):
+    cameras, joints = court_cameras.right_cameras(), ("left_shoulder", "right_ankle")
+    true = np.array([[0.3, 0.5, 1.5], [-0.2, 0.4, 0.1]])
+    lines = ["camera,frame_idx,joint,x_px,y_px,visibility"]
+    for camera in cameras:
+        for name, (x, y) in zip(
+            ("LShoulder", "RAnkle"), camera_models.project(camera, true), strict=True
+        ):
+            lines.append(f"{camera.name},0,{name},{x},{y},2")
+    (tmp_path / "annotations.csv").write_text("\n".join(lines))
+    times, found = hall_markers.by_hand(tmp_path, cameras, 12.0, joints)
+    assert times.tolist() == [0]
+    np.testing.assert_allclose(found, true[None], atol=1e-4)
 
 
 def test_the_body_model_gives_its_script_what_it_takes(tmp_path, monkeypatch):

@@ -273,6 +273,22 @@ SHOWN = {
 }
 
 FILTERED = {  # some rows of a table
+    **{
+        name: View(
+            "real-people",
+            {
+                "recording, reference: measure": "{row}",
+                **_stages("{STAGE_first} / {STAGE_second}"),
+                **more,
+                "values, raw / corrected": "{raw_first.n} / {corrected_first.n}",
+            },
+            rows,
+        )
+        for name, rows, more in (
+            ("real-joints", "mm$", {"reference": "{reference_first} / {reference_second}"}),
+            ("real-angles", "degrees$", {}),
+        )
+    },
     "ways": View(
         "ways",
         {
