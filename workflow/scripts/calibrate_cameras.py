@@ -51,11 +51,11 @@ def main(
 def calibrate(record, clicks_csv, court_yaml, **options):
     """Return the result of `solve`; a doubtful map gives no warnings on clicks, court or names."""
     doubtful_map = quality.map_warning(record.support)
+    if record.outcome:
+        raise InputError(record.outcome)
     at = dict(zip(record.images, record.centres, strict=True))
     fixed = {c.name: at[image_names.static(c.name)] for c in record.sfm_cameras}
     one_place = quality.one_place(fixed, record.centres)
-    if record.outcome:
-        raise InputError(record.outcome)
     try:
         if record.fault:
             raise InputError(record.fault)
