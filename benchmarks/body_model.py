@@ -80,6 +80,7 @@ def fitted(results, session, way, folder):
         max_gap_s=yaml_files.read(config / "config.yaml")["filter_motion"]["max_gap_s"],
         sex_of={name: one.get("sex") for name, one in known.items()},
         height_m_of={name: one.get("height_m") for name, one in known.items()},
+        recorded=False,
     )
     seconds = time.process_time() - before
     both = dict(zip(STAGES, (paths.corrected, folder / "ik.npz"), strict=True))

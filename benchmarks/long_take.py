@@ -115,8 +115,8 @@ def steps(folder, given):
         skeletons=made["last"], raw=made["raw"], cutoffs=tables["cutoffs"],
         skeleton=shape, derived=table, cameras=given.cameras, covariance=given.covariance,
     )  # fmt: skip
-    sex_of = dict.fromkeys(persons, "m")
-    measured = {"max_gap_s": filtering["max_gap_s"], "stage": "corrected", "sex_of": sex_of}
+    about = {"max_gap_s": filtering["max_gap_s"], "sex_of": dict.fromkeys(persons, "m")}
+    measured = {"stage": "corrected", "recorded": True, **about}
     yield "measure_kinematics", (paths, tables["frames"], tables["summary"]), measured
 
 

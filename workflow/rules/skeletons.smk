@@ -180,6 +180,7 @@ rule fit_skeleton:
         step=of_job(lambda job: job.some("filter_motion", ["max_gap_s"])),
         sex_of=of_job(takes.sexes),
         height_m_of=of_job(takes.stated, "height_m"),
+        recorded=lambda w: not session_of(w).virtual,
     script:
         "../scripts/fit_skeleton.py"
 
@@ -247,6 +248,7 @@ rule measure_kinematics:
         step=of_job(lambda job: job.some("filter_motion", ["max_gap_s"])),
         stage=of_job(takes.measured_stage),
         sex_of=of_job(takes.sexes),
+        recorded=lambda w: not session_of(w).virtual,
     script:
         "../scripts/measure_kinematics.py"
 

@@ -15,14 +15,14 @@ from courtside.records.keypoints import keypoints, skeletal_motion, skeleton
 from courtside.study.execution.script import run
 
 
-def main(paths, joints_npz, motion_npz, angles_csv, *, max_gap_s, sex_of, height_m_of):
+def main(paths, joints_npz, motion_npz, angles_csv, *, max_gap_s, sex_of, height_m_of, recorded):
     raw = skeleton_filter.prepare(keypoints.read_3d(paths.raw), max_gap_s)
     cameras, offsets = camera.read_toml(paths.cameras), joint_correction.read(paths.offsets)
     points = joint_correction.correct(raw, offsets, sex_of, cameras)
     shape, (chosen, _) = skeleton.read(paths.skeleton), cutoffs.read(paths.cutoffs)
     cutoff_hz = dict(zip(shape.joints, shape.by_group(chosen), strict=True))
     contacts = footwork.read_contacts(paths.contacts)
-    fits = take.people(points, cutoff_hz, height_m_of, contacts)
+    fits = take.people(points, cutoff_hz, height_m_of, contacts, recorded=recorded)
     keypoints.write_3d(joints_npz, take.joints(keypoints.read_3d(paths.corrected), fits))
     motion = take.motion(points, fits, max_gap_s)
     skeletal_motion.write(motion_npz, motion)

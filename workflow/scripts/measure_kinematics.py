@@ -18,7 +18,7 @@ from courtside.records.keypoints import derived_joints, keypoints, skeleton
 from courtside.study.execution.script import run
 
 
-def main(paths, frames_csv, summary_csv, *, max_gap_s, stage, sex_of):
+def main(paths, frames_csv, summary_csv, *, max_gap_s, stage, sex_of, recorded):
     unused = ("covariance_camera", "outlier")  # for the memory
     raw = keypoints.read_3d(paths.raw, left_out=(*unused, "offset"))
     raw = skeleton_filter.prepare(raw, max_gap_s)
@@ -27,7 +27,9 @@ def main(paths, frames_csv, summary_csv, *, max_gap_s, stage, sex_of):
     how = kinematics.Filter(shape.by_group(chosen), order)
     table = derived_joints.read(paths.derived)
     field = field_of_cameras(paths, points.cameras) if paths.covariance else None
-    people = kinematics.measure(points, raw, table, shape.name, how, sex_of, field)
+    people = kinematics.measure(
+        points, raw, table, shape.name, how, sex_of, field, recorded=recorded
+    )
     tables.write(frames_csv, measures.frames(people))
     tables.write(summary_csv, measures.summary(people, stage))
 

@@ -72,6 +72,33 @@ def test_a_network_s_lasting_shift_is_stated_and_a_record_without_network_has_no
         np.testing.assert_allclose(each, take.SHIFT_M.get(name.partition("_")[2], 0.0), atol=1e-9)
 
 
+def test_angles_of_recorded_people_hold_a_constant_error_of_each_joint_and_the_joints_do_not_move():
+    body, rng = moving_model.points(moving_model.moving(12)), np.random.default_rng(0)
+    sigma_m = np.array([0.036 if "hip" in name else 0.025 for name in body.joints]) / np.sqrt(3)
+    network = np.broadcast_to(np.square(sigma_m)[:, None, None] * np.eye(3), (*body.xyz.shape, 3))
+    body = replace(body, covariance_network=network.copy())
+    names = [f"{side}_{part}" for side in ("left", "right") for part in ("knee", "elbow")]
+    clean, inside = angles_of(body, names)[0], {False: [], True: []}
+    for _ in range(10):
+        error = sigma_m[:, None] * rng.standard_normal(body.xyz.shape[2:])
+        moved, poses = replace(body, xyz=body.xyz + error), []
+        for recorded, held in inside.items():
+            degrees, sigma = angles_of(moved, names, recorded=recorded)
+            held.append(np.abs(degrees - clean) < 1.645 * sigma)
+            poses.append(degrees)
+        np.testing.assert_array_equal(*poses)
+    assert np.mean(inside[False]) < 0.6
+    assert 0.8 < np.mean(inside[True]) < 0.97
+
+
+def angles_of(points, names, **options):
+    """Return the flexions (T, A) degrees of a fit, and their standard deviations."""
+    found = take.people(points, HZ, {"a": 1.75}, **options)
+    motion = take.motion(points, found)
+    at = [motion.angles.tolist().index(f"{name}_flexion") for name in names]
+    return motion.angle_deg[0][:, at], motion.angle_sigma_deg[0][:, at]
+
+
 def test_joints_on_no_segment_are_left_out_of_the_model_s_joints():
     body = moving_model.points(moving_model.moving(20))
     first = [0] * 2  # two places of the face, seen in all frames

@@ -41,7 +41,7 @@ class Data:
 
     xyz: NDArray  # (T, J, 3) m
     information: NDArray  # (T, J, 3, 3): inverse of their covariance, 0 where missing
-    noise: NDArray  # (T, J, 3, 3) m2: the keypoints' own part of the covariance
+    noise: NDArray  # (T, J, 3, 3) m2: its part that counts in full in angles, the keypoints' own
 
 
 @dataclass(frozen=True, eq=False)

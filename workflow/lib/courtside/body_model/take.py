@@ -10,7 +10,7 @@ from courtside.body_model import angles, fit, held, pose, segments, shape, start
 from courtside.body_model.fit import Spread
 from courtside.body_model.pose import Pose
 from courtside.body_model.shape import Shape
-from courtside.kinematics import filtering
+from courtside.kinematics import filtering, shared_errors
 from courtside.records.footwork import Contacts
 from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
@@ -44,11 +44,12 @@ class Fitted:
     spread: Spread
 
 
-def errors(points: Keypoints3D, person: int) -> tuple[NDArray, NDArray]:
+def errors(points: Keypoints3D, person: int, *, recorded: bool = False) -> tuple[NDArray, NDArray]:
     """Return the covariance (T, J, 3, 3) m2 by which one person's joints count, and their noise.
 
     Filled gaps have no stated noise: they count with twice the joint's usual one. Joints that the
-    network's errors are unknown of get `UNKNOWN_M`, or `HAND_M`.
+    network's errors are unknown of get `UNKNOWN_M`, or `HAND_M`. What is constant of the errors of
+    `recorded` people counts as noise, in full (`shared_errors.constant`).
     """
     network, own = points.covariance_network[person], points.covariance_2d[person]
     parts = [joint.partition("_")[2] for joint in points.joints.tolist()]
@@ -57,7 +58,11 @@ def errors(points: Keypoints3D, person: int) -> tuple[NDArray, NDArray]:
     around = np.ma.median(np.ma.masked_invalid(np.trace(own, axis1=2, axis2=3)), axis=0) / 3
     unknown = 4 * np.ma.filled(around, UNKNOWN_M**2)[:, None, None] * np.eye(3)
     noise = np.where(np.isfinite(own), own, unknown)
-    return noise + variance, noise
+    total = noise + variance
+    if recorded:
+        steady = shared_errors.constant(shared_errors.variances(network), points.joints.tolist())
+        noise = noise + steady[..., None, None] * np.eye(3)
+    return total, noise
 
 
 def person(
@@ -66,16 +71,19 @@ def person(
     cutoff_hz: Mapping[str, float],
     height_m: float | None = None,
     contacts: Contacts | None = None,
+    *,
+    recorded: bool = False,
 ) -> Fitted | None:
     """Fit one person's frames from the first to the last that is seen; None if none is.
 
     `contacts`, of the same persons and frames, hold heels and toes where they stand. Only the last
-    round uses them: earlier rounds would take longer and end in the same poses.
+    round uses them: earlier rounds would take longer and end in the same poses. People are
+    `recorded`, or virtual.
     """
     names, frames = points.joints.tolist(), _frames(points, at)
     if _unseen(points, at, frames):
         return None
-    covariance, noise = (one[frames] for one in errors(points, at))
+    covariance, noise = (one[frames] for one in errors(points, at, recorded=recorded))
     xyz = points.xyz[at][frames]
     place = {joint: xyz[:, k] for k, joint in enumerate(names)}
     sigma = np.sqrt(np.trace(covariance, axis1=2, axis2=3) / 3)
@@ -124,6 +132,8 @@ def people(
     cutoff_hz: Mapping[str, float],
     height_m_of: Mapping[str, float | None],
     contacts: Contacts | None = None,
+    *,
+    recorded: bool = False,
 ) -> dict[int, Fitted]:
     """Fit the model to all persons of a record (`person`); return the fits by the person's index.
 
@@ -131,7 +141,8 @@ def people(
     """
     fits = {}
     for at, name in enumerate(points.person_id.tolist()):
-        found = person(points, at, cutoff_hz, height_m_of.get(name), contacts)
+        height_m = height_m_of.get(name)
+        found = person(points, at, cutoff_hz, height_m, contacts, recorded=recorded)
         if found is not None:
             fits[at] = found
             continue
@@ -154,7 +165,7 @@ def joints(points: Keypoints3D, fits: Mapping[int, Fitted]) -> Keypoints3D:
     """Return the record with the joints of the fits, where the record has these joints.
 
     Joints that are on no segment of the model, as of the face and the fingers, are left out.
-    The fit's error is split as the record's: the keypoints' noise, and the rest as the network's.
+    The fit's error is split as `errors` does: the noise, and the rest as the network's.
     To the rest of limb joints whose network's errors are known, `SHIFT_M` is added.
     """
     model, kept = segments.model(), np.zeros(points.xyz.shape[:3], dtype=bool)

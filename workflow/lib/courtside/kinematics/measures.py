@@ -82,6 +82,7 @@ class _Take:
     person: int
     how: Filter
     field: Field | None
+    recorded: bool
 
 
 def size(
@@ -130,13 +131,16 @@ def measure(
     how: Filter,
     sex_of: Mapping[str, str | None] | None = None,
     field: Field | None = None,
+    *,
+    recorded: bool = False,
 ) -> list[Person]:
     """Measure all persons of a take on its filtered skeletons.
 
     `skeletons`, of the named `skeleton`, are the exported ones, corrected or not. Their last step
     is the filter `how` (`skeleton_filter.smooth`). They were made from `raw`
     (`skeleton_filter.prepare`), whose noise determines that of the measures. `sex_of` gives "m",
-    "f" or None for persons, `field` the errors of the cameras, where known.
+    "f" or None for persons, `field` the errors of the cameras, where known. People are `recorded`,
+    or virtual.
 
     Nothing is filtered again. Points are means of the skeletons' joints, speeds and accelerations
     the derivatives of their cubic splines, distances the integrals of the speeds. Three errors are
@@ -150,9 +154,10 @@ def measure(
     for at, person in enumerate(skeletons.person_id):
         sex = (sex_of or {}).get(str(person))
         weights, words = definitions(table, skeleton, skeletons.joints, sex)
-        take = _Take(skeletons, raw, at, how, field)
+        take = _Take(skeletons, raw, at, how, field, recorded)
         found = {name: _point(take, weights[name], words[name]) for name in weights}
-        made.append(Person(str(person), skeletons.time_s, found, angles(skeletons, at, field)))
+        turns = angles(skeletons, at, field, recorded=recorded)
+        made.append(Person(str(person), skeletons.time_s, found, turns))
     return made
 
 
@@ -191,7 +196,8 @@ def _point(take: _Take, weights: NDArray, words: str) -> Point:
 def _position_covariance(take: _Take, weights: NDArray) -> NDArray:
     """Return the covariance (T, 3, 3) of a mean of joints, without the cameras' part."""
     used = np.flatnonzero(weights)
-    errors, axes = shared_errors.of_person(take.skeletons, take.person), np.eye(3)
+    errors = shared_errors.of_person(take.skeletons, take.person, recorded=take.recorded)
+    axes = np.eye(3)
     n_frames = len(take.skeletons.time_s)
 
     def variance(direction: NDArray) -> NDArray:
@@ -252,11 +258,13 @@ def _parts(take: _Take, weights: NDArray) -> dict[float, NDArray]:
     return parts
 
 
-def angles(skeletons: Keypoints3D, person: int, field: Field | None = None) -> dict[str, Angle]:
+def angles(
+    skeletons: Keypoints3D, person: int, field: Field | None = None, *, recorded: bool = False
+) -> dict[str, Angle]:
     """Return the joint angles of one person, by the person's index, as `measure` states them."""
     joints, parts = skeletons.joints.tolist(), []
     for at in keypoints.blocks(len(skeletons.time_s)):
         part = skeletons.frames(at)
-        errors = shared_errors.of_person(part, person, field)
+        errors = shared_errors.of_person(part, person, field, recorded=recorded)
         parts.append(joint_angles.measure(part.xyz[person], errors, joints))
     return {name: joint_angles.joined([part[name] for part in parts]) for name in parts[0]}

@@ -9,10 +9,7 @@ views share these errors, and a filter does not remove them.
 
 The development players are virtual. Recorded people differ from them in body and clothes, and their
 true joint centres are known only as well as two measuring systems agree on them. `state` therefore
-adds a published variance for recorded people ([Kanko2021]_, see `RECORDED_M`).
-
-.. [Kanko2021] Kanko et al. (2021), Concurrent assessment of gait kinematics using marker-based and
-   markerless motion capture, Journal of Biomechanics 127, 110665.
+adds a published variance for recorded people (`shared_errors.RECORDED_M`).
 """
 
 from collections.abc import Mapping, Sequence
@@ -23,6 +20,7 @@ import pandas as pd
 import scipy
 from numpy.typing import NDArray
 
+from courtside.kinematics.shared_errors import RECORDED_M
 from courtside.reconstruction import error_signs
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
@@ -34,10 +32,6 @@ OUTLIER_M = 0.1  # an error above it is an outlier's: half the length of a forea
 # Chosen on development bodies, each left out of the fit, so that 90 % ellipsoids hold 60 % or more
 # of the errors above `OUTLIER_M` with two, three and four views (docs/measured/joints.md).
 STATED_GOOD, STATED_OUTLIER = 0.5, 2.0
-# Standard deviation per axis of a recorded person's joints: the root mean square distance between
-# the joint centres of a markerless and a marker-based system [Kanko2021]_, 30 people who walk: 36
-# mm at the hip, less than 25 mm elsewhere. ASSUME: it is the same in other movements.
-RECORDED_M = {joint: (0.036 if joint == "hip" else 0.025) / np.sqrt(3) for joint in skeleton.LIMBS}
 GOOD_M = (0.001, 0.1)  # least and most standard deviation of a good place, per axis
 START_M, START_LOGIT, START_OUTLIER_M = 0.02, -2.0, 0.08  # where the fit begins
 RIDGE = 1e-3, 3e-4  # of weights of good places and of outliers, per squared weight and joint
