@@ -299,3 +299,26 @@ def test_the_spread_of_residuals_is_that_of_the_noise():
     made.xy[::10] += 50.0
     assert selection.residual_spread(made) == pytest.approx(0.4, rel=0.2)
     assert selection.residual_spread(networks_made.make()) == selection.LEAST_PX
+
+
+def test_rounding_makes_no_negative_information():
+    """Of a network that leaves a direction nearly open; what is known stays as it is."""
+    rng = np.random.default_rng(0)
+    unit = 10.0 ** rng.uniform(-2, 3, 6)
+    axes, _ = np.linalg.qr(rng.normal(size=(6, 6)))
+    true = axes[:, 1:] * rng.uniform(0.1, 1, 5) @ axes[:, 1:].T
+    noisy = unit[:, None] * (true - 1e-5 * np.outer(axes[:, 0], axes[:, 0])) * unit
+    gradient = unit * (true @ rng.normal(size=6) + 1e-5 * axes[:, 0])
+    found, slope = selection._without_noise(noisy, gradient, unit)
+    scaled = found / np.outer(unit, unit)
+    assert np.linalg.eigvalsh(scaled).min() > -1e-14
+    np.testing.assert_allclose(scaled, true, atol=1e-12)
+    assert abs(axes[:, 0] @ (slope / unit)) < 1e-12
+    np.testing.assert_allclose(axes[:, 1:].T @ ((slope - gradient) / unit), 0, atol=1e-12)
+
+
+def test_columns_that_are_fixed_have_no_information():
+    information, unit = np.diag([4.0, 0.0]), np.array([2.0, 0.0])
+    found, slope = selection._without_noise(information, np.array([1.0, 0.0]), unit)
+    np.testing.assert_allclose(found, information)
+    np.testing.assert_allclose(slope, [1, 0])

@@ -202,10 +202,30 @@ def marginalise(network: Network, images: Sequence[int] | NDArray) -> solver.Qua
     information = np.zeros((len(columns), len(columns)))
     gradient = np.zeros(len(columns))
     at = place[mine]
-    information[np.ix_(at, at)] = normal.information[np.ix_(mine, mine)] - mixed.T @ solved[:, :-1]
+    of_mine = normal.information[np.ix_(mine, mine)]
+    information[np.ix_(at, at)] = of_mine - mixed.T @ solved[:, :-1]
     gradient[at] = normal.gradient[mine] - mixed.T @ solved[:, -1]
-    information = (information + information.T) / 2
-    return solver.Quadratic(images_only(network, images), information, gradient)
+    unit = np.zeros(len(columns))
+    unit[at] = np.sqrt(np.diag(of_mine))
+    return solver.Quadratic(
+        images_only(network, images), *_without_noise(information, gradient, unit)
+    )
+
+
+def _without_noise(
+    information: NDArray, gradient: NDArray, unit: NDArray
+) -> tuple[NDArray, NDArray]:
+    """Return information and gradient without the directions of negative information.
+
+    They differ from none by rounding, which a nearly open network magnifies. `unit` (K,) is the
+    root of each column's information before others were marginalised; 0 of fixed columns.
+    """
+    scale = np.divide(1.0, unit, out=np.zeros_like(unit), where=unit > 0)
+    extent, axes = np.linalg.eigh((information + information.T) / 2 * np.outer(scale, scale))
+    lost = axes[:, extent < 0]
+    known = np.eye(len(unit)) - lost @ lost.T
+    root = unit[:, None] * axes * np.sqrt(np.maximum(extent, 0))
+    return root @ root.T, unit * (known @ (scale * gradient))
 
 
 def with_lens_priors(
