@@ -235,3 +235,21 @@ def test_a_camera_of_more_words_goes_first():
     assert camera_words.told(("far", "left", "serve"), cameras) == ("far_left", ("serve",))
     assert camera_words.told(("serve", "left"), cameras) == ("left", ("serve",))
     assert camera_words.told(("serve",), cameras) == (None, ("serve",))
+
+
+def test_a_recording_of_another_length_is_no_camera_of_a_take():
+    films = *EMPTY, "game1_left", "game1_right", "walk"
+    sides = {"left": "game1_left", "right": "game1_right"}
+    assert takes(*films, "game1_slowmo", game1_slowmo=60.0)[0] == {"game1": sides}
+
+
+def test_a_camera_that_films_the_empty_hall_alone_stays():
+    names = "empty_left", "empty_right", "empty_back", "rally_left", "rally_right", "walk"
+    films = [recording(f"data/north/{name}.mp4") for name in sorted(names)]
+    assert set(session_guess.guess(films).cameras) == {"left", "right", "back"}
+    assert takes(*names)[0] == {"rally": {"left": "rally_left", "right": "rally_right"}}
+
+
+def test_a_walk_that_is_called_so_needs_no_look_in_the_folder_of_its_take():
+    films = [f"{take}/{camera}" for take in ("match", "warmup") for camera in ("left", "right")]
+    assert takes(*films, "match/walk")[1] == []

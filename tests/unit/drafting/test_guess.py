@@ -483,3 +483,12 @@ def test_small_pictures_on_cards_of_sony_are_no_walks_and_no_pictures_of_the_emp
     assert len(found.takes) == 2
     assert not found.walks and not found.static
     assert len(found.unused) == 2
+
+
+def test_a_walk_may_be_in_a_folder_called_calibration():
+    found = guess("match/left.mp4", "match/right.mp4", "calibration/phone.mp4")
+    assert paths(found.walks) == {"calibration_phone": "calibration/phone.mp4"}
+    found = guess("calibration_day/left_rally.mp4", "calibration_day/right_rally.mp4")
+    assert found.cameras == ["left", "right"]
+    found = guess("match/left.mp4", "match/right.mp4", "calibration/left.mp4")
+    assert [r.path for r, _ in found.unused] == ["gym/calibration/left.mp4"]

@@ -180,3 +180,17 @@ def test_a_camera_of_whose_points_several_are_of_another_court_is_named():
     (line,) = checked["warnings"]
     assert line.startswith("camera back: expected its clicks to fit the walk")
     assert "points of another court" in line
+
+
+@pytest.mark.parametrize("fault", ["neighbour", "exchanged"])
+def test_a_turn_that_leaves_no_other_camera_the_points_is_none(fault):
+    """All cameras were clicked on one half of the court: its other end shows nobody's points."""
+    fixed = in_sfm(["side", "back", "corner"])
+    clicks, shift = clicks_of(fixed), np.array([8.0, 0, 0])
+    if fault == "neighbour":
+        clicks["back"] = clicks_of([fixed[1]], xyz=COURT.xyz + shift)["back"]
+    else:
+        clicks["back"] = mirrored(clicks)["back"]
+    half = COURT.xyz[:, 1] < 6.7
+    clicks = {name: np.where(half[:, None], xy, np.nan) for name, xy in clicks.items()}
+    sfm_alignment.refuse_misplaced_cameras(COURT, fixed, clicks)

@@ -48,7 +48,7 @@ class Data:
 class Spread:
     """Covariances (T, D + K, D + K) of coordinates and the shape's lengths.
 
-    Of all errors, and of the keypoints' own noise.
+    Of all errors, and of `Data.noise`.
     """
 
     total: NDArray
@@ -206,7 +206,7 @@ def _linearised(
 ) -> tuple[NDArray, NDArray, NDArray]:
     """Return the normal matrix (T, D, D) and right side (T, D) of the points, and its noise.
 
-    The noise (T, D, D) is the right side's covariance from the keypoints' own errors.
+    The noise (T, D, D) is the right side's covariance from `Data.noise`.
     """
     parts: list[list[NDArray]] = [[], [], []]
     for at in chunks(len(pose.root)):

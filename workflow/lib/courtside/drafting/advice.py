@@ -119,8 +119,10 @@ def doubts(guess: Guess) -> Iterator[str]:
     for walk in guess.walks.values():
         spelled = names.name("_".join(walk.words), "walk")  # as takes are
         said = {*walk.words, *names.words_of([spelled])}
-        taken = any(uncounted(word) in own for word in said) or any(take <= said for take in takes)
-        doubtful = not is_called_walk(walk) if guess.cameras else len(guess.walks) > 1
+        named = is_called_walk(walk)
+        taken = any(uncounted(word) in own for word in said)
+        taken = taken or (not named and any(take <= said for take in takes))
+        doubtful = not named if guess.cameras else len(guess.walks) > 1
         if taken or (doubtful and not takes and walk.kind == "video"):
             yield (
                 f"{walk.path} was taken for a walk; if a fixed camera filmed it, name the camera "

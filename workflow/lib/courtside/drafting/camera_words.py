@@ -56,9 +56,9 @@ def _of_empty(recordings: Iterable[Recording], videos: Sequence[Recording], own:
     films = [r for r in videos if not called(r, STATIC)]
     for walks in (False, True):  # players may walk
         said = {uncounted(w) for r in films if is_called_walk(r) == walks for w in own[r.path]}
-        filming = [tuple(w for w in words if uncounted(w) in said) for words in names]
-        if any(filming) and (len(set(filming)) > 1 or len(set(names)) == 1):
-            return filming
+        kept = [tuple(w for w in words if uncounted(w) in said) for words in names]
+        if any(kept) and (len(set(kept)) > 1 or len(set(names)) == 1):
+            return [own or words for own, words in zip(kept, names, strict=True)]
     return names
 
 
@@ -68,14 +68,18 @@ def _beside(names: Named, videos: Sequence[Recording], own: Words) -> Named:
     A name without other words may also be that of the walking camera, unless one is called so.
     """
     cameras = {"_".join(words): words for words in filter(None, names)}
-    placed = [told(own[r.path], cameras) for r in videos if not called(r, STATIC)]
-    filmed = {words for camera, words in placed if camera}
-    filmed -= set() if any(is_called_walk(r) for r in videos) else {()}
+    placed = [(r, *told(own[r.path], cameras)) for r in videos if not called(r, STATIC)]
+    takes: dict[tuple[str, ...], list[Recording]] = {}
+    for recording, camera, words in placed:
+        if camera and (words or any(is_called_walk(r) for r in videos)):
+            takes.setdefault(words, []).append(recording)
     more: dict[tuple[str, ...], None] = {}
-    for words in (words for camera, words in placed if camera is None):
+    for recording, words in ((r, words) for r, camera, words in placed if camera is None):
         for size in {1, *map(len, cameras.values())}:
             for one in (words[at : at + size] for at in range(len(words) - size + 1)):
-                if told(words, {"": one})[1] in filmed and not WALK & set(map(uncounted, one)):
+                take = takes.get(told(words, {"": one})[1], [])
+                fits = take and lengths_fit([recording, *take])
+                if fits and not WALK & set(map(uncounted, one)):
                     more[one] = None
     return list(more)
 

@@ -1,11 +1,13 @@
 """Guess the cameras, walks and takes of a session from the names of its files."""
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from courtside.drafting import camera_words, names, pairing
 from courtside.drafting.names import distinct, words_of
 from courtside.drafting.recordings import (
     BOARD,
+    CALIBRATION,
     CHANGED,
     D435I,
     DEVICES,
@@ -54,19 +56,22 @@ def guess(recordings: Sequence[Recording]) -> Guess:
 
 def _without_others(found: Guess, recordings: Iterable[Recording]) -> list[Recording]:
     """Leave out what is neither of the empty court, nor of a walk, nor of a take."""
-    kept = []
+    kept, names = [], Counter(recording.parts[-1] for recording in recordings)
     for recording in recordings:
-        if why := _what_else(recording):
+        if why := _what_else(recording, again=names[recording.parts[-1]] > 1):
             found.unused.append((recording, why))
         else:
             kept.append(recording)
     return kept
 
 
-def _what_else(recording: Recording) -> str:
-    """Say why a recording is of no use: a later chapter, of Pose2Sim's making, of a chessboard."""
-    folders = set(words_of(recording.parts[:-1]))
-    ends = set(words_of(recording.parts[-1:])[-1:])
+def _what_else(recording: Recording, *, again: bool) -> str:
+    """Say why a recording is of no use: a later chapter, of Pose2Sim's making, of a chessboard.
+
+    `again`: whether another folder has a file of its name, as where one camera films both.
+    """
+    folders, own = set(words_of(recording.parts[:-1])), words_of(recording.parts[-1:])
+    ends = set(own[-1:])
     if recording.device and recording.device.chapter > 1:
         return (
             f"chapter {recording.device.chapter} of a recording that its camera cut up; join the "
@@ -78,12 +83,15 @@ def _what_else(recording: Recording) -> str:
         return "another program drew keypoints into it; the study needs the recording itself"
     if "thmbnl" in recording.words:
         return "a small picture that a camera of Sony keeps of a video"
-    # `int` may also be an internal rotation
-    board = called(recording, BOARD - {"int"}) and not called(recording, WALK | STATIC)
+    # `int` may also be an internal rotation, and the walk may be in a folder `calibration`
+    board = called(recording, BOARD - {"int"} - CALIBRATION)
+    board = board or bool(CALIBRATION & (folders | set(own) if again else set(own)))
+    board = board and not called(recording, WALK | STATIC)
     if recording.kind == "video" and board:
         return (
             "of a chessboard or a calibration, by its name; a board that several cameras film "
-            "calibrates them (`board: videos`, config/README.md); rename it if it shows a take"
+            "calibrates them (`board: videos`, config/README.md); rename it if it is the walk or "
+            "shows a take"
         )
     if recording.kind == "photo" and board:
         return (

@@ -56,18 +56,18 @@ def _warn(points: Keypoints3D, known: NDArray) -> None:
             footwork.FEET[foot],
             tracks.LEAST_FRAMES,
         )
-    if not known.any():
+    if not (some := known.any(axis=1)).all():
         there = any(skeleton.heel_and_toe(names, side) for side in footwork.FEET)
         log.logger.warning(
             "%s: expected heels and toes of at least one foot in %d frames in a row, found none: "
             "no contacts; %s",
-            ", ".join(points.person_id),
+            ", ".join(points.person_id[~some]),
             tracks.LEAST_FRAMES,
             "film people for longer, with their feet in view of two cameras"
             if there
             else "take a network whose skeleton has them",
         )
-    elif points.rate_hz < hops.LEAST_HZ:
+    if some.any() and points.rate_hz < hops.LEAST_HZ:
         log.logger.warning(
             "%.3g frames per second are few for footwork: stances begin too early and end too late,"
             " by 0.03 s each at 15 frames per second; sigma contains this",

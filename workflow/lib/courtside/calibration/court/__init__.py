@@ -13,6 +13,6 @@ misfits: fitted: the same, and what is wrong with clicks that fit no camera
 place_checks: read, as_court, shifts, check_cameras: the points of a session; places that are
     shifted, mirrored or in another unit
 click_checks: leave_one_out, find_wrong_clicks, inward_shift, inward_shift_of_points, check
-quality: check_cameras, adjust_and_check, check_maps, leave_one_out_errors, expected_cm,
-    expected_volume
+quality: check_cameras, adjust_and_check, check_maps, map_warning, one_place, sunken,
+    leave_one_out_errors, expected_cm, expected_volume
 """

@@ -23,7 +23,7 @@ from courtside.study.errors import InputError
 SUPPORTED = 0.3
 # ASSUME: of the extent of a map. Cameras that a map joined to the wrong end of a symmetric hall
 # were 0.1 to 0.6 % from those opposite, others 40 % or more.
-ONE_PLACE = 0.01
+ONE_PLACE = 0.007
 # ASSUME: of points of a map near a court. In 65 maps at most 9 % were lower; with two cameras
 # clicked on neighbouring courts all were 1 m lower or more.
 SUNKEN_M, BESIDE_M, LEAST_POINTS = 0.2, 3.0, 10

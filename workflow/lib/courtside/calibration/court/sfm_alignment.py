@@ -281,8 +281,9 @@ def _turned(
     """Return the cameras whose clicks fit best after half a turn, these clicks, and their misfit.
 
     The cameras are half of all at most: then the others are turned. The misfit, m, is that before
-    adjustment. It is infinite where the court has no other end, and of two cameras: once their
-    clicks have bent them, these fit after half a turn, too.
+    adjustment. It is infinite of two cameras: once their clicks have bent them, these fit after
+    half a turn, too. It is infinite, too, where the turn leaves fewer than half of the clicks on
+    points that another camera shows: without them any fault would be gone.
     """
     other_end = court.other_end()
     there = other_end >= 0
@@ -298,9 +299,19 @@ def _turned(
     sizes = range(1, min(len(names) // 2, MOST_TURNED) + 1)
     some = [chosen for size in sizes for chosen in combinations(names, size)]
     tried = [{**clicks, **{name: after_turn(name) for name in chosen}} for chosen in some]
-    off_m = [_off_m(court, cameras, one) for one in tried]
+    off_m = [
+        _off_m(court, cameras, one) if _shared(one, who) >= _shared(clicks, who) / 2 else np.inf
+        for who, one in zip(some, tried, strict=True)
+    ]
     best = int(np.argmin(off_m))
     return (some[best], tried[best]), off_m[best]
+
+
+def _shared(clicks: ClickedPoints, chosen: Sequence[str]) -> int:
+    """Return how many clicks of chosen cameras are of points that another camera shows, too."""
+    seen = {name: np.isfinite(np.asarray(xy, float)).all(axis=-1) for name, xy in clicks.items()}
+    both = np.sum(list(seen.values()), axis=0) > 1
+    return int(sum((seen[name] & both).sum() for name in chosen))
 
 
 def _turned_line(names: Sequence[str], found: str) -> str:
