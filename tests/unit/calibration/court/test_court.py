@@ -1,5 +1,6 @@
 """Courts against the rule books' other lengths, and every fault of a court file in one line."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -219,3 +220,13 @@ def test_floor_points_a_centimetre_high_are_floor_for_all_that_uses_them(tmp_pat
     both = (walk_and_lines.of_points(each) for each in (found, flat))
     for one, other in zip(*both, strict=True):
         np.testing.assert_array_equal(one, other)
+
+
+def test_half_a_turn_gives_each_point_the_view_of_its_other_end():
+    badminton = court()
+    places = badminton.xyz[:, :2]
+    np.testing.assert_allclose(badminton.turned(places), badminton.size_m - places, atol=1e-9)
+    moved = badminton.xyz.copy()
+    moved[4] += 0.5
+    lost = np.isnan(replace(badminton, xyz=moved).turned(places)).any(axis=1)
+    assert lost[4] and lost.sum() == 2  # and the point whose other end it was

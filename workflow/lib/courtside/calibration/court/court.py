@@ -57,6 +57,11 @@ class Court:
         apart_m = np.linalg.norm(turned[:, None] - self.xyz, axis=-1)
         return np.where(apart_m.min(axis=1) < ON_EDGE_M, apart_m.argmin(axis=1), -1)
 
+    def turned(self, view: NDArray) -> NDArray:
+        """Return views (P, 2) of points named as if the court were turned by half a turn."""
+        other_end = self.other_end()
+        return np.where((other_end >= 0)[:, None], view[other_end], np.nan)
+
     def indices(self, chosen: str | Sequence[str]) -> NDArray:
         """Return the indices in `points` of a set, by its name, or of some points, (n,) int."""
         names = self.sets[chosen] if isinstance(chosen, str) else chosen

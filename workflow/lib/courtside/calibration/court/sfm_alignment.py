@@ -260,7 +260,7 @@ def refuse_misplaced_cameras(
     pairs = combinations([camera.name for camera in cameras], 2)
     exchanges = {(a, b): {**clicks, a: clicks[b], b: clicks[a]} for a, b in pairs}
     apart_m = [_off_m(court, cameras, one) for one in exchanges.values()]
-    (turned, after_turn), turned_m = _turned(court, cameras, clicks)
+    turned, after_turn, turned_m = _turned(court, cameras, clicks)
     if turned_m < min(apart_m, default=np.inf):
         better_m = _off_m(court, cameras, after_turn, adjust)
         if better_m < most_m:
@@ -277,7 +277,7 @@ def refuse_misplaced_cameras(
 
 def _turned(
     court: Court, cameras: Sequence[Camera], clicks: ClickedPoints
-) -> tuple[tuple[tuple[str, ...], ClickedPoints], float]:
+) -> tuple[tuple[str, ...], ClickedPoints, float]:
     """Return the cameras whose clicks fit best after half a turn, these clicks, and their misfit.
 
     The cameras are half of all at most: then the others are turned. The misfit, m, is that before
@@ -285,26 +285,19 @@ def _turned(
     half a turn, too. It is infinite, too, where the turn leaves fewer than half of the clicks on
     points that another camera shows: without them any fault would be gone.
     """
-    other_end = court.other_end()
-    there = other_end >= 0
     names = [camera.name for camera in cameras]
     if len(names) < 3:
-        return ((), clicks), np.inf
-
-    def after_turn(name: str) -> NDArray:
-        xy = np.full((len(court.points), 2), np.nan)
-        xy[other_end[there]] = np.asarray(clicks[name], float)[there]
-        return xy
-
+        return (), clicks, np.inf
+    after_turn = {name: court.turned(np.asarray(clicks[name], float)) for name in names}
     sizes = range(1, min(len(names) // 2, MOST_TURNED) + 1)
     some = [chosen for size in sizes for chosen in combinations(names, size)]
-    tried = [{**clicks, **{name: after_turn(name) for name in chosen}} for chosen in some]
+    tried = [{**clicks, **{name: after_turn[name] for name in chosen}} for chosen in some]
     off_m = [
         _off_m(court, cameras, one) if _shared(one, who) >= _shared(clicks, who) / 2 else np.inf
         for who, one in zip(some, tried, strict=True)
     ]
     best = int(np.argmin(off_m))
-    return (some[best], tried[best]), off_m[best]
+    return some[best], tried[best], off_m[best]
 
 
 def _shared(clicks: ClickedPoints, chosen: Sequence[str]) -> int:

@@ -69,7 +69,7 @@ class Place:
     def ends(self, at: int) -> list[NDArray]:
         """Return the views (P, 2) px of a camera, and, of either end, as of the other one."""
         view = self.xy[at]
-        return [view, _turned(view, self.court)] if self.either_end else [view]
+        return [view, self.court.turned(view)] if self.either_end else [view]
 
     def n_agreeing(self) -> int:
         """Return how many cameras see the court here."""
@@ -198,7 +198,7 @@ class _Views:
         xyz = world_from_court.points(self.court.xyz)
         chosen = self.xy.copy()
         for at, (camera, view) in enumerate(zip(self.cameras, self.xy, strict=True)):
-            turned = _turned(view, self.court)
+            turned = self.court.turned(view)
             if _off_px(camera, turned, xyz) < _off_px(camera, view, xyz):
                 chosen[at] = turned
         return _Views(self.cameras, chosen, self.court, self.limit_px)
@@ -242,12 +242,6 @@ def _alone(camera: Camera, view: NDArray, court: Court) -> Sim3 | None:
 
 def _is_enough(seen: NDArray, court: Court) -> bool:
     return seen.sum() >= FEWEST and not similarity.is_collinear(court.xyz[seen])
-
-
-def _turned(view: NDArray, court: Court) -> NDArray:
-    """Return views (P, 2) of points named as if the court were turned by half a turn."""
-    other_end = court.other_end()
-    return np.where((other_end >= 0)[:, None], view[other_end], np.nan)
 
 
 def _off_px(camera: Camera, view: NDArray, xyz: NDArray) -> float:
