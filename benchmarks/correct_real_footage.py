@@ -17,12 +17,12 @@ import numpy as np
 import real_footage
 import real_people
 import stated
-from real_people import STAGES
 from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
 from courtside.geometry import camera, triangulation
+from courtside.study.methods import STAGE_WORDS
 
 SESSION = "walk-4cams"
 TAKE = f"{SESSION}/takes/balancing/{{stage}}/file/all-robust/{real_footage.NETWORK}.npz"
@@ -68,7 +68,7 @@ if __name__ == "__main__":
     given = parser.parse_args()
     made = {
         word: real_people.limbs(given.results / TAKE.format(stage=stage))
-        for stage, word in STAGES.items()
+        for stage, word in STAGE_WORDS.items()
     }
     known = camera.read_toml(given.results / SESSION / "calibration" / "file" / "cameras.toml")
     found = rows(made, real_footage.reference(given.recordings))

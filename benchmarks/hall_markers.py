@@ -29,7 +29,6 @@ import marker_system
 import real_people
 import stated
 from many_sessions import copied
-from real_people import STAGES
 from repository import ROOT
 
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
@@ -41,6 +40,7 @@ from courtside.records.cameras import placed_points
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.configuration import yaml_files
 from courtside.study.execution.files import read_json
+from courtside.study.methods import STAGE_WORDS as STAGES
 
 CAMERAS = ("cam02", "cam05", "cam08", "cam13")
 FILES = (

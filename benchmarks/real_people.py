@@ -15,7 +15,6 @@ sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 from courtside.kinematics import joint_angles, shared_errors
 from courtside.records.keypoints import keypoints, skeleton
 
-STAGES = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
 SIDES = ("left", "right")
 PARTS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
 SEGMENTS = {

@@ -115,7 +115,7 @@ rule triangulate:
         step=step("triangulate"),
         sex_of=of_job(takes.sexes),
         fusion=of_job(takes.fusion),
-        recorded=lambda w: not session_of(w).virtual,
+        recorded=of_job(takes.recorded),
     script:
         "../scripts/triangulate.py"
 
@@ -180,7 +180,7 @@ rule fit_skeleton:
         step=of_job(lambda job: job.some("filter_motion", ["max_gap_s"])),
         sex_of=of_job(takes.sexes),
         height_m_of=of_job(takes.stated, "height_m"),
-        recorded=lambda w: not session_of(w).virtual,
+        recorded=of_job(takes.recorded),
     script:
         "../scripts/fit_skeleton.py"
 
@@ -248,7 +248,7 @@ rule measure_kinematics:
         step=of_job(lambda job: job.some("filter_motion", ["max_gap_s"])),
         stage=of_job(takes.measured_stage),
         sex_of=of_job(takes.sexes),
-        recorded=lambda w: not session_of(w).virtual,
+        recorded=of_job(takes.recorded),
     script:
         "../scripts/measure_kinematics.py"
 

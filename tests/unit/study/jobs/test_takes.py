@@ -123,6 +123,10 @@ def test_sexes_are_those_of_a_take_or_of_the_whole_session(job, study):
     assert takes.sexes(one) == {"p1": None}
 
 
+def test_people_are_recorded_or_virtual(job):
+    assert takes.recorded(job(**REAL)) and not takes.recorded(job(**SHOT))
+
+
 def test_what_is_stated_of_persons_is_by_person_of_a_take(job, study):
     assert takes.stated(job(**SHOT), "mass_kg") == {"p1": 74}
     session = study.sessions["players-tiny"]

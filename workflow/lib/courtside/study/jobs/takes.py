@@ -103,6 +103,11 @@ def sexes(job: Job) -> dict[str, str | None]:
     return {name: known[name].sex if known[name].sex in ("m", "f") else None for name in people}
 
 
+def recorded(job: Job) -> bool:
+    """Say whether real people were recorded, not simulated."""
+    return not job.session.virtual
+
+
 def stated(job: Job, key: str) -> dict[str, Any]:
     """Return {person: what the session states under a key} of a take; None where it does not."""
     return {name: getattr(job.session.subjects[name], key) for name in job.take.subjects}
