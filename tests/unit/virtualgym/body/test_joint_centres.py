@@ -16,10 +16,13 @@ BONES = tuple(
     for hinge in joint_centres.HINGES.values()
     for bone in hinge[:3]
 )
+SIDES = (".L", ".R")
 LENGTH_M, ROUND = 0.4, 48
 HALF_WIDTH_M = {"upperleg01": 0.05, "upperarm01": 0.035}
 X_M = {"upperleg01": 0.12, "upperarm01": 0.5}
 HIP_M = 0.18  # half the width over the trochanters
+TALL_M = 1.6
+CAP_M = 0.87  # a shoulder's skin is flat there, above the arm that begins at 0.8
 
 
 def tube(x, top, half_width, middle):
@@ -44,7 +47,7 @@ def tube(x, top, half_width, middle):
 def limbs():
     """Return a figure of four limbs whose middle joints are 15 mm in front of their middles."""
     # Points over the trochanters and the crown, for the height, with a triangle of their own.
-    vertices = [np.array([[HIP_M, 0.79, 0.0], [-HIP_M, 0.79, 0.0], [0, 1.6, 0]])]
+    vertices = [np.array([[HIP_M, 0.79, 0.0], [-HIP_M, 0.79, 0.0], [0, TALL_M, 0]])]
     triangles, heads = [np.array([[0, 1, 2]])], {}
     for suffix, sign in ((".L", 1), (".R", -1)):
         for above, at, below, _ in joint_centres.HINGES.values():
@@ -52,6 +55,10 @@ def limbs():
             points, faces = tube(x, top, HALF_WIDTH_M[above], middle=0.01)
             triangles.append(faces + sum(map(len, vertices)))
             vertices.append(points)
+            if above == "upperarm01":
+                cap = np.array([[-0.1, 0, -0.1], [0.1, 0, -0.1], [0, 0, 0.2]])
+                triangles.append(np.array([[0, 1, 2]]) + sum(map(len, vertices)))
+                vertices.append(cap + np.array([x, CAP_M, 0]))
             places = [[x, top, 0.01], [x, top - LENGTH_M, 0.025], [x, top - 2 * LENGTH_M, 0.01]]
             heads |= dict(zip((above + suffix, at + suffix, below + suffix), places, strict=True))
     skin, points = np.concatenate(triangles), np.concatenate(vertices)
@@ -87,9 +94,17 @@ def test_hips_are_a_quarter_of_the_trochanters_distance_inside_and_7_6_mm_less(l
         )
 
 
+def test_shoulders_lie_on_the_line_of_the_arm_48_mm_of_a_body_of_1_75_m_below_the_skin(limbs):
+    found = joint_centres.anatomical(limbs)
+    for suffix, sign in ((".L", 1), (".R", -1)):
+        deep = CAP_M - 0.048 / 1.75 * TALL_M
+        expected = [sign * X_M["upperarm01"], deep, 0.01]
+        np.testing.assert_allclose(found.head("upperarm01" + suffix), expected, atol=5e-4)
+
+
 def test_other_joints_stay(limbs):
     found = joint_centres.anatomical(limbs)
-    for bone in ("foot.L", "wrist.R", "upperarm01.L"):
+    for bone in ("foot.L", "wrist.R"):
         np.testing.assert_array_equal(found.head(bone), limbs.head(bone))
     assert found.vertices is limbs.vertices
 
@@ -98,6 +113,15 @@ def bend_deg(figure, bones):
     above, at, below = (figure.head(f"{bone}.L") for bone in bones)
     thigh, shank = at - above, below - at
     return np.degrees(np.arccos(thigh @ shank / np.linalg.norm(thigh) / np.linalg.norm(shank)))
+
+
+@pytest.mark.parametrize("name", shapes.BODIES)
+def test_upper_arms_have_the_share_of_the_height_that_those_of_people_have(name):
+    figure, shape = mannequin.figure(name), shapes.BODIES[name]
+    upper = [figure.head("upperarm01" + side) - figure.head("lowerarm01" + side) for side in SIDES]
+    of_people = {"m": 281.7 / 1741, "f": 275.1 / 1735}[shape.sex]  # de Leva 1996, table 4
+    share = np.linalg.norm(upper, axis=1) / shape.height_m / of_people
+    assert (np.abs(share - 1) < 0.085).all()  # the rig's: 0.87 to 0.94
 
 
 @pytest.mark.parametrize("name", shapes.BODIES)

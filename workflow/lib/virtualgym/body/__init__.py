@@ -6,7 +6,8 @@
 - stance: `Stance`, `Proportions`, `joints`, `mirrored`, `moved`
 - pose_bones: `pose`, `Skeleton`, `bent`, `grip`
 - rotations: `swing`, `twist`, `about_axis`, `shares`: of one bone at a time
-- joint_centres: `anatomical`: hips, knees and elbows by landmarks, not by the rig
+- joint_centres: `anatomical`: joints by landmarks, not by the rig
+- arm_lengths: `lengthened`: women's forearms
 - makehuman: `Archive`, `Figure`
 - clothing: `dress`
 - racket: `build`, `place`

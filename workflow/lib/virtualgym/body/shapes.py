@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from courtside.study.errors import InputError
-from virtualgym.body import joint_centres, makehuman, mesh
+from virtualgym.body import arm_lengths, joint_centres, makehuman, mesh
 
 DENSITY_KG_M3 = 1000.0  # ASSUME: whole body with half-filled lungs
 SEXES = {"m": "male", "f": "female"}
@@ -113,8 +113,7 @@ def figure(folder: str | Path, shape: Shape) -> makehuman.Figure:
             f"body of {shape.height_m} m, sex {shape.sex}: expected {shape.mass_kg + lean:.0f} to "
             f"{shape.mass_kg + heavy:.0f} kg, found mass_kg {shape.mass_kg}; choose a mass between"
         )
-    points = targets.points(brentq(excess_kg, 0.0, 1.0, xtol=1e-4))
-    return joint_centres.anatomical(archive.figure(points))
+    return targets.figure(brentq(excess_kg, 0.0, 1.0, xtol=1e-4))
 
 
 class _Targets:
@@ -137,8 +136,13 @@ class _Targets:
             name = f"universal-{sex}-young-averagemuscle-{weight}"
             self.weighed[weight] = self.weighed[weight] + (1 - muscular) * archive.target(name)
 
-    def points(self, weight: float) -> NDArray:
-        """Return the points, dm, for a weight of 0 to 1; 0.5 is MakeHuman's average."""
+    def figure(self, weight: float) -> makehuman.Figure:
+        """Return the body of a weight of 0 to 1; 0.5 is MakeHuman's average."""
+        figure = joint_centres.anatomical(self.archive.figure(self._points(weight)))
+        return arm_lengths.lengthened(figure, self.shape.sex)
+
+    def _points(self, weight: float) -> NDArray:
+        """Return the points of MakeHuman's body, dm."""
         end = "minweight" if weight < 0.5 else "maxweight"
         share = abs(2 * weight - 1)
         added = share * self.weighed[end] + (1 - share) * self.weighed["averageweight"]
@@ -147,8 +151,8 @@ class _Targets:
 
     def mass_kg(self, weight: float) -> float:
         """Return the mass, from the volume of the skin."""
-        skin = self.archive.triangles[~self.archive.is_eye]
-        return DENSITY_KG_M3 * mesh.volume(makehuman.METRES * self.points(weight), skin)
+        figure = self.figure(weight)
+        return DENSITY_KG_M3 * mesh.volume(figure.vertices, figure.skin)
 
     def _height(self, name: str) -> NDArray:
         """Return the height targets' offsets that give the base the shape's height."""

@@ -1,0 +1,62 @@
+"""Forearms as long as those of people: MakeHuman's women have short ones."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from virtualgym.body import rotations
+from virtualgym.body.makehuman import Figure
+
+# The forearms of MakeHuman's women (the seven of `shapes.BODIES`) have 0.132 of their height, those
+# of real women 0.1523 (de Leva 1996, table 4: 264.3 of 1735 mm). With short forearms, their span
+# would be 0.97 of their height; of real women it is 1.02 (ANSUR II, Gordon et al. 2014). Forearms
+# and span of MakeHuman's men are as those of real men, within 3 and 2 %.
+FOREARM = {"m": 1.0, "f": 1.156}
+
+
+def lengthened(figure: Figure, sex: str) -> Figure:
+    """Return the figure with forearms that are longer by `FOREARM` of its sex, "m" or "f".
+
+    Skin and bones are stretched along the forearm; the hand keeps its size. Between two bones the
+    skin is blended as it is when a limb bends.
+    """
+    factor = FOREARM[sex]
+    if factor == 1:
+        return figure
+    stretch = np.tile(np.eye(3), (len(figure.bones), 1, 1))
+    shift = np.zeros((len(figure.bones), 3))
+    for suffix in (".L", ".R"):
+        elbow, wrist = figure.head("lowerarm01" + suffix), figure.head("wrist" + suffix)
+        along = rotations.unit_vector(wrist - elbow)
+        longer = np.eye(3) + (factor - 1) * np.outer(along, along)
+        for at in _from(figure, "lowerarm01" + suffix):
+            is_forearm = figure.bones[at].startswith("lowerarm")
+            stretch[at] = longer if is_forearm else np.eye(3)
+            shift[at] = elbow - longer @ elbow if is_forearm else (factor - 1) * (wrist - elbow)
+    return _moved(figure, stretch, shift)
+
+
+def _from(figure: Figure, bone: str) -> list[int]:
+    """Return the indices of a bone and of all bones that hang on it."""
+    found = [figure.bones.index(bone)]
+    for at, parent in enumerate(figure.parents):  # parents come first
+        if parent in found:
+            found.append(at)
+    return found
+
+
+def _moved(figure: Figure, matrix: NDArray, shift: NDArray) -> Figure:
+    """Return the figure whose bones move by matrices (B, 3, 3) and shifts (B, 3) m."""
+
+    def of_bones(points: NDArray) -> NDArray:
+        return np.einsum("bij,bj->bi", matrix, points) + shift
+
+    blended = figure.weights @ np.concatenate([matrix.reshape(-1, 9), shift], axis=1)
+    vertices = np.einsum("vij,vj->vi", blended[:, :9].reshape(-1, 3, 3), figure.vertices)
+    return replace(
+        figure,
+        vertices=vertices + blended[:, 9:],
+        heads=of_bones(figure.heads),
+        tails=of_bones(figure.tails),
+    )
