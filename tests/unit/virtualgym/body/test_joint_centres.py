@@ -17,7 +17,9 @@ BONES = tuple(
     for bone in hinge[:3]
 )
 SIDES = (".L", ".R")
-LENGTH_M, ROUND = 0.4, 48
+LENGTH_M, ROUND, N_RINGS = 0.4, 48, 86
+ABOVE_M = 0.05  # a limb's skin begins so far above its upper joint
+HALF_DEPTH_M = 0.04
 HALF_WIDTH_M = {"upperleg01": 0.05, "upperarm01": 0.035}
 X_M = {"upperleg01": 0.12, "upperarm01": 0.5}
 HIP_M = 0.18  # half the width over the trochanters
@@ -28,15 +30,15 @@ CAP_M = 0.87  # a shoulder's skin is flat there, above the arm that begins at 0.
 def tube(x, top, half_width, middle):
     """Return vertices and triangles of a limb whose cross-sections are ellipses about `middle`."""
     turn = np.linspace(0, 2 * np.pi, ROUND, endpoint=False)
-    levels = np.linspace(top, top - 2 * LENGTH_M, 81)
+    levels = np.linspace(top + ABOVE_M, top - 2 * LENGTH_M, N_RINGS)
     rings = [
         np.column_stack(
-            [x + half_width * np.cos(turn), np.full(ROUND, y), middle + 0.04 * np.sin(turn)]
+            [x + half_width * np.cos(turn), np.full(ROUND, y), middle + HALF_DEPTH_M * np.sin(turn)]
         )
         for y in levels
     ]
-    at = np.arange(80)[:, None] * ROUND + np.arange(ROUND)
-    beside = np.arange(80)[:, None] * ROUND + np.roll(np.arange(ROUND), -1)
+    at = np.arange(N_RINGS - 1)[:, None] * ROUND + np.arange(ROUND)
+    beside = np.arange(N_RINGS - 1)[:, None] * ROUND + np.roll(np.arange(ROUND), -1)
     triangles = [[at, beside, at + ROUND], [beside, beside + ROUND, at + ROUND]]
     return np.concatenate(rings), np.concatenate(
         [np.stack(corners, axis=-1).reshape(-1, 3) for corners in triangles]
@@ -87,11 +89,16 @@ def test_hips_are_a_quarter_of_the_trochanters_distance_inside_and_7_6_mm_less(l
     found = joint_centres.anatomical(limbs)
     for suffix, sign in ((".L", 1), (".R", -1)):
         rig = limbs.head("upperleg01" + suffix)
-        np.testing.assert_allclose(
-            found.head("upperleg01" + suffix),
-            [sign * (HIP_M / 2 + 0.0076), rig[1], rig[2]],
-            atol=1e-9,
-        )
+        expected = [sign * (HIP_M / 2 + 0.0076), rig[1]]
+        np.testing.assert_allclose(found.head("upperleg01" + suffix)[:2], expected, atol=1e-9)
+
+
+def test_hips_are_two_fifths_of_the_depth_of_the_body_behind_its_front(limbs):
+    found = joint_centres.anatomical(limbs)
+    for suffix in (".L", ".R"):
+        front, back = 0.01 + HALF_DEPTH_M, 0.01 - HALF_DEPTH_M
+        expected = 0.6 * front + 0.4 * back
+        assert found.head("upperleg01" + suffix)[2] == pytest.approx(expected, abs=5e-4)
 
 
 def test_shoulders_lie_on_the_line_of_the_arm_48_mm_of_a_body_of_1_75_m_below_the_skin(limbs):
@@ -115,6 +122,14 @@ def bend_deg(figure, bones):
     return np.degrees(np.arccos(thigh @ shank / np.linalg.norm(thigh) / np.linalg.norm(shank)))
 
 
+def hip_deg(figure):
+    """Return how far a hip is in front of the line from shoulder to knee, seen from the side."""
+    bones = ("upperarm01.L", "upperleg01.L", "lowerleg01.L")
+    shoulder, hip, knee = (figure.head(bone)[1:] for bone in bones)
+    (down, ahead), (further, along) = hip - shoulder, knee - hip
+    return np.degrees(np.arctan2(ahead, -down) - np.arctan2(along, -further))
+
+
 @pytest.mark.parametrize("name", shapes.BODIES)
 def test_upper_arms_have_the_share_of_the_height_that_those_of_people_have(name):
     figure, shape = mannequin.figure(name), shapes.BODIES[name]
@@ -133,6 +148,7 @@ def test_bodies_stand_with_nearly_straight_knees_and_hips_as_people_have_them(na
     leg = joint_centres.HINGES["knee"][:3]
     assert bend_deg(figure, leg) < min(6, bend_deg(rig, leg) - 2)
     # 16.7 cm in the model of a man of 1.80 m (Delp et al. 1990).
+    assert abs(hip_deg(figure)) < 5
     apart_m = np.linalg.norm(figure.head("upperleg01.L") - figure.head("upperleg01.R"))
     assert 0.16 < apart_m < 0.21
     for bone in figure.bones:

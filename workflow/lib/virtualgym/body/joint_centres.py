@@ -2,9 +2,9 @@
 
 The rig's points are chosen for the look of a bent limb. Its knees lie 1 to 2 cm in front of the
 line between the epicondyles and its elbows up to 2 cm behind it, so that straight limbs count as
-bent; the hips of its men are 4 cm too far apart; its shoulders lie deep below the skin. The centres
-here are those of marker systems: the midpoint of the epicondyles, the hip from the trochanters, and
-the shoulder from the skin above it.
+bent; the hips of its men are 4 cm too far apart and 4 cm too far back; its shoulders lie deep below
+the skin. The centres here are those of marker systems: the midpoint of the epicondyles, the hip
+from the trochanters and the depth of the body, and the shoulder from the skin above it.
 """
 
 from dataclasses import replace
@@ -32,6 +32,11 @@ TROCHANTERS_M = 0.02  # half the height of the band in which they are the widest
 # of the distance between the acromia, Rab et al. 2002) below the acromion.
 SHOULDER_DEPTH = 0.0275
 ALONG_M = 0.08  # a shoulder's centre lies so near to the rig's one, along the upper arm
+# ASSUME: a hip is so far behind the front of the body, as a share of the body's depth at the hip.
+# The line between the trochanters, on which [Weinhandl2010] puts it, is at 0.33 to 0.46 in the
+# bodies of the gym; the rig's hips are at 0.60 (men) and 0.48 (women).
+HIP_DEPTH = 0.4
+BESIDE_HIP_M = 0.015  # the depth is that of the skin so near to the hip, to the side
 BODY_SHARE = 0.15  # of the height: farther from the middle of the body there are hands
 
 
@@ -41,8 +46,8 @@ def anatomical(figure: Figure) -> Figure:
     A knee or an elbow is the midpoint of its epicondyles (Cappozzo et al. 1995; Wu et al. 2005),
     over which the skin is widest along the axis of the joint. A hip lies a quarter of the distance
     between the trochanters away from its own one, less what this is too far from it
-    [Weinhandl2010], at the rig's height and depth. A shoulder stays on the line of the upper arm,
-    at `SHOULDER_DEPTH` below the skin.
+    [Weinhandl2010], at the rig's height and at `HIP_DEPTH`. A shoulder stays on the line of the
+    upper arm, at `SHOULDER_DEPTH` below the skin.
     """
     heads = figure.heads.copy()
     for suffix, side in ((".L", 1), (".R", -1)):
@@ -52,6 +57,7 @@ def anatomical(figure: Figure) -> Figure:
             heads[figure.bones.index(at + suffix)] = found
         hip = figure.bones.index(HIP + suffix)
         heads[hip, 0] = side * (_trochanter_m(figure, heads[hip]) / 2 + TOO_FAR_M)
+        heads[hip, 2] = _hip_depth_m(figure, heads[hip])
         shoulder, elbow = (figure.bones.index(bone + suffix) for bone in ARM)
         heads[shoulder] = _shoulder(figure, heads[shoulder], heads[elbow])
     return replace(figure, heads=heads)
@@ -91,6 +97,13 @@ def _trochanter_m(figure: Figure, hip: NDArray) -> float:
     off = np.abs(skin[:, 0])
     band = np.abs(skin[:, 1] - hip[1]) < TROCHANTERS_M
     return float(off[band & (off < BODY_SHARE * figure.height_m)].max())
+
+
+def _hip_depth_m(figure: Figure, hip: NDArray) -> float:
+    """Return z of a hip between front and back of the body at its height."""
+    points = _section(figure, hip, np.array([0.0, 1, 0]))
+    depths = points[np.abs(points[:, 0] - hip[0]) < BESIDE_HIP_M, 2]
+    return float(depths.max() - HIP_DEPTH * np.ptp(depths))
 
 
 def _shoulder(figure: Figure, rig: NDArray, elbow: NDArray) -> NDArray:
