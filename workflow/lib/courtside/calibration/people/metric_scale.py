@@ -23,7 +23,7 @@ from courtside.study.errors import InputError
 
 LEARNED_FROM = 8  # persons: the mean of so few is uncertain, too
 # ASSUME: between networks, and of real bodies: anatomical lengths are 0.77 (de Leva 1996) to 0.78
-# (Winter 2009, fig. 4.1) of the height; those of the persons below are 0.75.
+# (Winter 2009, fig. 4.1) of the height; those of the persons below are 0.77.
 BODIES_SIGMA = 0.015
 STATED_SIGMA_M = 0.01  # of a height stated to the centimetre, with shoes or without
 MEASURED_SIGMA = 0.01  # ASSUME: of the length of one track, share
@@ -55,10 +55,11 @@ class Share:
 
 # ASSUME: by BlazePose heavy with a mirrored second look, for the persons of players-dev,
 # players-dev-stands and players-dev-near: joints as the network sees them, and less its offsets.
-# A network's offsets depend on the direction of view: 0.726, 0.745 and 0.750 in these sessions by
-# their true cameras, without the offsets 0.752, 0.756 and 0.756 (0.745 to 0.756 by people alone).
-SEEN = Share(0.743, 0.015)
-CORRECTED = Share(0.752, 0.008)
+# A network's offsets depend on the direction of view: 0.733, 0.750 and 0.754 in these sessions by
+# their true cameras, without the offsets 0.759, 0.765 and 0.765. ASSUME: by people alone 0.003 less,
+# as measured before the joint centres of the virtual bodies were moved.
+SEEN = Share(0.748, 0.015)
+CORRECTED = Share(0.760, 0.008)
 
 
 @dataclass(frozen=True)
