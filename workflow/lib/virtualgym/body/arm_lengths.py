@@ -10,8 +10,8 @@ from virtualgym.body.makehuman import Figure
 
 # The forearms of MakeHuman's women (the seven of `shapes.BODIES`) have 0.132 of their height, those
 # of real women 0.1523 (de Leva 1996, table 4: 264.3 of 1735 mm). With short forearms, their span
-# would be 0.97 of their height; of real women it is 1.02 (ANSUR II, Gordon et al. 2014). Forearms
-# and span of MakeHuman's men are as those of real men, within 3 and 2 %.
+# would be 0.97 of their height; of real women it is 1.02 (ANSUR II, Gordon et al. 2014). In the
+# mean, forearms and span of MakeHuman's men are as those of real men, within 3 and 1 %.
 FOREARM = {"m": 1.0, "f": 1.156}
 
 
