@@ -34,7 +34,16 @@ def lengthened(figure: Figure, sex: str) -> Figure:
             is_forearm = figure.bones[at].startswith("lowerarm")
             stretch[at] = longer if is_forearm else np.eye(3)
             shift[at] = elbow - longer @ elbow if is_forearm else (factor - 1) * (wrist - elbow)
-    return _moved(figure, stretch, shift)
+
+    def moved(ends: NDArray) -> NDArray:
+        return np.einsum("bij,bj->bi", stretch, ends) + shift
+
+    return replace(
+        figure,
+        vertices=figure.blended(stretch, shift),
+        heads=moved(figure.heads),
+        tails=moved(figure.tails),
+    )
 
 
 def _from(figure: Figure, bone: str) -> list[int]:
@@ -44,19 +53,3 @@ def _from(figure: Figure, bone: str) -> list[int]:
         if parent in found:
             found.append(at)
     return found
-
-
-def _moved(figure: Figure, matrix: NDArray, shift: NDArray) -> Figure:
-    """Return the figure whose bones move by matrices (B, 3, 3) and shifts (B, 3) m."""
-
-    def of_bones(points: NDArray) -> NDArray:
-        return np.einsum("bij,bj->bi", matrix, points) + shift
-
-    blended = figure.weights @ np.concatenate([matrix.reshape(-1, 9), shift], axis=1)
-    vertices = np.einsum("vij,vj->vi", blended[:, :9].reshape(-1, 3, 3), figure.vertices)
-    return replace(
-        figure,
-        vertices=vertices + blended[:, 9:],
-        heads=of_bones(figure.heads),
-        tails=of_bones(figure.tails),
-    )

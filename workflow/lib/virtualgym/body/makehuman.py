@@ -92,9 +92,16 @@ class Figure:
                 turn[at] = turn[at] @ rotations[bone]
             tails[at] = heads[at] + turn[at] @ (self.tails[at] - self.heads[at])
         shift = heads - np.einsum("bij,bj->bi", turn, self.heads)
-        blended = self.weights @ np.concatenate([turn.reshape(-1, 9), shift], axis=1)
-        vertices = np.einsum("vij,vj->vi", blended[:, :9].reshape(-1, 3, 3), self.vertices)
-        return replace(self, vertices=vertices + blended[:, 9:], heads=heads, tails=tails)
+        return replace(self, vertices=self.blended(turn, shift), heads=heads, tails=tails)
+
+    def blended(self, matrix: NDArray, shift: NDArray) -> NDArray:
+        """Return the vertices (V, 3) m when bones move by matrices (B, 3, 3) and shifts (B, 3) m.
+
+        Linear blend skinning: each vertex moves by the weighted mean of the bones that hold it.
+        """
+        mean = self.weights @ np.concatenate([matrix.reshape(-1, 9), shift], axis=1)
+        moved = np.einsum("vij,vj->vi", mean[:, :9].reshape(-1, 3, 3), self.vertices)
+        return moved + mean[:, 9:]
 
 
 @dataclass(frozen=True, eq=False)
