@@ -147,8 +147,8 @@ def test_bodies_stand_with_nearly_straight_knees_and_hips_as_people_have_them(na
     rig = shapes.figure(mannequin.folder(), replace(shape, seed=98))
     leg = joint_centres.HINGES["knee"][:3]
     assert bend_deg(figure, leg) < min(6, bend_deg(rig, leg) - 2)
-    # 16.7 cm in the model of a man of 1.80 m (Delp et al. 1990).
     assert abs(hip_deg(figure)) < 5
+    # 16.7 cm in the model of a man of 1.80 m (Delp et al. 1990).
     apart_m = np.linalg.norm(figure.head("upperleg01.L") - figure.head("upperleg01.R"))
     assert 0.16 < apart_m < 0.21
     for bone in figure.bones:
