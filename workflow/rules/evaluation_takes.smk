@@ -228,6 +228,7 @@ rule evaluate_joint_errors:
         takes=lambda w: evaluation.fitted_takes(STUDY, w.model),
         about=lambda w, output: evaluation.estimated_by(STUDY.sessions, w.model, output.errors_csv),
         step=STUDY.parameters["triangulate"],
+        filtering=STUDY.parameters["filter_motion"],
     script:
         "../scripts/evaluate_joint_errors.py"
 

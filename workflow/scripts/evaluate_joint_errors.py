@@ -12,13 +12,14 @@ from courtside.study.execution import log
 from courtside.study.execution.script import run
 
 
-def main(paths, errors_csv, *, takes, about, step):
+def main(paths, errors_csv, *, takes, about, step, filtering):
     table = joint_correction.read(paths.offsets) if paths.offsets else None
     joints, parts = skeleton.read(paths.skeleton), []
     for seen, sex_of, truth in error_fit.footage_with_truth(takes):
         for count in range(2, len(seen) + 1):
             for used in combinations(seen, count):
-                parts.append(error_fit.joints_of(used, joints, sex_of, table, truth, step))
+                given = used, joints, sex_of, table, truth, step, filtering
+                parts.append(error_fit.joints_of(*given))
     columns, error, covariance, weight = map(np.concatenate, zip(*parts, strict=True))
     log.logger.info("joints: %d", len(columns))
     model = joint_errors.fit(columns, error, covariance, weight)

@@ -19,6 +19,7 @@ from fixtures.people import found as people_found
 from fixtures.people import true_motion, walker
 
 OPTIONS = {**scene.NEAR, "fix_sides": False}
+FILTERING = {"max_gap_s": 0.2, "order": 4, "cutoff_hz": dict.fromkeys(walker.SKELETON.groups, 6.0)}
 MOVED_M, LAST = np.array([[0.02], [0], [0]]), np.array([[0, 0, 0, 1]])
 OFFSETS = Path(__file__).parents[3] / "config" / "joint_offsets" / "blazepose-full.csv"
 
@@ -34,13 +35,16 @@ def test_errors_are_those_beside_the_known_offset():
     true = record.xyz - np.nan_to_num(joint_correction.offsets(record, table, {"p1": "m"}, cameras))
     truth = true_motion.Truth(record.joints, record.person_id, record.time_s, true)
     seen = [Footage(c, view, Clock()) for c, view in zip(cameras, views, strict=True)]
-    given = walker.SKELETON, {"p1": "m"}, table, truth, OPTIONS
+    given = walker.SKELETON, {"p1": "m"}, table, truth, OPTIONS, FILTERING
     columns, error, covariance, weight = error_fit.joints_of(seen, *given)
     frames = range(0, n_frames, round(record.rate_hz / error_fit.MOST_HZ))
     n = len(frames) * len(JOINTS)
     assert len(frames) < n_frames
     assert columns.shape == (n, len(joint_errors.SIGNS)) and covariance.shape == (n, 3, 3)
     assert np.median(np.linalg.norm(error, axis=1)) < 0.02  # of noise; offsets are up to 0.1
+    raw = error_fit.triangulated(seen, walker.SKELETON, ["p1"], OPTIONS)
+    variances = [np.trace(one, axis1=-2, axis2=-1) for one in (covariance, raw.covariance_2d)]
+    assert np.nanmedian(variances[0]) < 0.8 * np.nanmedian(variances[1])  # the joints are filtered
     assert (weight == error_fit.WEIGHT[3]).all()
     assert (error_fit.joints_of(seen[:2], *given)[3] == error_fit.WEIGHT[2]).all()
     none = *given[:2], None, *given[3:]  # of a network without known offsets

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+import scipy
 
 from courtside.reconstruction import error_signs, joint_errors
 from courtside.records.keypoints import keypoints
@@ -73,11 +74,22 @@ def test_limbs_joints_are_stated_and_others_stay_unknown(monkeypatch):
     stated = np.isfinite(record.covariance_2d[:, :, at]).all(axis=(-2, -1))
     np.testing.assert_array_equal(np.isfinite(found.outlier[:, :, at]), stated)
     good, share = model.of(joint_errors.design(signs, list(record.joints)))
-    variance = joint_errors.STATED_GOOD * (1 - share) * good
-    variance = variance + joint_errors.STATED_OUTLIER * share * model.sigma_m**2
+    variance = joint_errors.stated_variance(good, share, model.sigma_m**2)
     expected = np.where(stated, variance, np.nan)[..., None, None] * np.eye(3)
     np.testing.assert_allclose(found.covariance_network[:, :, at], expected)
     np.testing.assert_array_equal(found.xyz, record.xyz)
+
+
+def test_beyond_the_stated_distance_are_few_errors_of_the_mixture():
+    good = np.array([1e-6, 2e-5, 4e-4, 1e-2])[:, None]
+    share, outlier = np.array([0.0, 1e-3, 0.01, 0.02, 0.1, 0.5, 0.9, 1.0]), 0.08
+    variance = joint_errors.stated_variance(good, share, outlier)
+    rest = 1 - joint_errors.SHARE_HELD
+    beyond = scipy.stats.chi2(3).ppf(joint_errors.SHARE_HELD) * variance
+    tails = (scipy.stats.chi2(3).sf(beyond / v) for v in (good, outlier))
+    tail = (1 - share) * next(tails) + share * next(tails)
+    assert (tail >= 0.999 * rest).all() and (tail <= 2 * rest).all()
+    np.testing.assert_allclose(variance[:, [0, -1]], np.hstack([good, np.full((4, 1), outlier)]))
 
 
 def test_recorded_people_have_the_published_difference_of_two_systems_on_top():

@@ -1,7 +1,8 @@
 """What joint offsets and errors are fitted on: development players, by the true cameras.
 
 An error of the cameras moves all joints of a session: fitted by clicked cameras, it would be taken
-for the network's, and be carried into every other hall. Errors are fitted with fewer cameras, too.
+for the network's, and be carried into every other hall. Errors are fitted with fewer cameras, too,
+and on filtered joints: they are those that a filter does not remove.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -14,6 +15,8 @@ from numpy.typing import NDArray
 
 from courtside.evaluation import joints
 from courtside.evaluation.joints import Truth
+from courtside.geometry.camera import Camera
+from courtside.kinematics import cutoffs, skeleton_filter
 from courtside.reconstruction import error_signs, fusion, joint_correction, joint_errors
 from courtside.reconstruction.joint_correction import Clip
 from courtside.records.cameras import footage
@@ -80,28 +83,49 @@ def joints_of(
     table: pd.DataFrame | None,
     truth: Truth,
     options: Mapping[str, Any],
+    filtering: Mapping[str, Any],
 ) -> tuple[NDArray, NDArray, NDArray, NDArray]:
     """Return what `joint_errors.fit` needs of one take and set of cameras.
 
-    Columns (N, K), errors less the network's offset (N, 3) m, covariance (N, 3, 3) m2 and weights
-    (N,) of the limbs' joints that are placed and true. `table` holds the offsets; None, where a
-    network has none, leaves them in the errors. `options` are those of the triangulation.
+    Columns (N, K), errors of filtered joints less the network's offset (N, 3) m, covariance
+    (N, 3, 3) m2 of their noise and weights (N,) of the limbs' joints that are placed and true.
+    `table` holds the offsets; None, where a network has none, leaves them in the errors. `options`
+    are those of the triangulation, `filtering` those of `filter_motion`.
     """
     raw = triangulated(seen, skeleton, list(sex_of), options)
     views, clocks = [one.view for one in seen], [one.clock for one in seen]
     xy, score = error_signs.keypoints_used(views, clocks, raw, skeleton)
     cameras = [one.camera for one in seen]
     signs = error_signs.of_points(cameras, raw, xy, score, skeleton)
-    placed = raw
-    if table is not None:
-        placed = replace(raw, xyz=raw.xyz - joint_correction.offsets(raw, table, sex_of, cameras))
+    placed = _filtered(raw, skeleton, filtering, table, sex_of, cameras)
     names, error, _ = joints.errors(placed, truth.joints.tolist(), joints.true_places(raw, truth))
     error = error[:, :, [names.index(joint) for joint in limbs.JOINTS]]
     at = [raw.joints.tolist().index(joint) for joint in limbs.JOINTS]
-    covariance = raw.covariance_2d[:, :, at]
+    covariance = placed.covariance_2d[:, :, at]
     columns = joint_errors.design(signs, raw.joints.tolist())
     used = np.zeros(error.shape[:-1], dtype=bool)
     used[:, thin(raw)] = True
+    used &= np.isfinite(raw.xyz[:, :, at]).all(axis=-1)  # filled gaps have no signs
     known = used & np.isfinite(error).all(axis=-1) & np.isfinite(covariance).all(axis=(-2, -1))
     weight = np.full(int(known.sum()), WEIGHT.get(len(seen), 1.0))
     return columns[known], error[known], covariance[known], weight
+
+
+def _filtered(
+    raw: Keypoints3D,
+    skeleton: Skeleton,
+    step: Mapping[str, Any],
+    table: pd.DataFrame | None,
+    sex_of: Mapping[str, str | None],
+    cameras: Sequence[Camera],
+) -> Keypoints3D:
+    """Return the skeletons of a take, less the offsets of a table, filtered as the study does."""
+    points = skeleton_filter.prepare(raw, step["max_gap_s"])
+    chosen = cutoffs.by_group(
+        points, skeleton, step["cutoff_hz"], step["order"], path="development take"
+    )
+    cutoff_hz = skeleton.by_group({group: choice.cutoff_hz for group, choice in chosen.items()})
+    if table is not None:
+        offset = joint_correction.offsets(points, table, sex_of, cameras)
+        points = replace(points, xyz=points.xyz - offset)
+    return skeleton_filter.smooth(points, cutoff_hz, step["order"])

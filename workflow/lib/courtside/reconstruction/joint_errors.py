@@ -27,11 +27,13 @@ from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.errors import InputError, StrPath, reading
 
 OUTLIER_M = 0.1  # an error above it is an outlier's: half the length of a forearm
-# Variances stated over variances fitted, of good places and of outliers. Bodies that are not in the
-# fit have more outliers than the weights say, and an outlier's ellipsoid is too small by its share.
-# Chosen on development bodies, each left out of the fit, so that 90 % ellipsoids hold 60 % or more
-# of the errors above `OUTLIER_M` with two, three and four views (docs/measured/joints.md).
-STATED_GOOD, STATED_OUTLIER = 0.5, 2.0
+# The stated normal distribution holds this share of the mixture's errors within the same distance
+# as the mixture does: most joints keep the narrow width of good places, and one with an outlier's
+# probability of a few percent gets a wide one. Bodies that are not in the fit have more outliers
+# than the weights say, therefore it is more than the usual 90 %. Chosen on development bodies, each
+# left out of the fit, so that 90 % ellipsoids hold well above 60 % of the errors above `OUTLIER_M`
+# with two, three and four views (docs/measured/joints.md).
+SHARE_HELD = 0.985
 GOOD_M = (0.001, 0.1)  # least and most standard deviation of a good place, per axis
 START_M, START_LOGIT, START_OUTLIER_M = 0.02, -2.0, 0.08  # where the fit begins
 RIDGE = 1e-3, 3e-4  # of weights of good places and of outliers, per squared weight and joint
@@ -96,17 +98,30 @@ def state(
     known = np.isfinite(covariance).all(axis=(-2, -1))
     outlier, network = points.outlier.copy(), points.covariance_network.copy()
     outlier[:, :, at] = np.where(known, (1 - share) * beyond[0] + share * beyond[1], np.nan)
-    variance = STATED_GOOD * (1 - share) * good + STATED_OUTLIER * share * model.sigma_m**2 + more
-    variance = np.where(known, variance, np.nan)
+    variance = np.where(known, stated_variance(good, share, model.sigma_m**2) + more, np.nan)
     network[:, :, at] = variance[..., None, None] * np.eye(3)
     return replace(points, outlier=outlier, covariance_network=network)
+
+
+def stated_variance(good: NDArray, share: NDArray, outlier: float) -> NDArray:
+    """Return the variance (N,) m2 per axis of the normal distribution stated for a mixture.
+
+    `good` (N,) m2 is the variance of good places, `share` (N,) the probability of an outlier,
+    `outlier` m2 its variance. Beyond the distance within which the stated distribution has
+    `SHARE_HELD`, good places alone and outliers alone have at most the rest.
+    """
+    rest = 1 - SHARE_HELD
+    parts = ((1 - share, good), (share, outlier))
+    squares = [v * scipy.special.chdtri(3, rest / np.maximum(p, rest)) for p, v in parts]
+    return np.maximum(*squares) / scipy.special.chdtri(3, rest)
 
 
 def fit(columns: NDArray, error: NDArray, covariance: NDArray, weight: NDArray) -> Model:
     """Fit a model to errors (N, 3) m of joints, less the network's offset, by likelihood.
 
-    `columns` (N, K) are of `design`, `covariance` (N, 3, 3) m2 the keypoints' own, `weight` (N,)
-    how much each joint counts. A `ValueError` if there are fewer joints than weights.
+    The joints are filtered, because the model is that of errors which a filter does not remove.
+    `columns` (N, K) are of `design`, `covariance` (N, 3, 3) m2 that of the keypoints' noise,
+    `weight` (N,) how much each joint counts. A `ValueError` if there are fewer joints than weights.
     """
     if len(columns) < 2 * len(SIGNS):
         raise ValueError(f"expected at least {2 * len(SIGNS)} joints, found {len(columns)}")
