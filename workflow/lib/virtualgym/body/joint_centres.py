@@ -83,8 +83,10 @@ def _epicondyles(
 def _section(figure: Figure, place: NDArray, normal: NDArray) -> NDArray:
     """Return the points (N, 3) where edges of the skin cross a plane."""
     height = (figure.vertices - place) @ normal
-    edges = figure.skin[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
-    first, second = edges[(height[edges] > 0).sum(axis=1) == 1].T
+    above, skin = height > 0, figure.skin
+    first, second = skin.ravel(), np.roll(skin, -1, axis=1).ravel()
+    crossed = above[first] != above[second]
+    first, second = first[crossed], second[crossed]
     share = height[first] / (height[first] - height[second])
     return figure.vertices[first] + share[:, None] * (
         figure.vertices[second] - figure.vertices[first]
