@@ -199,8 +199,8 @@ def flexion(three, true_s, fit, points):
 def interval(error, rate_hz):
     """Return n, RMSE and its 95 % interval of errors (2, T) by blocks of frames drawn again."""
     known = np.isfinite(error)
-    drawn = moving_blocks.frames(error.shape[1], round(BLOCK_S * rate_hz))
-    again = np.sqrt(np.nanmean(error[:, drawn] ** 2, axis=(0, 2)))
+    counts = moving_blocks.counts([error.shape[1]], [round(BLOCK_S * rate_hz)])
+    again = np.sqrt((np.nan_to_num(error) ** 2 @ counts.T).sum(axis=0) / (known @ counts.T).sum(0))
     ends = np.percentile(again, [2.5, 97.5])
     return int(known.sum()), float(np.sqrt(np.nanmean(error**2))), *ends.tolist()
 

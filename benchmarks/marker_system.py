@@ -174,6 +174,6 @@ def _summary(error: NDArray, covariance: NDArray, block: int) -> dict[str, Any]:
 
 def _drawn(distance: NDArray, block: int) -> list[NDArray]:
     """Return the distances, of (T, J), of takes resampled by blocks of frames."""
-    frames = moving_blocks.frames(len(distance), block)
-    known = np.isfinite(distance)
-    return [distance[one][known[one]] for one in frames if known[one].any()]
+    counts = moving_blocks.counts([len(distance)], [block])
+    drawn = (np.repeat(distance, often, axis=0) for often in counts)
+    return [one[np.isfinite(one)] for one in drawn if np.isfinite(one).any()]

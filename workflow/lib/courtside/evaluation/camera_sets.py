@@ -71,9 +71,9 @@ def gains(
     missing; of one take, at the same times. `pairs` are ours, and what it is compared with.
     Errors of neighbouring frames are much alike, therefore blocks of `block_s` are resampled.
 
-    Moving-block bootstrap, percentiles (Davison & Hinkley 1997, sec. 8.2.3), without wrap-around.
-    With 20 blocks, and errors that last for half a block, an interval holds the median in 90 % of
-    takes and the 95 % quantile in 85 %; with 60 blocks in 93 and 91 %.
+    Moving-block bootstrap, percentiles (`statistics.moving_blocks`). With 20 blocks, and errors
+    that last for half a block, an interval holds the median in 92 % of takes and the 95 % quantile
+    in 84 %; with 60 blocks in 92 and 89 %.
     """
     rows = []
     for ours, than in pairs:
@@ -133,9 +133,10 @@ def _intervals(one: NDArray, other: NDArray, block: int) -> dict[str, float]:
     n_frames = one.shape[1]
     if n_frames < 4 * block:
         return {}
-    drawn = moving_blocks.frames(n_frames, block)
-    found = np.empty((len(drawn), 2))
-    for replicate, at in zip(found, drawn, strict=True):
+    counts = moving_blocks.counts([n_frames], [block])
+    found = np.empty((len(counts), 2))
+    for replicate, often in zip(found, counts, strict=True):
+        at = np.repeat(np.arange(n_frames), often)
         known = np.isfinite(one[:, at])
         both = one[:, at][known], other[:, at][known]
         replicate[:] = _difference(*both) if known.any() else np.nan

@@ -7,5 +7,5 @@ autocorrelation: `share`, `interval`, `frames_per_trial`, `covariance_of_sum`, `
 intervals: `bootstrap`: of averages over halls, whose trials share pictures and persons
 normal_errors: `mahalanobis`, `ellipsoid`, `one_more`, `decimals`, and factors of a standard
     deviation
-moving_blocks: `frames`, `counts`: takes drawn again, for intervals
+moving_blocks: `counts`: takes drawn again, for intervals
 """

@@ -8,24 +8,13 @@ from numpy.typing import NDArray
 REPLICATES = 1000  # usual for percentile intervals (Davison & Hinkley 1997)
 
 
-def frames(count: int, block: int, *, seed: int = 0) -> NDArray:
-    """Return the frames (`REPLICATES`, count) of a take of `count` frames drawn again in blocks.
-
-    Moving blocks of `block` frames, or of all where there are fewer, without wrap-around (Davison &
-    Hinkley 1997, sec. 8.2.3).
-    """
-    block = min(block, count)
-    rng = np.random.default_rng(seed)
-    starts = rng.integers(count - block + 1, size=(REPLICATES, -(-count // block)))
-    return (starts[..., None] + np.arange(block)).reshape(REPLICATES, -1)[:, :count]
-
-
 def counts(lengths: Sequence[int], blocks: Sequence[int]) -> NDArray:
     """Return how often each frame (`REPLICATES`, T) of some takes is drawn, all frames alike.
 
-    Blocks, of `blocks` frames in each take, are drawn from all takes together, with wrap-around
-    within the take: each take drawn by itself would hide how takes differ, and blocks that end with
-    it would leave out its ends.
+    Moving blocks, of `blocks` frames in each take, or of all where there are fewer, are drawn from
+    all takes together, with wrap-around within the take (Davison & Hinkley 1997, sec. 8.2.3): each
+    take drawn by itself would hide how takes differ, and blocks that end with it would leave out
+    its ends.
     """
     blocks = [min(pair) for pair in zip(blocks, lengths, strict=True)]
     share = np.repeat(1 / np.array(blocks), lengths)
