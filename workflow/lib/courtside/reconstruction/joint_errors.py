@@ -103,14 +103,16 @@ def state(
     return replace(points, outlier=outlier, covariance_network=network)
 
 
-def stated_variance(good: NDArray, share: NDArray, outlier: float) -> NDArray:
+def stated_variance(
+    good: NDArray, share: NDArray, outlier: float, held: float = SHARE_HELD
+) -> NDArray:
     """Return the variance (N,) m2 per axis of the normal distribution stated for a mixture.
 
     `good` (N,) m2 is the variance of good places, `share` (N,) the probability of an outlier,
-    `outlier` m2 its variance. Beyond the distance within which the stated distribution has
-    `SHARE_HELD`, good places alone and outliers alone have at most the rest.
+    `outlier` m2 its variance. Beyond the distance within which the stated distribution has the
+    share `held`, good places alone and outliers alone have at most the rest.
     """
-    rest = 1 - SHARE_HELD
+    rest = 1 - held
     parts = ((1 - share, good), (share, outlier))
     squares = [v * scipy.special.chdtri(3, rest / np.maximum(p, rest)) for p, v in parts]
     return np.maximum(*squares) / scipy.special.chdtri(3, rest)

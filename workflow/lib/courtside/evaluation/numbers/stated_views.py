@@ -18,6 +18,14 @@ SHOWN = {
         "joints": "{view.n}",
         "with": "{view.command}",
     },
+    "stated-left-out": {
+        "stated normal distribution": "{row}",
+        "two views": "{two}",
+        "three views": "{three}",
+        "four views": "{four}",
+        "joints, four views": "{four.n}",
+        "with": "{four.command}",
+    },
     "low-scores": {
         "limb joints, median / 95 % / 99 %, mm": "{row}",
         "without views of low scores": "{without}",
