@@ -490,14 +490,15 @@ def test_corrected_skeletons_are_filtered_last():
     np.testing.assert_array_equal(done.covariance_2d, before.covariance_2d)
 
 
-def test_a_correction_takes_the_offset_and_its_scatter_out_of_what_is_unknown():
+@pytest.mark.parametrize("sigma_m", [0.05, 0.002], ids=["above_the_scatter", "below_it"])
+def test_a_correction_takes_the_offset_and_its_scatter_out_of_what_is_unknown(sigma_m):
     rows = joint_correction.read(CONFIG / "joint_offsets" / "blazepose-full.csv")
     time_s, neck = footwork.neck(30.0, 2, seed=3)
     raw = footwork.record(footwork.body(neck, time_s)[0], time_s, 0.0, 0.0, np.random.default_rng())
     cameras, _ = footwork.cameras(90)
     offset = joint_correction.offsets(raw, rows, {"p1": "m"}, cameras)
     network = np.full((*raw.xyz.shape, 3), np.nan)
-    network[..., :, :] = 0.05**2 * np.eye(3)
+    network[..., :, :] = sigma_m**2 * np.eye(3)
     raw = replace(raw, covariance_network=network, offset=offset)
     done = joint_correction.correct(raw, rows, {"p1": "m"}, cameras)
     at = [list(raw.joints).index(name) for name in JOINTS]

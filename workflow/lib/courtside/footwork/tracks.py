@@ -8,7 +8,8 @@ import scipy
 from numpy.typing import NDArray
 
 from courtside.geometry import interpolation
-from courtside.kinematics import filtering
+from courtside.kinematics import filtering, shared_errors
+from courtside.kinematics.shared_errors import NETWORK_SHARE
 from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
 
@@ -75,9 +76,9 @@ def tracks(
 def _variance(points: Keypoints3D, person: int, chosen: list[int], side: str) -> NDArray:
     """Return the variance (T, 2, 3) m2 of heel and toe in each frame, per axis.
 
-    Beside the keypoints' noise: what the ankle's own error exceeds `USUAL_M` by. The network's
-    errors are stated for limb joints alone, and a network that takes one foot for the other moves
-    the whole foot.
+    Beside the keypoints' noise: what the ankle's own error exceeds `USUAL_M` by, of which the same
+    share counts as in other measures. The network's errors are stated for limb joints alone, and a
+    network that takes one foot for the other moves the whole foot.
     """
     noise = np.diagonal(points.covariance_2d[person][:, chosen], axis1=2, axis2=3)
     found = np.nan_to_num(noise, nan=UNKNOWN_M**2)
@@ -85,7 +86,7 @@ def _variance(points: Keypoints3D, person: int, chosen: list[int], side: str) ->
     if f"{side}_ankle" not in names:
         return found
     ankle = points.covariance_network[person][:, names.index(f"{side}_ankle")]
-    error = np.nan_to_num(np.trace(ankle, axis1=1, axis2=2) / 3)
+    error = NETWORK_SHARE * np.nan_to_num(shared_errors.variances(ankle))
     return found + np.maximum(error - USUAL_M**2, 0.0)[:, None, None]
 
 

@@ -92,10 +92,12 @@ def correct(
     `cameras` are those of the record, needed for offsets that depend on the view. `sex_of` gives
     "m", "f" or None for persons; for others the mean of both is used. Joints without a row stay. A
     joint's offset needs shoulders, hips and the joint's own limb; if one of them is missing the
-    joint keeps its place and its offset. The square of `sigma_m`, times the person's size, is added
-    to the `covariance_2d` of all these joints, moved or not, and taken out of `covariance_network`,
-    which contains it: `keep` must not take a joint that could not be corrected for the more certain
-    one. Where the trunk leans further than in the fit, `LEANING_M` is added in the same way.
+    joint keeps its place and its offset. `covariance_network` contains the square of `sigma_m`,
+    times the person's size, or less where it is smaller itself: this part is moved to the
+    `covariance_2d` of all these joints, moved or not, because `keep` must not take a joint that
+    could not be corrected for the more certain one. Where `covariance_network` is not stated, it is
+    added in full. Where the trunk leans further than in the fit, `LEANING_M` is added to
+    `covariance_2d`.
     """
     return _corrected(points, table, offsets(points, table, sex_of, cameras), _sizes(points))
 
@@ -120,9 +122,10 @@ def _corrected(
         at = list(points.joints).index(f"{side}_{joint}")
         sigma_m = table.loc[table["joint"] == joint, "sigma_m"].iloc[0]
         scatter = np.square(sigma_m * sizes)[:, None, None, None]
-        covariance[:, :, at] += (scatter + leaning) * np.eye(3)
         variance = np.trace(network[:, :, at], axis1=-2, axis2=-1)[..., None, None] / 3
-        network[:, :, at] = np.maximum(variance - scatter, 0.0) * np.eye(3)
+        contained = np.fmin(scatter, variance)  # in what is stated; all, where nothing is
+        covariance[:, :, at] += (contained + leaning) * np.eye(3)
+        network[:, :, at] = (variance - contained) * np.eye(3)
     return replace(
         points,
         xyz=points.xyz - np.nan_to_num(moved),
