@@ -45,27 +45,6 @@ def test_posteriors_are_those_of_all_paths_of_states():
     np.testing.assert_allclose(found, total / total.sum(axis=1, keepdims=True), rtol=1e-9)
 
 
-def test_a_standing_foot_that_the_network_takes_for_the_other_still_stands_if_that_is_stated():
-    points, feet = walking_feet.record(walking_feet.gait(), 5.0)
-    plant = feet["left"].plants[3]
-    wrong = np.flatnonzero(abs(points.time_s - (plant.land_s + plant.off_s) / 2 + 0.06) < 0.07)
-    names, xyz, network = points.joints.tolist(), points.xyz.copy(), points.covariance_network
-    foot = [names.index(f"left_{part}") for part in ("heel", "foot_index", "ankle")]
-    other = [names.index(f"right_{part}") for part in ("heel", "foot_index", "ankle")]
-    share = 0.25 * np.sin(np.linspace(0, np.pi, len(wrong)))[:, None, None]
-    xyz[0, wrong[:, None], foot] += share * (xyz[0, wrong[:, None], other] - xyz[0, wrong][:, foot])
-    stated = np.nan_to_num(network)
-    stated[0, wrong, foot[2]] = 0.28**2 * np.eye(3)  # of an ankle that is surely an outlier
-    stands = []
-    for covariance in (np.zeros_like(stated), stated):
-        own = replace(points, xyz=xyz, covariance_network=covariance)
-        (track,), _ = tracks.tracks(own, 0, "left", walking_feet.CUTOFFS)
-        inside = (track.time_s > plant.land_s + 0.04) & (track.time_s < plant.off_s - 0.06)
-        stands.append((contact.probability(track)[inside, 0] > 0.5).mean())
-    assert stands[0] < 0.9
-    assert stands[1] == 1.0
-
-
 def test_a_toe_that_is_seen_too_high_while_the_heel_is_up_still_stands(monkeypatch):
     points, feet = walking_feet.record(walking_feet.gait(stance_s=0.5), 5.0)
     xyz, toe = points.xyz.copy(), points.joints.tolist().index("left_foot_index")

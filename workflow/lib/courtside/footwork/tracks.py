@@ -8,8 +8,7 @@ import scipy
 from numpy.typing import NDArray
 
 from courtside.geometry import interpolation
-from courtside.kinematics import filtering, shared_errors
-from courtside.kinematics.shared_errors import NETWORK_SHARE
+from courtside.kinematics import filtering
 from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
 
@@ -22,9 +21,6 @@ STANDING_SHARE = 0.25  # ASSUME: quantile of a slow point's heights: a heel ofte
 HIGHEST_M = 0.2
 LEAST_FRAMES = 9  # ASSUME: of a run of known frames in which contact is looked for
 UNKNOWN_M = 0.03  # ASSUME: standard deviation per axis where the keypoints state none
-# Standard deviation per axis of the network's error of an ankle, up to which it is that of a foot
-# that the network sees well, nearly constant, and does not count. Chosen on `players-dev`.
-USUAL_M = 0.03
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,27 +63,11 @@ def tracks(
     known = np.isfinite(points.xyz[person][:, chosen]).all(axis=(1, 2))
     runs = [run for run in filtering.runs(known) if run[1] - run[0] >= LEAST_FRAMES]
     own_hz = max(cutoff_hz[joint] for joint in chosen)
-    variance = _variance(points, person, chosen, side)
+    noise = np.diagonal(points.covariance_2d[person][:, chosen], axis1=2, axis2=3)
+    variance = np.nan_to_num(noise, nan=UNKNOWN_M**2)
     found = [_track(points, person, chosen, slice(*run), own_hz, variance) for run in runs]
     floor = _floor(found)
     return [replace(one, height=one.place[..., 2] - floor) for one in found], floor
-
-
-def _variance(points: Keypoints3D, person: int, chosen: list[int], side: str) -> NDArray:
-    """Return the variance (T, 2, 3) m2 of heel and toe in each frame, per axis.
-
-    Beside the keypoints' noise: what the ankle's own error exceeds `USUAL_M` by, of which the same
-    share counts as in other measures. The network's errors are stated for limb joints alone, and a
-    network that takes one foot for the other moves the whole foot.
-    """
-    noise = np.diagonal(points.covariance_2d[person][:, chosen], axis1=2, axis2=3)
-    found = np.nan_to_num(noise, nan=UNKNOWN_M**2)
-    names = points.joints.tolist()
-    if f"{side}_ankle" not in names:
-        return found
-    ankle = points.covariance_network[person][:, names.index(f"{side}_ankle")]
-    error = NETWORK_SHARE * np.nan_to_num(shared_errors.variances(ankle))
-    return found + np.maximum(error - USUAL_M**2, 0.0)[:, None, None]
 
 
 def _track(
