@@ -5,7 +5,8 @@
 RECORDINGS is a folder with OpenPose's keypoints of the same videos (`openpose_body25b/`), which are
 triangulated by the study's mended cameras, and with `trc/Balancing_for_IK.trc`, which Pose2Sim's
 demonstration made from them by the faulty file: another markerless result with other joint
-definitions, not truth. Writes docs/numbers/real_footage.csv, a source of docs/make_tables.py.
+definitions, not truth. How often the stated intervals of the corrected angles hold OpenPose's is
+counted, too. Writes docs/numbers/real_footage.csv, a source of docs/make_tables.py.
 """
 
 import argparse
@@ -13,6 +14,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 import real_footage
 import real_people
@@ -22,10 +24,13 @@ from repository import ROOT
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
 from courtside.geometry import camera, triangulation
+from courtside.statistics.normal_errors import WITHIN_90
 from courtside.study.methods import STAGE_WORDS
 
 SESSION = "walk-4cams"
 TAKE = f"{SESSION}/takes/balancing/{{stage}}/file/all-robust/{real_footage.NETWORK}.npz"
+ANGLES = f"{SESSION}/takes/balancing/kinematics/file/all-robust/{real_footage.NETWORK}.frames.csv"
+HINGES = ("knee_flexion", "hip_flexion", "elbow_flexion", "shoulder_elevation")
 LABEL = (
     "real, `walk-4cams/balancing`, against OpenPose's joints in Pose2Sim's TRC, which rests on the "
     "original, faulty calibration file (no truth)"
@@ -61,6 +66,24 @@ def beside(stages, theirs):
     return list(real_people.rows(BESIDE, SESSION, later, theirs, COMMAND))
 
 
+def intervals(frames, theirs):
+    """Yield the rows of the table `real-intervals`: angles with errors, of both sides, in turn."""
+    frames, angles = frames[real_footage.LATER :], real_people.angles_deg(theirs)
+    for hinge in HINGES:
+        names = [f"{side}_{hinge}" for side in real_people.SIDES]
+        ours, sigma = (
+            np.stack([frames[f"{name}{part}"] for name in names]) for part in ("_deg", "_sd_deg")
+        )
+        apart = abs(ours - np.stack([angles[name][: ours.shape[1]] for name in names]))
+        known = np.isfinite(apart) & np.isfinite(sigma)
+        found = {"mean": f"{apart[known].mean():.1f}", "stated": f"{sigma[known].mean():.1f}"}
+        inside = (apart <= WITHIN_90 * sigma)[known]
+        found["held"] = f"{100 * inside.mean():.0f}"
+        for part, value in found.items():
+            about = ["real-intervals", hinge.replace("_", " "), part, value]
+            yield [*about, "%" if part == "held" else "degrees", SESSION, known.sum()]
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("recordings", type=Path)
@@ -71,8 +94,13 @@ if __name__ == "__main__":
         for stage, word in STAGE_WORDS.items()
     }
     known = camera.read_toml(given.results / SESSION / "calibration" / "file" / "cameras.toml")
-    found = rows(made, real_footage.reference(given.recordings))
+    theirs = openpose(given.recordings, known)
+    held = intervals(pd.read_csv(given.results / ANGLES), theirs)
     stated.write(
         ROOT / stated.FOLDER / "real_footage.csv",
-        [*found, *beside(made, openpose(given.recordings, known))],
+        [
+            *rows(made, real_footage.reference(given.recordings)),
+            *beside(made, theirs),
+            *([*row, 0, "benchmark", COMMAND] for row in held),
+        ],
     )

@@ -26,6 +26,14 @@ SHOWN = {
         "joints, four views": "{four.n}",
         "with": "{four.command}",
     },
+    "real-intervals": {
+        "angle, both sides": "{row}",
+        "mean difference, degrees": "{mean}",
+        "mean stated standard deviation, degrees": "{stated}",
+        "in 90 % intervals, %": "{held}",
+        "angles": "{held.n}",
+        "with": "{held.command}",
+    },
     "low-scores": {
         "limb joints, median / 95 % / 99 %, mm": "{row}",
         "without views of low scores": "{without}",
