@@ -43,10 +43,20 @@ SUMMED_UP = {  # what was measured: table, regular expression of its row, what i
         "{corrected_median} / {corrected_p95} mm in the median take, "
         "{corrected_median_worst} / {corrected_p95_worst} mm in the worst",
     ),
+    "the same joints in their stated 90 % ellipsoids": (
+        "held",
+        "^joints, `players-b`$",
+        "{corrected} % (of errors above 100 mm: {corrected_large} %)",
+    ),
     "joints of one real player against a marker system, corrected: median / 90 %": (
         "footage",
         "^real, .* marker system's joints; cameras of the source",
         "{corrected_median} / {corrected_p90} mm",
+    ),
+    "joints of the real player in their stated 90 % ellipsoids": (
+        "markers",
+        "^all; cameras of the source",
+        "{corrected_coverage_90} %",
     ),
     "knee flexion of the same virtual players: RMS error": (
         "angles",
