@@ -67,6 +67,8 @@ def test_the_summary_repeats_numbers_of_other_tables(source, repository):
     assert knee.printed == f"{printed['angles/corrected_rmse/knee flexion, `players-b`']} degrees"
     (joints,) = (n for row, n in shown.items() if row.startswith("joints of two virtual players"))
     assert joints.printed == "29 / 58 mm in the median take, 34 / 68 mm in the worst"
+    ellipsoids = shown["the same joints in their stated 90 % ellipsoids"]
+    assert ellipsoids.printed == "99.0 % (of errors above 100 mm: 49 %)"
     with pytest.raises(InputError, match=r"expected corrected_rmse in the row .*knee flexion"):
         study.summary([n for n in found if n.table != "angles"])
 
