@@ -143,6 +143,7 @@ def test_a_split_saves_its_bounds_by_the_clock_of_the_camera(opened, tmp_path):
     assert page.inner_text("#missing") == "Every subject has a person."
     page.fill("article[data-person=person-1] input", "3.2")
     page.keyboard.press("Tab")
+    until(page, "document.querySelector('article[data-person=person-1] input').value === '3.20'")
     bounds = {one.subject: (one.from_s, one.to_s) for one in saved(page, tmp_path)[1]}
     assert bounds == {"a": (0.5, 3.7), "b": (3.7, 6.5)}
     page.fill("article[data-person=person-1] input", "99")
@@ -374,8 +375,9 @@ def test_the_keyboard_alone_chooses_a_name_and_goes_on_from_there(opened):
     page.keyboard.press("Shift+Tab")
     page.keyboard.type("1.2")
     page.keyboard.press("Tab")
+    moved = "document.querySelector('article[data-person=person-9] input').value === '1.20'"
+    until(page, moved)  # the page is drawn again after the key
     until(page, "document.activeElement.textContent.startsWith('Join')")
-    assert page.input_value("article[data-person=person-9] input") == "1.20"
     page.keyboard.press("Enter")
     assert page.evaluate(focused) == "Name of person-9"
 
