@@ -12,7 +12,6 @@ is stated for the mixture.
 
 import argparse
 import sys
-from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -41,10 +40,9 @@ def takes_of(results):
     takes = [take for of in joint_offsets.takes_of(results).values() for take in of]
     for seen, sex_of, truth in error_fit.footage_with_truth(takes):
         (body,) = sex_of
-        for views in VIEWS:
-            for used in combinations(seen, views):
-                given = used, joint_offsets.SHAPE, sex_of, table, truth, *steps
-                found.append((body, views, error_fit.joints_of(*given)))
+        for used in error_fit.sets_of_cameras(seen):
+            given = used, joint_offsets.SHAPE, sex_of, table, truth, *steps
+            found.append((body, len(used), error_fit.joints_of(*given)))
     return found
 
 

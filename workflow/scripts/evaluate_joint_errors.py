@@ -1,7 +1,5 @@
 """Fit the errors that residuals do not show, on development players, all and fewer cameras."""
 
-from itertools import combinations
-
 import numpy as np
 
 from courtside.evaluation import error_fit
@@ -16,10 +14,9 @@ def main(paths, errors_csv, *, takes, about, step, filtering):
     table = joint_correction.read(paths.offsets) if paths.offsets else None
     joints, parts = skeleton.read(paths.skeleton), []
     for seen, sex_of, truth in error_fit.footage_with_truth(takes):
-        for count in range(2, len(seen) + 1):
-            for used in combinations(seen, count):
-                given = used, joints, sex_of, table, truth, step, filtering
-                parts.append(error_fit.joints_of(*given))
+        for used in error_fit.sets_of_cameras(seen):
+            given = used, joints, sex_of, table, truth, step, filtering
+            parts.append(error_fit.joints_of(*given))
     columns, error, covariance, weight = map(np.concatenate, zip(*parts, strict=True))
     log.logger.info("joints: %d", len(columns))
     model = joint_errors.fit(columns, error, covariance, weight)

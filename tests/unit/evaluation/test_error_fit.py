@@ -4,9 +4,11 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from courtside.evaluation import error_fit
 from courtside.geometry import camera as camera_models
+from courtside.kinematics import cutoffs
 from courtside.reconstruction import joint_correction, joint_errors
 from courtside.records.cameras.footage import Footage
 from courtside.records.devices import clocks
@@ -14,6 +16,7 @@ from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import keypoints, people
 from courtside.records.keypoints.skeleton import JOINTS
 from courtside.records.truth import session_truth, take_truth
+from courtside.study.errors import InputError
 from fixtures.cameras import scene
 from fixtures.people import found as people_found
 from fixtures.people import true_motion, walker
@@ -50,6 +53,21 @@ def test_errors_are_those_beside_the_known_offset():
     none = *given[:2], None, *given[3:]  # of a network without known offsets
     _, whole, _, _ = error_fit.joints_of(seen, *none)
     assert np.median(np.linalg.norm(whole, axis=1)) > np.median(np.linalg.norm(error, axis=1))
+
+
+def test_a_take_too_short_to_choose_a_cutoff_from_is_named_by_its_person():
+    cameras, record = scene.ring(3), walker.points(12)
+    views = walker.views(record, cameras)
+    seen = [Footage(c, view, Clock()) for c, view in zip(cameras, views, strict=True)]
+    truth = true_motion.Truth(record.joints, record.person_id, record.time_s, record.xyz)
+    chosen = {**FILTERING, "cutoff_hz": dict.fromkeys(walker.SKELETON.groups, cutoffs.RESIDUAL)}
+    with pytest.raises(InputError, match=r"^development take of p1: .*expected .* found "):
+        error_fit.joints_of(seen, walker.SKELETON, {"p1": "m"}, None, truth, OPTIONS, chosen)
+
+
+def test_all_sets_of_two_or_more_cameras_are_used():
+    found = [len(used) for used in error_fit.sets_of_cameras(["a", "b", "c", "d"])]
+    assert found == 6 * [2] + 4 * [3] + [4]
 
 
 def test_cameras_that_were_clicked_wrong_do_not_count(tmp_path):

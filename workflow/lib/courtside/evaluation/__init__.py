@@ -4,7 +4,7 @@ joints: `errors`, `table`, `distance_to_truth`, `limb_distances`, `distance_to_u
     of 3D joints, against the truth and against other views
 reliability: `counts`, `pooled`: how often ellipsoids hold, and how well outliers are
     flagged; not how well measures repeat
-error_fit: `joints_of`: what the model of joint errors is fitted on
+error_fit: `joints_of`, `sets_of_cameras`: what the model of joint errors is fitted on
 detection: `evaluate`, `against`, `torso_px`, `is_hit`: errors of a network's 2D joints in the
     pictures
 kinematics: `table`, `angles`: errors of paths and speeds, of joint angles

@@ -7,6 +7,7 @@ and on filtered joints: they are those that a filter does not remove.
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -48,6 +49,12 @@ def footage_with_truth(
         seen = footage.read(take["cameras"], take["pose2d"], take["people"], take["sync"])
         own = [replace(one, camera=true[one.camera.name]) for one in seen]
         yield own, take["sex_of"], take_truth.read(take["truth"])
+
+
+def sets_of_cameras(seen: Sequence[Footage]) -> Iterator[tuple[Footage, ...]]:
+    """Yield all sets of two or more cameras of a take, small ones first."""
+    for count in range(2, len(seen) + 1):
+        yield from combinations(seen, count)
 
 
 def thin(points: Keypoints3D) -> slice:
@@ -121,9 +128,8 @@ def _filtered(
 ) -> Keypoints3D:
     """Return the skeletons of a take, less the offsets of a table, filtered as the study does."""
     points = skeleton_filter.prepare(raw, step["max_gap_s"])
-    chosen = cutoffs.by_group(
-        points, skeleton, step["cutoff_hz"], step["order"], path="development take"
-    )
+    whose = f"development take of {', '.join(sex_of)}"
+    chosen = cutoffs.by_group(points, skeleton, step["cutoff_hz"], step["order"], path=whose)
     cutoff_hz = skeleton.by_group({group: choice.cutoff_hz for group, choice in chosen.items()})
     if table is not None:
         offset = joint_correction.offsets(points, table, sex_of, cameras)
