@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
-from browser.waiting import reload, second_tab, until
+from browser.waiting import next_frames, reload, second_tab, until
 from courtside.geometry import camera as projection
 from courtside.pages import page as pages
 from courtside.pages.clicking import page as clicking_page
@@ -75,7 +75,7 @@ def screen(page):
     """Return what the picture's part of the screen shows, (H, W, 3) BGR, without the magnifier."""
     if page.get_attribute("#loupe-toggle", "aria-pressed") == "true":
         page.click("#loupe-toggle")
-    page.wait_for_timeout(60)
+    next_frames(page)
     shot = page.locator("#view").screenshot()
     return cv2.imdecode(np.frombuffer(shot, np.uint8), cv2.IMREAD_COLOR)
 
@@ -461,7 +461,7 @@ def test_two_fingers_zoom_and_one_taps(open_page, make):
     for step in range(1, 11):
         touch("touchMove", (150 - 10 * step, 200), (200 + 10 * step, 200))
     touch("touchEnd")
-    page.wait_for_timeout(60)
+    next_frames(page)
     zoom = float(page.inner_text("#zoom").rstrip("×"))
     assert zoom == pytest.approx(400 / 960 * 5, rel=0.1)
     assert marked(page) == {}
