@@ -113,8 +113,9 @@ def few(clicks):
 
 
 @pytest.mark.parametrize("tamper", [dict, mirrored, wrong_click, shuffled, few])
-def test_no_other_fault_is_taken_for_an_exchange(tamper):
-    fixed = in_sfm(["side", "back", "corner"])
+@pytest.mark.parametrize("names", [("side", "back", "corner"), ("side", "back")])
+def test_no_other_fault_is_taken_for_an_exchange(tamper, names):
+    fixed = in_sfm(names)
     sfm_alignment.refuse_misplaced_cameras(COURT, fixed, tamper(clicks_of(fixed)))
 
 
@@ -168,6 +169,31 @@ def test_cameras_that_the_exchanged_clicks_have_bent_are_judged_after_adjustment
     _, checked = quality.adjust_and_check(COURT, ties, right, **WEIGHTS)
     assert checked["warnings"] == []
     assert 0.1 < checked["expected_volume_rms_cm"] < 10 and checked["volume_seen"] == 1
+
+
+@pytest.mark.parametrize("wrong", ["side", "back"])
+def test_of_two_cameras_the_one_named_from_the_other_end_is_told(wrong):
+    ties, _, right = tied(0)
+    clicks = {**right, wrong: COURT.turned(right[wrong])}
+    with pytest.raises(InputError, match=f"^camera {wrong}: .* after half a turn .* alone"):
+        quality.adjust_and_check(COURT, ties, clicks, **WEIGHTS)
+
+
+@pytest.mark.parametrize("names", [("corner", "far"), ("side", "far"), ("back", "far")])
+def test_of_two_cameras_that_nothing_bends_either_may_be_named_from_the_other_end(names):
+    fixed = in_sfm(names)
+    clicks = clicks_of(fixed)
+    clicks["far"] = COURT.turned(clicks["far"])
+    with pytest.raises(InputError, match=f"^camera {' or '.join(names)}: .* 1 cm off after half"):
+        sfm_alignment.refuse_misplaced_cameras(COURT, fixed, clicks)
+
+
+def test_both_causes_are_told_where_two_cameras_look_alike_from_both_ends():
+    fixed = in_sfm(["side", "back"])
+    clicks = clicks_of(fixed)
+    clicks["back"] = COURT.turned(clicks["back"])
+    with pytest.raises(InputError, match=r"may be exchanged; .* side or back alone fits as well"):
+        sfm_alignment.refuse_misplaced_cameras(COURT, fixed, clicks)
 
 
 def test_a_camera_of_whose_points_several_are_of_another_court_is_named():

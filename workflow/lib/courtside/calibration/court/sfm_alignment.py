@@ -25,6 +25,7 @@ FITTING = 0.01  # ASSUME: of the court's length: points nearer than this fit
 MAX_BEND = 0.1
 # ASSUME: points must fit this many times better after a change of the clicks of some cameras.
 CHANGE_GAIN = 5.0
+RIVAL = 2.0  # ASSUME: a change that fits so many times worse than the best one is not the cause
 MOST_TURNED = 4  # cameras tried together: there are 40 s of subsets of 16 cameras
 CHECKED = 6  # points among which `click_checks.find_wrong_clicks` finds nearly every wrong click
 MOST_SUBSETS = 10000  # of three points each: all of 40 points
@@ -257,6 +258,21 @@ def refuse_misplaced_cameras(
     most_m = min(near_m, off_m / CHANGE_GAIN)
     found = f"{100 * off_m:.0f} cm off" if np.isfinite(off_m) else "impossible"
     expected = f"expected clicked court points to fit the walk, found them {found}, but"
+    line_of = _line_of_two if len(cameras) == 2 else _line_of_several
+    line = line_of(court, cameras, clicks, adjust, most_m, expected)
+    if line:
+        raise InputError(line)
+
+
+def _line_of_several(
+    court: Court,
+    cameras: Sequence[Camera],
+    clicks: ClickedPoints,
+    adjust: Callable[[ClickedPoints], Sequence[Camera]] | None,
+    most_m: float,
+    expected: str,
+) -> str:
+    """Return the line on cameras whose clicks fit once some are turned or two exchanged, or ""."""
     pairs = combinations([camera.name for camera in cameras], 2)
     exchanges = {(a, b): {**clicks, a: clicks[b], b: clicks[a]} for a, b in pairs}
     apart_m = [_off_m(court, cameras, one) for one in exchanges.values()]
@@ -264,15 +280,46 @@ def refuse_misplaced_cameras(
     if turned_m < min(apart_m, default=np.inf):
         better_m = _off_m(court, cameras, after_turn, adjust)
         if better_m < most_m:
-            raise InputError(_turned_line(turned, f"{expected} {100 * better_m:.0f} cm off"))
+            who = f"camera{'s' * (len(turned) > 1)} {', '.join(turned)}"
+            return _turned_line(who, ", ".join(turned), expected, better_m)
     for (one, other), exchanged in exchanges.items():
         better_m = _off_m(court, cameras, exchanged, adjust)
         if better_m < most_m:
-            raise InputError(
-                f"cameras {one} and {other}: {expected} {100 * better_m:.0f} cm off with the "
-                "clicks of the two exchanged: the camera files may be exchanged; correct their "
-                "names in the session, or in the court points"
-            )
+            return _exchanged_line(one, other, expected, better_m)
+    return ""
+
+
+def _line_of_two(
+    court: Court,
+    cameras: Sequence[Camera],
+    clicks: ClickedPoints,
+    adjust: Callable[[ClickedPoints], Sequence[Camera]] | None,
+    most_m: float,
+    expected: str,
+) -> str:
+    """Return the line on two cameras whose clicks fit once exchanged or once one is turned, or "".
+
+    A change that fits about as well as the best one is told, too: two cameras may look alike from
+    both ends.
+    """
+    one, other = names = [camera.name for camera in cameras]
+    exchanged_m = _off_m(court, cameras, {one: clicks[other], other: clicks[one]}, adjust)
+    turned_m = dict.fromkeys(names, np.inf)
+    for name in names:
+        after_turn = {**clicks, name: court.turned(np.asarray(clicks[name], float))}
+        if _shared(after_turn, [name]) >= _shared(clicks, [name]) / 2:
+            turned_m[name] = _off_m(court, cameras, after_turn, adjust)
+    best_m = min(exchanged_m, *turned_m.values())
+    if best_m >= most_m:
+        return ""
+    turned = " or ".join(name for name in names if turned_m[name] <= RIVAL * best_m)
+    if exchanged_m > RIVAL * best_m:
+        return _turned_line(f"camera {turned}", turned, expected, best_m)
+    line = _exchanged_line(one, other, expected, exchanged_m)
+    if not turned:
+        return line
+    turn = f"half a turn of the court in camera {turned} alone fits as well"
+    return f"{line}; but {turn}: look whether its points are named from the other end"
 
 
 def _turned(
@@ -281,12 +328,11 @@ def _turned(
     """Return the cameras whose clicks fit best after half a turn, these clicks, and their misfit.
 
     The cameras are half of all at most: then the others are turned. The misfit, m, is that before
-    adjustment. It is infinite of two cameras: once their clicks have bent them, these fit after
-    half a turn, too. It is infinite, too, where the turn leaves fewer than half of the clicks on
-    points that another camera shows: without them any fault would be gone.
+    adjustment. It is infinite of a single camera, and where the turn leaves fewer than half of the
+    clicks on points that another camera shows: without them any fault would be gone.
     """
     names = [camera.name for camera in cameras]
-    if len(names) < 3:
+    if len(names) < 2:
         return (), clicks, np.inf
     after_turn = {name: court.turned(np.asarray(clicks[name], float)) for name in names}
     sizes = range(1, min(len(names) // 2, MOST_TURNED) + 1)
@@ -307,13 +353,20 @@ def _shared(clicks: ClickedPoints, chosen: Sequence[str]) -> int:
     return int(sum((seen[name] & both).sum() for name in chosen))
 
 
-def _turned_line(names: Sequence[str], found: str) -> str:
-    listed = ", ".join(names)
+def _exchanged_line(one: str, other: str, expected: str, off_m: float) -> str:
     return (
-        f"camera{'s' * (len(names) > 1)} {listed}: {found} after half a turn of the court there "
-        "alone: either the points are named from the other end there, or both ends of the hall "
-        "look alike and the walk joined the picture to the wrong one; if the names are right, film "
-        f"the walk without a break until close beside {listed}, with bags or posters at one end"
+        f"cameras {one} and {other}: {expected} {100 * off_m:.0f} cm off with the clicks of the "
+        "two exchanged: the camera files may be exchanged; correct their names in the session, or "
+        "in the court points"
+    )
+
+
+def _turned_line(who: str, listed: str, expected: str, off_m: float) -> str:
+    return (
+        f"{who}: {expected} {100 * off_m:.0f} cm off after half a turn of the court there alone: "
+        "either the points are named from the other end there, or both ends of the hall look "
+        "alike and the walk joined the picture to the wrong one; if the names are right, film the "
+        f"walk without a break until close beside {listed}, with bags or posters at one end"
     )
 
 
