@@ -36,7 +36,7 @@ def main(
     placed = {c: images.index(image) for c, image in fixed.items() if image in images}
     size_of = {camera: sizes[network.lens_of_image[at]] for camera, at in placed.items()}
     found = conversion.fixed_cameras(network, placed, size_of)
-    known, fault, residual_px = None, "", np.nan
+    known, fault, residual_px, strain = None, "", np.nan, np.nan
     centres, points = selection.centres(network), network.xyz
     support = Support(**summary["explained"])
     if not outcome:
@@ -44,6 +44,7 @@ def main(
             known, parts = adjust(network, placed, size_of, clicks_csv, court_yaml, **options)
             centres, points = walk_parts.centres(parts), walk_parts.points(parts)
             residual_px = walk_parts.residual_spread(parts)
+            strain = joint_adjustment.strain(parts) if court_yaml else np.nan
             views = walk_parts.views(parts, images, sizes)
             adjusted = two_views.explained(verified, views)
             support = max(support, adjusted, key=lambda each: each.pair_share)
@@ -52,9 +53,8 @@ def main(
     log.logger.info("%s", outcome or fault or f"ties fit to {residual_px:.2f} px")
     seen = [registration.n_seen(network, images, fixed[camera]) for camera in placed]
     n_maps = summary["n_agreeing"], summary["n_attempts"]
-    record = tie_points.Record(
-        outcome, fault, found, seen, known, images, centres, points, residual_px, n_maps, support
-    )
+    told = centres, points, residual_px, n_maps, support, strain
+    record = tie_points.Record(outcome, fault, found, seen, known, images, *told)
     tie_points.write(ties_npz, record)
 
 

@@ -86,6 +86,8 @@ def solve(record, clicks_csv, court_yaml, *, pictures, search=None, **options):
         found, checked = quality.adjust_and_check(court, record.ties, marked, **options)
     sunken = quality.sunken(court, record.xyz)
     checked["warnings"] += [sunken] * bool(sunken)
+    strained = quality.strained(record.strain)
+    checked["warnings"] += [strained] * bool(strained)
     return found, checked
 
 

@@ -69,6 +69,16 @@ def test_exact_ties_and_clicks_give_the_true_cameras_whatever_the_frame():
     np.testing.assert_allclose(whole.cam_from_world, truth.cam_from_world, atol=1e-4)
 
 
+def test_clicks_of_a_neighbouring_court_strain_the_ties_and_right_ones_do_not():
+    truth = made(n_walk=6, n_points=60, noise_px=0.5)
+    right = clicks_of(truth, noise_px=0.5)
+    neighbour = clicks_of(truth, noise_px=0.5, xyz=np.add(COURT.xyz, (8.1, 0, 0)))
+    _, parts = condense(truth, right, tie_sigma_px=0.5)
+    assert 0 <= joint_adjustment.strain(parts) < 10
+    _, parts = condense(truth, {**right, "back": neighbour["back"]}, tie_sigma_px=0.5)
+    assert joint_adjustment.strain(parts) > 100
+
+
 def test_condensed_ties_agree_with_the_whole_adjustment_of_other_clicks():
     truth = made(4, 40, noise_px=0.5)
     ties, (part,) = condense(truth, clicks_of(truth))

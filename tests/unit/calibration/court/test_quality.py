@@ -129,15 +129,23 @@ def test_fixed_cameras_in_one_place_of_the_map_are_told():
 
 
 @pytest.mark.parametrize(("lower_m", "told"), [(0.0, False), (1.2, True)])
-def test_a_map_below_the_floor_of_the_court_is_told(lower_m, told):
+@pytest.mark.parametrize(("n_above", "found"), [(0, "1.2 m"), (60, "1.1 m")])  # of the ceiling
+def test_a_map_below_the_floor_of_the_court_is_told(lower_m, told, n_above, found):
     rng = np.random.default_rng(0)
     floor = np.column_stack([rng.uniform(-2, 8, (30, 2)), rng.uniform(0, 0.1, 30)])
     walls = np.column_stack([rng.uniform(20, 30, (200, 2)), rng.uniform(-3, -2, 200)])  # far away
-    line = quality.sunken(COURT, np.concatenate([floor - (0, 0, lower_m), walls]))
+    above = floor[rng.integers(30, size=n_above)] + (0, 0, 8)
+    line = quality.sunken(COURT, np.concatenate([floor - (0, 0, lower_m), walls, above]))
     assert bool(line) is told
     if told:
-        assert "1.1 m or more below it; click the same court in all cameras" in line
+        assert f"{found} or more below it; click the same court in all cameras" in line
         assert quality.sunken(COURT, floor[:9] - (0, 0, lower_m)) == ""  # too few to tell
+
+
+def test_clicks_that_bend_the_map_are_told():
+    assert quality.strained(7.0) == quality.strained(np.nan) == ""
+    line = quality.strained(38.1)
+    assert "by 38 half squared sigmas (good: up to 20)" in line and "\n" not in line
 
 
 def test_the_volume_of_a_court_without_lines_begins_in_its_corner_too():

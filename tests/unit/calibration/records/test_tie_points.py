@@ -44,6 +44,7 @@ def record(**changes):
         "residual_px": 0.4,
         "n_maps": (2, 3),
         "support": SUPPORT,
+        "strain": 2.5,
     }
     return tie_points.Record(**{**fields, **changes})
 
@@ -56,7 +57,7 @@ def through(tmp_path, made):
 def test_what_is_written_is_read(tmp_path):
     made = record()
     found = through(tmp_path, made)
-    assert (found.outcome, found.fault, found.residual_px) == ("", "", 0.4)
+    assert (found.outcome, found.fault, found.residual_px, found.strain) == ("", "", 0.4, 2.5)
     assert found.n_maps == (2, 3) and found.support == SUPPORT
     assert [c.name for c in found.sfm_cameras] == list(NAMES)
     assert [c.size for c in found.sfm_cameras] == SIZES

@@ -152,6 +152,21 @@ def condense(
     return _condensed(parts, tuple(fixed), sizes), parts
 
 
+def strain(parts: Sequence[Part]) -> float:
+    """Return by how much the ties fit worse for the clicks, from the parts of `condense`.
+
+    Half the sum of squared residuals of the ties, in sigmas, after adjustment with the clicks, less
+    that after adjustment without them; mean over the parts. Clicks that agree with the walk move
+    the cameras only where ties leave them open.
+    """
+    return float(np.mean([_cost_of_clicks(part) for part in parts]))
+
+
+def _cost_of_clicks(part: Part) -> float:
+    freely = _adjusted_freely(part.network, part.fixed.tolist())
+    return solver.cost(part.network) - solver.cost(freely)
+
+
 def _fixed_cameras(network, names, at, sizes) -> list[Camera]:
     return conversion.fixed_cameras(network, dict(zip(names, map(int, at), strict=True)), sizes)
 

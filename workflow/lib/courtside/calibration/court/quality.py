@@ -24,9 +24,13 @@ SUPPORTED = 0.3
 # ASSUME: of the extent of a map. Cameras that a map joined to the wrong end of a symmetric hall
 # were 0.1 to 0.6 % from those opposite, others 40 % or more.
 ONE_PLACE = 0.007
-# ASSUME: of points of a map near a court. In 65 maps at most 9 % were lower; with two cameras
-# clicked on neighbouring courts all were 1 m lower or more.
-SUNKEN_M, BESIDE_M, LEAST_POINTS = 0.2, 3.0, 10
+# ASSUME: of points of a map near a court. In 65 maps at most 9 % were lower; with one of two
+# cameras clicked on a neighbouring court a third or more, where the map grew.
+SUNKEN_M, SUNKEN_SHARE, BESIDE_M, LEAST_POINTS = 0.2, 0.25, 3.0, 10
+# ASSUME: of `joint_adjustment.strain`. In good maps it was at most 7; with one of two cameras
+# clicked on a neighbouring court, where nothing else told it, 30 or more; in five of six maps of
+# ten images of a plain hall 21 to 47.
+MOST_STRAIN = 20.0
 # ASSUME: of a camera's clicks; good ones had at most 4, four points of another court 400.
 MOST_FACTOR = 30.0
 # ASSUME: heights of a match, from the floor to a player's reach; the grid is about 2 m wide on a
@@ -208,12 +212,29 @@ def sunken(court: Court, xyz: NDArray) -> str:
         return ""
     reach = court.xyz[:, :2].min(axis=0) - BESIDE_M, court.xyz[:, :2].max(axis=0) + BESIDE_M
     height_m = xyz[((xyz[:, :2] > reach[0]) & (xyz[:, :2] < reach[1])).all(axis=1), 2]
-    if len(height_m) < LEAST_POINTS or np.median(height_m) > -SUNKEN_M:
+    low_m = np.quantile(height_m, SUNKEN_SHARE) if len(height_m) >= LEAST_POINTS else 0.0
+    if low_m > -SUNKEN_M:
         return ""
     return (
-        "court points: expected the points of the walk's map on the floor or above it, found most "
-        f"of {len(height_m)} near the court {-np.median(height_m):.1f} m or more below it; click "
-        "the same court in all cameras, and check that its file has its size"
+        "court points: expected the points of the walk's map on the floor or above it, found "
+        f"{100 * SUNKEN_SHARE:.0f} % or more of {len(height_m)} near the court {-low_m:.1f} m or "
+        "more below it; click the same court in all cameras, and check that its file has its size"
+    )
+
+
+def strained(strain: float) -> str:
+    """Return in one line that clicks bend the walk's map, empty if not; of `Record.strain`.
+
+    In a hall with few features a walk ties cameras weakly, and wrong clicks that agree with one
+    another bend its map by metres.
+    """
+    if not strain > MOST_STRAIN:
+        return ""
+    return (
+        "court points: expected clicks that fit the walk, found that its tie points fit worse with "
+        f"them, by {strain:.0f} half squared sigmas (good: up to {MOST_STRAIN:g}): they bend the "
+        "walk's map; look whether all cameras are clicked on the same court, and the points have "
+        "their right names; if so, take more bridging images"
     )
 
 

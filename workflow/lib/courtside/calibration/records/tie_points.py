@@ -14,7 +14,7 @@ from courtside.geometry.camera import Camera
 from courtside.records import npz
 from courtside.study.errors import StrPath, reading
 
-FORM = "courtside ties 3"
+FORM = "courtside ties 4"
 SPEC = {
     "outcome": ("str", ()),
     "fault": ("str", ()),
@@ -31,6 +31,7 @@ SPEC = {
     "centre": ("float", ("V", "3")),
     "xyz": ("float", ("N", "3")),
     "residual_px": ("float", ()),
+    "strain": ("float", ()),
     "n_maps": ("int", ("2",)),
     "explained": ("float", ("3",)),
     "doubted": ("str", ("3",)),
@@ -55,6 +56,7 @@ class Record:
     # and number of all maps made.
     n_maps: tuple[int, int]
     support: Support  # as mapped or as adjusted with the clicks, whichever is better
+    strain: float = np.nan  # of the ties by the clicks (`joint_adjustment.strain`); NaN without
 
 
 def write(path: StrPath, record: Record) -> None:
@@ -78,6 +80,7 @@ def write(path: StrPath, record: Record) -> None:
         "centre": _stack(record.centres, (3,)),
         "xyz": _stack(record.xyz, (3,)),
         "residual_px": np.array(float(record.residual_px)),
+        "strain": np.array(float(record.strain)),
         "n_maps": np.array(record.n_maps, dtype=int),
         "explained": np.array([support.share, support.image_share, support.pair_share]),
         "doubted": np.array([support.image, *support.pair], dtype=str),
@@ -115,6 +118,7 @@ def _record(found: Mapping[str, NDArray]) -> Record:
         float(found["residual_px"]),
         (int(found["n_maps"][0]), int(found["n_maps"][1])),
         _support(found["explained"], found["doubted"]),
+        float(found["strain"]),
     )
 
 
