@@ -208,15 +208,79 @@ def test_a_camera_of_whose_points_several_are_of_another_court_is_named():
     assert "points of another court" in line
 
 
-@pytest.mark.parametrize("fault", ["neighbour", "exchanged"])
-def test_a_turn_that_leaves_no_other_camera_the_points_is_none(fault):
+def test_a_turn_that_leaves_no_other_camera_the_points_is_none():
     """All cameras were clicked on one half of the court: its other end shows nobody's points."""
     fixed = in_sfm(["side", "back", "corner"])
-    clicks, shift = clicks_of(fixed), np.array([8.0, 0, 0])
-    if fault == "neighbour":
-        clicks["back"] = clicks_of([fixed[1]], xyz=COURT.xyz + shift)["back"]
-    else:
-        clicks["back"] = mirrored(clicks)["back"]
+    clicks = clicks_of(fixed)
+    clicks["back"] = mirrored(clicks)["back"]
     half = COURT.xyz[:, 1] < 6.7
     clicks = {name: np.where(half[:, None], xy, np.nan) for name, xy in clicks.items()}
+    sfm_alignment.refuse_misplaced_cameras(COURT, fixed, clicks)
+
+
+def beside(fixed, wrong, by_m):
+    """Return clicks of which those of some cameras are of a court so far beside the right one."""
+    other = clicks_of(fixed, xyz=np.add(COURT.xyz, (*by_m, 0.0)))
+    return {**clicks_of(fixed), **{name: other[name] for name in wrong}}
+
+
+@pytest.mark.parametrize("half", [False, True])
+@pytest.mark.parametrize("by_m", [(8.1, 0.0), (-8.1, 0.0)])
+@pytest.mark.parametrize("wrong", ["side", "back", "corner"])
+def test_a_camera_that_is_clicked_on_the_court_beside_is_named(wrong, by_m, half):
+    """With clicks on one half of the court alone, too: its file was blamed, or nothing was told."""
+    fixed = in_sfm(["side", "back", "corner"])
+    clicks = beside(fixed, [wrong], by_m)
+    use = (COURT.xyz[:, 1] < 6.7)[:, None] | (not half)
+    clicks = {name: np.where(use, xy, np.nan) for name, xy in clicks.items()}
+    for refuse in (
+        sfm_alignment.refuse_misplaced_cameras,
+        partial(click_checks.check, sigma_px=0.3, table=None),
+    ):
+        with pytest.raises(InputError, match=rf"^camera {wrong}: expected .* m beside ") as caught:
+            refuse(COURT, fixed, clicks)
+        said = str(caught.value)
+        found = [float(said.partition(f"along {a} ")[2].split(" m")[0]) for a in "xy"]
+        np.testing.assert_allclose(found, by_m, atol=0.4)
+        assert "click the same court in all cameras" in said and "\n" not in said
+
+
+@pytest.mark.parametrize("wrong", [("side", "back"), ("back", "far"), ("corner", "far")])
+def test_two_of_four_cameras_that_are_clicked_on_the_court_beside_are_told_from_the_others(wrong):
+    names = ("side", "back", "corner", "far")
+    fixed = in_sfm(names)
+    with pytest.raises(InputError, match=r"a court 8\.[01] m beside that of") as caught:
+        sfm_alignment.refuse_misplaced_cameras(COURT, fixed, beside(fixed, wrong, (8.1, 0.0)))
+    said = str(caught.value)
+    others = tuple(name for name in names if name not in wrong)
+    either = [f"cameras {', '.join(a)}: " in said and f"of {', '.join(b)} (along" in said
+              for a, b in ((wrong, others), (others, wrong))]  # fmt: skip
+    assert any(either)  # which of the two courts is meant, nothing tells
+
+
+def test_cameras_that_the_clicks_beside_have_bent_are_judged_without_these_clicks():
+    fixed = in_sfm(["side", "back", "corner"])
+    clicks = beside(fixed, ["back"], (8.1, 0.0))
+    bent = [cameras.turned(one, (0.01, 0.01, 0.0)) for one in fixed]
+
+    def adjust(used):
+        return bent if np.isfinite(used["back"]).any() else fixed
+
+    with pytest.raises(InputError, match=r"^camera back: .* beside that of side, corner .*8\.1 m"):
+        sfm_alignment.refuse_misplaced_cameras(COURT, bent, clicks, adjust)
+
+
+def test_of_two_cameras_the_court_beside_is_among_the_causes():
+    fixed = in_sfm(["side", "back"])
+    clicks = beside(fixed, ["back"], (8.1, 0.0))
+    with pytest.raises(InputError, match=r"or click the same court in all cameras$"):
+        click_checks.check(COURT, fixed, clicks, sigma_px=0.3, table=None)
+
+
+def test_a_single_camera_and_few_clicks_are_not_taken_for_clicks_of_the_court_beside():
+    fixed = in_sfm(["side", "back", "corner"])
+    clicks = beside(fixed, ["back"], (8.1, 0.0))
+    sfm_alignment.refuse_misplaced_cameras(COURT, fixed[:1], clicks)
+    sfm_alignment.refuse_misplaced_cameras(COURT, fixed, few(clicks))
+    clicks["back"][3:] = np.nan
     sfm_alignment.refuse_misplaced_cameras(COURT, fixed, clicks)

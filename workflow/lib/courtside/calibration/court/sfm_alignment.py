@@ -1,7 +1,8 @@
 """Align structure from motion to the court, by the published frame or a robust similarity.
 
 This module also detects exchanged camera files, where the clicks of each of two cameras fit the
-pose of the other, and cameras turned to the other end of the court.
+pose of the other, cameras turned to the other end of the court, and cameras whose clicks are of
+another court beside it.
 """
 
 from collections.abc import Callable, Sequence
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 
 from courtside.calibration.court.court import ClickedPoints, Court
 from courtside.geometry import robust_similarity, triangulation
-from courtside.geometry.camera import Camera
+from courtside.geometry.camera import Camera, undistort
 from courtside.geometry.similarity import Sim3
 from courtside.study.errors import InputError
 
@@ -27,6 +28,7 @@ MAX_BEND = 0.1
 CHANGE_GAIN = 5.0
 RIVAL = 2.0  # ASSUME: a change that fits so many times worse than the best one is not the cause
 MOST_TURNED = 4  # cameras tried together: there are 40 s of subsets of 16 cameras
+FEWEST_MOVED = 4  # ASSUME: clicks of a camera that fit after one shift; fewer may do so by chance
 CHECKED = 6  # points among which `click_checks.find_wrong_clicks` finds nearly every wrong click
 MOST_SUBSETS = 10000  # of three points each: all of 40 points
 
@@ -166,7 +168,8 @@ def _check_size(court: Court, xyz_in_sfm: NDArray, error_modes_m: NDArray | None
         raise InputError(
             f"court points: expected the sides of {court.name}, {short_m:g} m by {long_m:g} m, "
             f"found {short_m * ratio:.2f} m by {long_m:g} m (or as much in proportion); give the "
-            "right court file, or click the lines that it names"
+            "right court file, click the lines that it names, or click the same court in all "
+            "cameras"
         )
 
 
@@ -237,8 +240,9 @@ def refuse_misplaced_cameras(
 
     That is after half a turn of the court for some cameras: they are named from the other end, or
     the ends of the hall look alike and the walk joined the cameras to the wrong one. Or after those
-    of two cameras are exchanged: their files may be exchanged. Other faults of the clicks are not
-    looked for.
+    of two cameras are exchanged: their files may be exchanged. Or, of three cameras or more, once
+    the court is moved beside itself for some: they are clicked on another court, or the walk joined
+    them to the wrong place. Other faults of the clicks are not looked for.
 
     Parameters
     ----------
@@ -286,7 +290,7 @@ def _line_of_several(
         better_m = _off_m(court, cameras, exchanged, adjust)
         if better_m < most_m:
             return _exchanged_line(one, other, expected, better_m)
-    return ""
+    return _line_of_beside(court, cameras, clicks, adjust, expected)
 
 
 def _line_of_two(
@@ -351,6 +355,76 @@ def _shared(clicks: ClickedPoints, chosen: Sequence[str]) -> int:
     seen = {name: np.isfinite(np.asarray(xy, float)).all(axis=-1) for name, xy in clicks.items()}
     both = np.sum(list(seen.values()), axis=0) > 1
     return int(sum((seen[name] & both).sum() for name in chosen))
+
+
+def _line_of_beside(
+    court: Court,
+    cameras: Sequence[Camera],
+    clicks: ClickedPoints,
+    adjust: Callable[[ClickedPoints], Sequence[Camera]] | None,
+    expected: str,
+) -> str:
+    """Return the line on cameras whose clicks fit once the court is moved beside itself, or "".
+
+    The cameras are half of all at most: of just half, the others are named as well.
+    """
+    names = [camera.name for camera in cameras]
+    sizes = range(1, min(len(names) // 2, MOST_TURNED) + 1)
+    some = [chosen for size in sizes for chosen in combinations(names, size)]
+    chosen = min(some, key=lambda one: _beside(court, cameras, clicks, one)[1], default=())
+    by_m, off_m = _beside(court, cameras, clicks, chosen, adjust)
+    if off_m > MAX_MISFIT * np.max(court.size_m) or np.linalg.norm(by_m) < np.min(court.size_m):
+        return ""
+    listed, others = ", ".join(chosen), ", ".join(name for name in names if name not in chosen)
+    x, y = np.round(by_m, 1) + 0.0
+    return (
+        f"camera{'s' * (len(chosen) > 1)} {listed}: {expected} {100 * off_m:.0f} cm off on a court "
+        f"{np.hypot(x, y):.1f} m beside that of {others} (along x {x:.1f} m, along y {y:.1f} m): "
+        "either the clicks are of two courts, or parts of the hall look alike and the walk joined "
+        "pictures to the wrong ones; click the same court in all cameras; if you did, film the "
+        f"walk without a break until close beside {listed}"
+    )
+
+
+def _beside(
+    court: Court,
+    cameras: Sequence[Camera],
+    clicks: ClickedPoints,
+    chosen: Sequence[str],
+    adjust: Callable[[ClickedPoints], Sequence[Camera]] | None = None,
+) -> tuple[NDArray, float]:
+    """Return how far beside the court, (2,) m, the clicks of chosen cameras are, and their misfit.
+
+    The other cameras place the court, adjusted with their clicks alone. The misfit, m, is theirs or
+    that of the chosen camera that fits worst after the shift; inf where too few clicks tell.
+    """
+    theirs = {n: np.full_like(xy, np.nan) if n in chosen else xy for n, xy in clicks.items()}
+    try:
+        cameras = adjust(theirs) if adjust else cameras
+        xyz = reconstruct(cameras, theirs)
+        world_from_sfm, _ = align(court, xyz)
+    except InputError:
+        return np.zeros(2), np.inf
+    wrong = [world_from_sfm.camera(camera) for camera in cameras if camera.name in chosen]
+    moved = [_level_offsets(court, camera, clicks[camera.name]) for camera in wrong]
+    fewest = min(map(len, moved), default=0)
+    if np.isfinite(xyz).all(axis=1).sum() < CHECKED or fewest < FEWEST_MOVED:
+        return np.zeros(2), np.inf
+    by_m = np.median(np.concatenate(moved), axis=0)
+    left_m = [float(np.median(np.linalg.norm(one - by_m, axis=1))) for one in moved]
+    return by_m, max(misfit_m(court, world_from_sfm, xyz), *left_m)
+
+
+def _level_offsets(court: Court, camera: Camera, xy: NDArray) -> NDArray:
+    """Return how far from its place, (n, 2) m, each clicked point lies at its own height."""
+    known = np.isfinite(np.asarray(xy, float)).all(axis=-1)
+    normalised = undistort(camera, np.asarray(xy, float)[known])
+    rays = np.column_stack([normalised, np.ones(len(normalised))]) @ camera.cam_from_world[:, :3]
+    centre, xyz = camera.centre_in_world, court.xyz[known]
+    with np.errstate(divide="ignore"):
+        depth = (xyz[:, 2] - centre[2]) / rays[:, 2]
+    before = np.isfinite(depth) & (depth > 0)
+    return (centre + depth[:, None] * rays - xyz)[before, :2]
 
 
 def _exchanged_line(one: str, other: str, expected: str, off_m: float) -> str:
