@@ -13,7 +13,7 @@ import scipy
 from numpy.typing import NDArray
 
 from courtside.geometry import camera as camera_models
-from courtside.quality import measures
+from courtside.quality import measures, moved_cameras
 from courtside.quality import seen as views
 from courtside.quality.seen import Seen
 from courtside.study.execution.verdicts import CALIBRATION, CLOCK, EXCHANGED
@@ -79,6 +79,8 @@ def find(
     that the check of a calibration file names faults of other cameras, which shift the joints.
     """
     cause = _by_people(seen, camera, found_limit)
+    if not cause.is_shown and (moved := moved_cameras.find(seen, camera)):
+        cause = Cause(CALIBRATION, f"its calibration is off: {moved}")
     if cause.is_shown and cause.name != CALIBRATION:
         return cause
     if doubt:
@@ -146,7 +148,8 @@ def _by_people(seen: Seen, camera: int, found_limit: float) -> Cause:
         )
         return late(seen, camera) or Cause(UNKNOWN, words, is_shown=False)
     if not (there & expected).any() and not seen.followed[camera].any():
-        return Cause(IDENTITY, "people are found there, but none of them is followed")
+        words = "people are found there, but none of them is followed"
+        return Cause(IDENTITY, words, is_shown=False)
     if not (there & expected).any():
         words = "the other cameras do not agree on where the person is"
         return Cause(UNKNOWN, words, is_shown=False)
