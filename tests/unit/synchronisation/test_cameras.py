@@ -107,6 +107,42 @@ def test_clocks_of_a_take_are_one_or_found_or_stated():
     assert found["c2"] == Clock(-3.0, note="stated by the session")
 
 
+def displaced(camera, by_m, degrees):
+    """Return a camera whose calibration is displaced and turned."""
+    turned = camera_models.turned(camera, np.deg2rad(degrees) * np.array([0.0, 1, 0]))
+    pose = turned.cam_from_world.copy()
+    pose[:, 3] -= pose[:, :3] @ by_m
+    return replace(turned, cam_from_world=pose)
+
+
+@pytest.mark.parametrize(("by_m", "degrees"), [((8.1, 0, 0), 0), ((0, 0, 0), 20), ((0, 0, 0), 60)])
+def test_a_camera_that_was_moved_since_its_calibration_is_not_told_to_be_started_late(
+    by_m, degrees
+):
+    """No offset fits its pose, but the rhythm of the motion alone tells its clock."""
+    known = {camera.name: camera for camera in CAMERAS}
+    known["c2"] = displaced(known["c2"], by_m, degrees)
+    found = camera_sync.of_take(take(0), known, synchronised=False, stated={})
+    assert (found["c1"].status, found["c2"].status) == ("found", "unknown")
+    line = sync.fault_line("take", found)
+    stated = float(line.split("its offset_s is ")[1].split(",")[0])
+    assert stated == pytest.approx(CLOCKS[2].offset_s, abs=0.02)
+    assert "contradicts its calibration" in line and "was moved since" in line
+    assert "max_offset_s" not in line and "possible offsets" not in line and "\n" not in line
+
+
+@pytest.mark.parametrize("calibrated", [True, False])
+def test_a_clock_that_nothing_tells_may_be_a_calibration_that_is_off(calibrated):
+    clocks = [Clock(), Clock(14.0), Clock(0.5)]
+    known = {camera.name: camera for camera in CAMERAS} if calibrated else None
+    views = take(0, seconds=30.0, clocks=clocks)
+    options = {"synchronised": False, "stated": {}, "max_offset_s": 8.0}
+    line = sync.fault_line("take", camera_sync.of_take(views, known, **options))
+    assert "raise `synchronise_cameras: max_offset_s`" in line
+    assert ("else its calibration may be off" in line) is calibrated
+    assert "contradicts" not in line
+
+
 @pytest.mark.parametrize("known", [True, False], ids=["calibrated", "uncalibrated"])
 def test_a_stated_clock_helps_to_find_one_that_is_not_found_without(known):
     """The third camera starts near the second one, long after the first one."""

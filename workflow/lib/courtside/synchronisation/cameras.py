@@ -36,6 +36,7 @@ READOUT_SPREAD_S = 0.01  # ASSUME: rolling shutters need up to about 20 ms from 
 # are (90 % without). ASSUME: other networks and real people err as much.
 NETWORK_S = 0.003
 SMOOTHING = 0.85  # of the longest frame interval: less would bias offsets to half frames
+MOVED = "a camera was moved since, or clicked on another court or from the other end"
 REFERENCE = Clock(status="reference", note="the take's clock")
 
 
@@ -90,7 +91,7 @@ def synchronise(
         elif camera in sure:
             clock = _found(adjusted, camera, views, time_s, stated_s)
         else:
-            clock = _not_found(placed.get(camera), max_offset_s)
+            clock = _not_found(placed.get(camera), max_offset_s, calibrated=cameras is not None)
         found[views[camera].camera] = clock
     return _doubted(found, evidence, motion)
 
@@ -120,7 +121,27 @@ def of_take(
     if fixed and missed:
         again = synchronise(views, known, fixed=fixed, **options)
         found |= {name: again[name] for name in missed}
-    return found | fixed
+    found |= fixed
+    if known and not all(clock.usable for clock in found.values()):
+        found = _against_calibration(found, synchronise(views, None, **options))
+    return found
+
+
+def _against_calibration(found: dict[str, Clock], rhythm: Mapping[str, Clock]) -> dict[str, Clock]:
+    """Return clocks; of one that is not `found`, but by the `rhythm` of the motion, what it means.
+
+    Any offset contradicts a wrong calibration.
+    """
+    told = dict(found)
+    for name, clock in found.items():
+        if not clock.usable and rhythm[name].usable:
+            note = (
+                f"by the rhythm of the motion its offset_s is {rhythm[name].offset_s:.3f}, which "
+                "contradicts its calibration, or that of the cameras it is compared with: "
+                f"{MOVED}; calibrate again"
+            )
+            told[name] = replace(clock, status="unknown", note=note, candidates_s=())
+    return told
 
 
 def _evidence(views, cameras, min_score) -> Epipolar | Speeds:
@@ -293,20 +314,21 @@ def _lost_frames(
     return doubts
 
 
-def _not_found(placed: "Placed | None", max_offset_s: float) -> Clock:
+def _not_found(placed: "Placed | None", max_offset_s: float, *, calibrated: bool) -> Clock:
+    doubt = f"; else its calibration may be off: {MOVED}" if calibrated else ""
     if placed is None or not placed.candidates_s:
         return Clock(
             uncertainty_s=np.nan,
             drift_uncertainty_ppm=np.nan,
             status="unknown",
-            note="it sees no person together with another camera",
+            note="it sees no person together with another camera" + doubt,
         )
     unknown = len(placed.candidates_s) >= MOST_CANDIDATES
     note = "other offsets explain the motion about as well"
     if unknown:
         note = (
             f"no offset stands out among those of up to {max_offset_s:g} s, which are tried; if it "
-            "was started earlier or later, raise `synchronise_cameras: max_offset_s`"
+            f"was started earlier or later, raise `synchronise_cameras: max_offset_s`{doubt}"
         )
     return Clock(
         placed.offset_s,
