@@ -3,7 +3,9 @@
 Reads them for each way in which the take was measured; writes one table.
 """
 
-from courtside.quality import calibration_doubts, seen, verdict
+from dataclasses import replace
+
+from courtside.quality import body_sizes, calibration_doubts, seen, verdict
 from courtside.records import tables
 from courtside.records.cameras import footage
 from courtside.records.keypoints import keypoints, skeleton
@@ -22,6 +24,8 @@ def judge(way):
     cameras = footage.read(way["cameras"], way["pose2d"], way["people"], way["sync"], wanted=names)
     gathered = seen.gather(cameras, points, skeleton.read(way["skeleton"]))
     said = calibration_doubts.read(way["quality"], way["check"], way["court_check"])
+    if size := body_sizes.doubt(points, way["heights_m"]):
+        said = replace(said, shared=(*said.shared, size))
     rows = verdict.judge(gathered, said)
     for row in rows[rows["measure"] == verdict.WHOLE].itertuples():
         log.logger.info("%s: %s", row.verdict, row.sentence)

@@ -196,7 +196,10 @@ def test_a_take_is_judged_in_each_way_in_which_it_is_measured(job, study):
     calibration = "results/walk-4cams-tiny/calibration/file"
     assert first["quality"] == f"{calibration}/quality.json"
     assert (first["check"], first["court_check"]) == (f"{calibration}/check.json", "")
-    assert not any(way["check"] for way in takes.judged(job(**SHOT)))
+    assert first["heights_m"] == {"p1": None}
+    shot = takes.judged(job(**SHOT))
+    assert not any(way["check"] for way in shot)
+    assert {way["heights_m"]["p1"] for way in shot} == {1.84}
 
 
 def test_only_a_take_that_failed_is_judged_in_each_run(job, tmp_path, monkeypatch):

@@ -142,7 +142,10 @@ def measured_stage(job: Job) -> str:
 
 
 def judged(job: Job) -> list[dict[str, Any]]:
-    """Return the files of each way in which a take is measured and exported, with its labels."""
+    """Return the files of each way in which a take is measured and exported, with its labels.
+
+    And the stated heights of its persons, m.
+    """
     session, found = job.session, []
     ways = session.take_calibrations(), session.fusions_of(job.take), session.parameters["models"]
     for way in product(*ways):
@@ -162,6 +165,7 @@ def judged(job: Job) -> list[dict[str, Any]]:
         by_lines = of_file and session.shows_court()
         files["check"] = one.fill(paths.CALIBRATION_CHECK, suffix="json") if of_file else ""
         files["court_check"] = one.fill(paths.COURT_CHECK, suffix="json") if by_lines else ""
+        files["heights_m"] = stated(job, "height_m")
         found.append({"labels": labels, **files})
     return found
 
