@@ -36,9 +36,24 @@ def test_a_camera_that_stands_elsewhere_is_named_with_the_way(by_m, degrees, row
     said = wholes["c2"].sentence
     true = dict(zip("xyz", -np.array(by_m, float) + 0.0, strict=True))
     way = ", ".join(f"{axis} {by:+.1f}" for axis, by in true.items())
-    assert f"{np.linalg.norm(by_m):.1f} m from the calibrated place ({way} m)" in said
-    assert f"turned by {degrees} degrees; it was moved after" in said
+    assert f"it stands {np.linalg.norm(by_m):.1f} m (+-" in said
+    assert f"from the calibrated place ({way} m), turned by {degrees} degrees; it was" in said
     assert {wholes[name].verdict for name in ("c0", "c1", "c3")} == {GOOD}
+
+
+def test_the_place_lies_within_its_uncertainty_and_is_not_told_if_that_is_large():
+    found = {}
+    for n_frames in (12, 150):
+        cameras = judged.followed(judged.footage(n_frames), dict.fromkeys(SAME, (0,)))
+        rng = np.random.default_rng(1)
+        cameras[2].tracklets.xy[...] += 8 * rng.normal(size=(2, 1, 33, 2))  # as a network errs
+        moved = moved_cameras.find(judged.gathered(displaced(cameras, 2, (8.1, 0, 0), 0)), 2)
+        off_m = np.linalg.norm(moved.after.centre_in_world - cameras[2].camera.centre_in_world)
+        assert off_m < 3 * moved.sigma_m
+        found[n_frames] = moved
+    assert found[12].sigma_m > moved_cameras.TOLD_M > found[150].sigma_m
+    assert "elsewhere or is turned; how far, they move too little to tell" in str(found[12])
+    assert "m (+-" in str(found[150]) and "elsewhere" not in str(found[150])
 
 
 def test_a_camera_whose_pose_is_right_is_not_moved():
