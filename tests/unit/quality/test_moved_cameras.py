@@ -41,6 +41,19 @@ def test_a_camera_that_stands_elsewhere_is_named_with_the_way(by_m, degrees, row
     assert {wholes[name].verdict for name in ("c0", "c1", "c3")} == {GOOD}
 
 
+@pytest.mark.parametrize("rows", [(0, 1), (-1, -1)])
+def test_a_camera_that_was_moved_is_not_told_to_be_turned_alone(rows):
+    """A rotation leaves 0.07 to 0.11 of a height, which passed for a turned camera."""
+    names = ("c0", "c1", "c2")
+    cameras = judged.followed(
+        judged.footage(n_cameras=3), dict.fromkeys(names, (0, 1)) | {"c2": rows}
+    )
+    seen = judged.gathered(displaced(cameras, 2, (1.5, -1, 0), 0))
+    cause = causes.find(seen, 2, found_limit=0.9)
+    assert cause.name == causes.CALIBRATION
+    assert "stands 1.8 m (+-0.1) from the calibrated place (x -1.5, y +1.0" in cause.sentence
+
+
 def test_the_place_lies_within_its_uncertainty_and_is_not_told_if_that_is_large():
     found = {}
     for n_frames in (12, 150):

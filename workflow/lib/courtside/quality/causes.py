@@ -30,6 +30,7 @@ LEAST = 0.3  # a test needs the person in this share of the frames looked at
 SOME = 0.02  # share of frames without anybody that is worth a word
 MOST_S = 0.5  # clocks are searched to either side
 FINEST_S = 0.008  # and not in finer steps than this, or a frame
+TURNED = 0.04  # ASSUME: heights that a mere rotation leaves at most; else the camera was moved, too
 MOST_DEG = 15.0  # a camera that is turned further is not recognised
 MOST_POINTS = 3000  # of the fit of a direction
 SPREAD = 0.02  # heights: errors beyond it weigh less in that fit
@@ -80,12 +81,16 @@ def find(
     """
     cause = _by_people(seen, camera, found_limit)
     if not cause.is_shown and (moved := moved_cameras.find(seen, camera)):
-        cause = Cause(CALIBRATION, f"its calibration is off: {moved}")
+        cause = _elsewhere(moved)
     if cause.is_shown and cause.name != CALIBRATION:
         return cause
     if doubt:
         return Cause(CALIBRATION, f"its calibration is off: {doubt}")
     return Cause(CALIBRATION, OTHERS) if others else cause
+
+
+def _elsewhere(moved: moved_cameras.Moved) -> Cause:
+    return Cause(CALIBRATION, f"its calibration is off: {moved}")
 
 
 def late(seen: Seen, camera: int) -> Cause | None:
@@ -198,6 +203,8 @@ def _by_tests(one: _Camera, absent: float) -> Cause:
     name = min(left, key=lambda key: np.nan_to_num(left[key], nan=np.inf))
     if not left[name] <= min(NEARER * before, SAME):
         return _unexplained(one, before, absent)
+    if name == CALIBRATION and turned > TURNED and (moved := moved_cameras.find(one.seen, one.at)):
+        return _elsewhere(moved)
     words = {
         IDENTITY: "it follows somebody else: with another person found there",
         CLOCK: f"its clock is off: moved by {shift_s:+.3f} s",
