@@ -146,6 +146,7 @@ def test_clicks_that_bend_the_map_are_told():
     assert quality.strained(7.0) == quality.strained(np.nan) == ""
     line = quality.strained(38.1)
     assert "by 38 half squared sigmas (good: up to 20)" in line and "\n" not in line
+    assert "all walks are of this hall" in line
 
 
 def test_the_volume_of_a_court_without_lines_begins_in_its_corner_too():

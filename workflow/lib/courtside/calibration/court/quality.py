@@ -233,8 +233,8 @@ def strained(strain: float) -> str:
     return (
         "court points: expected clicks that fit the walk, found that its tie points fit worse with "
         f"them, by {strain:.0f} half squared sigmas (good: up to {MOST_STRAIN:g}): they bend the "
-        "walk's map; look whether all cameras are clicked on the same court, and the points have "
-        "their right names; if so, take more bridging images"
+        "walk's map; look whether all cameras are clicked on the same court, the points have their "
+        "right names, and all walks are of this hall; if so, take more bridging images"
     )
 
 
