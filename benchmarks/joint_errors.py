@@ -40,9 +40,9 @@ def takes_of(results):
     takes = [take for of in joint_offsets.takes_of(results).values() for take in of]
     for seen, sex_of, truth in error_fit.footage_with_truth(takes):
         (body,) = sex_of
-        for used in error_fit.sets_of_cameras(seen):
-            given = used, joint_offsets.SHAPE, sex_of, table, truth, *steps
-            found.append((body, len(used), error_fit.joints_of(*given)))
+        given = seen, joint_offsets.SHAPE, sex_of, table, truth, *steps
+        sets = zip(error_fit.sets_of_cameras(seen), error_fit.joints_of_sets(*given), strict=True)
+        found += [(body, len(used), joints) for used, joints in sets]
     return found
 
 

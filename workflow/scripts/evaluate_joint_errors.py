@@ -14,9 +14,7 @@ def main(paths, errors_csv, *, takes, about, step, filtering):
     table = joint_correction.read(paths.offsets) if paths.offsets else None
     joints, parts = skeleton.read(paths.skeleton), []
     for seen, sex_of, truth in error_fit.footage_with_truth(takes):
-        for used in error_fit.sets_of_cameras(seen):
-            given = used, joints, sex_of, table, truth, step, filtering
-            parts.append(error_fit.joints_of(*given))
+        parts += error_fit.joints_of_sets(seen, joints, sex_of, table, truth, step, filtering)
     columns, error, covariance, weight = map(np.concatenate, zip(*parts, strict=True))
     log.logger.info("joints: %d", len(columns))
     model = joint_errors.fit(columns, error, covariance, weight)

@@ -46,7 +46,8 @@ def main(
         for form in ("fixed", "following"):
             part = sources.split(body, reference, form=form)
             parts.append(part.assign(source=body.source, frame=form))
-        swept = wrist_arcs.arcs(replace(reference, clap_s=body.clap_s))
+        own = replace(reference, source=body.source, clap_s=body.clap_s)
+        swept = wrist_arcs.arcs_or_none(own, "true arcs")
         paths.append(wrist_arcs.paths(swept).assign(source=body.source))
         row = wrist_arcs.distortion(swept).assign(source=body.source, unit_m=reference.unit_m)
         distortion.append(row.assign(sparc=smoothness.of_arcs(reference, swept, sparc_rate_hz)))

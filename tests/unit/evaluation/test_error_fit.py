@@ -65,6 +65,22 @@ def test_a_take_too_short_to_choose_a_cutoff_from_is_named_by_its_person():
         error_fit.joints_of(seen, walker.SKELETON, {"p1": "m"}, None, truth, OPTIONS, chosen)
 
 
+def test_a_cutoff_too_high_for_a_take_is_told_once_for_all_sets_of_its_cameras(caplog):
+    cameras, record = scene.ring(3), walker.points(12)
+    record = replace(record, time_s=np.arange(12) / 10, xyz=walker.body(12)[None])
+    seen = [
+        Footage(camera, replace(view, time_s=record.time_s), Clock())
+        for camera, view in zip(cameras, walker.views(record, cameras), strict=True)
+    ]
+    truth = true_motion.Truth(record.joints, record.person_id, record.time_s, record.xyz)
+    given = seen, walker.SKELETON, {"p1": "m"}, None, truth, OPTIONS, FILTERING
+    for n_takes in (1, 2):
+        found = error_fit.joints_of_sets(*given)
+        assert [weight[0] for *_, weight in found] == [0.25, 0.25, 0.25, 0.4]
+        told = [line for line in caplog.messages if "lowered to 4.5" in line]
+        assert len(told) == n_takes, caplog.messages
+
+
 def test_all_sets_of_two_or_more_cameras_are_used():
     found = [len(used) for used in error_fit.sets_of_cameras(["a", "b", "c", "d"])]
     assert found == 6 * [2] + 4 * [3] + [4]

@@ -1,13 +1,29 @@
 """Errors and their parts against errors that were put in."""
 
+import runpy
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
+import pandas as pd
 import pytest
 from scipy.spatial.transform import Rotation
 
+from courtside.body_frame import common
+from courtside.body_frame import frame as bodyframe
 from courtside.evaluation import sources
+from courtside.events import tpose
 from courtside.geometry.similarity import Sim3
+from courtside.records.devices import device_motion
+from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints import body_motion, derived_joints
+from courtside.records.truth import take_truth
+from courtside.records.truth.take_truth import TakeTruth
 from fixtures.people.bodies_made import body
+from fixtures.recordings import device_takes
 
+ROOT = Path(__file__).parents[3]
+DERIVED = ROOT / "config" / "derived_joints.yaml"
 JOINTS = ["left_hip", "right_hip", "left_wrist", "right_wrist", "right_ankle", "left_ankle"]
 UNIT_M = 0.75
 
@@ -155,3 +171,42 @@ def test_rotation_unit_and_shift_are_separated():
     turn = Rotation.from_rotvec(np.radians([1.0, -2.0, 2.0])).as_matrix()
     found = sources.body_frame_errors(own(turn, 1.02, (0.003, 0, 0.004)), POSE, TRUE)
     assert found == pytest.approx({"angle_deg": 3.0, "unit_percent": 2.0, "origin_mm": 5.0})
+
+
+def test_a_take_without_a_clap_has_all_errors_but_no_true_arcs(tmp_path, caplog):
+    times, xyz, _ = device_takes.truth()
+    joints = np.array(device_takes.JOINTS)
+    nobody = {"offset_s": {}, "drift_ppm": {}}
+    true = TakeTruth(
+        times, joints, np.array(["p1"]), xyz[None], np.zeros((1, len(times), 2, 3)), **nobody
+    )
+    take_truth.write(tmp_path / "truth.npz", true)
+    motion = device_motion.of_truth(true, "p1")
+    table = derived_joints.read(DERIVED)
+    at = bodyframe.at_tpose(
+        motion, bodyframe.anchors(table, derived_joints.RIG, joints), tpose.find(motion)[0]
+    )
+    clapped = {"cam": [at.tpose.stop_s + 1.0], "suit": []}
+    for name, clap_s in clapped.items():
+        own = common.aligned(replace(motion, source=name), at, Clock(), clap_s)
+        body_motion.write(tmp_path / f"{name}.npz", own)
+    main = runpy.run_path(str(ROOT / "workflow" / "scripts" / "evaluate_sources.py"))["main"]
+    files = [tmp_path / f"{name}.csv" for name in ("errors", "parts", "paths", "distortion")]
+    bodies = [tmp_path / f"{name}.npz" for name in clapped]
+    for used in (bodies[:1], bodies):
+        alone = [file.read_text() for file in files[2:] if file.exists()]
+        given = used, tmp_path / "truth.npz", DERIVED, *files
+        main(*given, labels={"take": "late"}, person="p1", sparc_rate_hz=30)
+    assert len(alone) == 2  # numbers of the other source are written as without this one
+    assert all(
+        file.read_text().startswith(text) for file, text in zip(files[2:], alone, strict=True)
+    )
+    errors, parts, paths, distortion = map(pd.read_csv, files)
+    assert set(errors["source"]) == set(parts["source"]) == set(clapped)
+    assert set(paths["source"]) == {"cam"}
+    counts = distortion.groupby("source")["n"].sum()
+    assert counts["cam"] > 0 and counts["suit"] == 0
+    assert distortion["sparc"].isna().tolist() == [False, False, True, True]
+    (line,) = [line for line in caplog.messages if "arcs" in line]
+    assert line.startswith("no true arcs of suit: expected a clap within 3 s of the T-pose of ")
+    assert line.endswith("found claps at no time; clap after each T-pose")

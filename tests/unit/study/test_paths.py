@@ -1,11 +1,13 @@
 """Files have the names that users, pages and documents know."""
 
+import re
 from pathlib import Path
 
 import pytest
 
 from courtside.study import paths
 
+RULES = Path(__file__).parents[3] / "workflow" / "rules"
 KNOWN = {
     "session": "gym",
     "take": "rally",
@@ -113,3 +115,14 @@ def test_files_of_the_configuration_exist():
         config / paths.SESSION_YAML.format(session="plain-a"),
     ]
     assert [path for path in found if not path.is_file()] == []
+
+
+def test_the_names_of_all_figures_and_tables_of_a_study_are_taken():
+    rules = "".join(path.read_text("utf-8") for path in sorted(RULES.glob("*.smk")))
+    drawn = set(re.findall(r'study_figure\(\s*"(\w+)"', rules))
+    assert 'study_figure("thesis_fig3_{number}"' in rules
+    drawn |= {"thesis_fig3_1", "thesis_fig3_2"}
+    tables = {re.fullmatch(r"results/figures/(\w+)\.csv", str(v)) for v in vars(paths).values()}
+    drawn |= {found[1] for found in tables if found}
+    assert {"networks", "ways"} <= drawn
+    assert set(paths.TAKEN_FIGURES) == drawn

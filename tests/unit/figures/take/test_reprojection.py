@@ -57,6 +57,20 @@ def test_every_bottom_panel_has_numbers_where_the_last_row_is_not_full():
     assert named == numbers == [False, False, True, True, True]
 
 
+def test_an_axis_that_ends_just_after_a_power_of_ten_has_a_number_at_each():
+    record = walker.points(n_cameras=4)
+    spread = np.geomspace(0.1, 130, record.reproj_error_px.shape[1])
+    record.reproj_error_px[...] = spread[:, np.newaxis, np.newaxis]
+    drawing = reprojection.draw(reprojection.table(record))
+    drawing.draw_without_rendering()
+    low, high = drawing.axes[0].get_xlim()
+    for axis in drawing.axes:
+        ticks = axis.get_xticklabels()
+        shown = [one for one in ticks if low <= one.get_position()[0] <= high]
+        assert [one.get_text() for one in shown] == ["0.1", "1", "10", "100"]
+    assert not drawings.cut(drawing)
+
+
 @pytest.mark.parametrize("scale", [1.0, 0.01])
 def test_the_axis_holds_the_medians_however_small_they_are(scale):
     record = walker.points()

@@ -94,6 +94,33 @@ def test_a_take_says_what_the_feet_did():
     assert html.count("landings") == 1
 
 
+@pytest.mark.parametrize(
+    ("stance", "swing", "said"),
+    [
+        (0.4, 0.25, "a foot stands for <b>0.400 &plusmn; 0.010 s</b> on average, and swings for"),
+        (math.nan, 1.056, "split steps: 0), a foot swings for <b>1.056 &plusmn; 0.010 s</b>"),
+    ],
+)
+def test_times_of_a_foot_are_a_sentence_where_one_is_not_known(stance, swing, said):
+    feet = dict.fromkeys(("steps", "lunges"), (1.0, math.nan, ""))
+    feet |= {"split_steps": (0.0, math.nan, "")}
+    feet |= {"stance_time": (stance, 0.01, "s"), "swing_time": (swing, 0.01, "s")}
+    facts = FACTS | {"persons": {"p1": {}}, "footwork": {"p1": feet}}
+    html = coach.take({"id": "t", "name": "t", "links": []}, facts, [])
+    assert said in " ".join(html.split())
+
+
+def test_joint_angles_say_where_they_are_zero_and_which_way_is_negative():
+    angles = {"trunk_lean_forward_min": (-18.0, 16.0, "degrees")}
+    angles |= {"trunk_lean_forward_max": (16.0, 13.0, "degrees")}
+    take = {"id": "t", "name": "t", "links": []}
+    html = coach.take(take, FACTS | {"persons": {"p1": angles}}, [])
+    assert "&minus;18 &plusmn; 16&deg;" in html
+    assert "Bend: 0° is straight. Arm: 0° hangs along the trunk." in html
+    assert "Lean: 0° is upright; forwards, negative is backwards." in html
+    assert "0° is" not in coach.take(take, FACTS | {"persons": {"p1": {}}}, [])
+
+
 def test_strokes_are_counted_with_their_hand_where_there_are_any():
     hits = [{"person": "p1", "hand": "left", "overhead": over} for over in (True, False, True)]
     facts = FACTS | {"persons": {"p1": {}, "p2": {}}, "strokes": {"p1": hits}}

@@ -161,3 +161,35 @@ def test_what_is_compared_over_sessions_is_known(change, words):
     step = COMPARED | {"subject": "alma", "sessions": ["spring", "autumn"]} | change
     where = "season.yaml: compare_sessions"
     assert said(study(compare_sessions=step)) == ([f"{where}.{words}"] if words else [])
+
+
+def varied(names, vary):
+    conditions = {name: {"session": "spring", "vary": vary} for name in names}
+    return study(variations=list(names), conditions=conditions)
+
+
+def test_conditions_whose_figures_would_have_one_file_are_told():
+    (line,) = said(varied(["fast-walk", "slow", "fast_walk"], {"speed_kmh": [1, 6]}))
+    assert line == (
+        "season.yaml: variations: expected conditions whose figures have different files, found "
+        "fast-walk and fast_walk, both results/figures/fast_walk.csv; rename one of these "
+        "conditions"
+    )
+    one = varied(["fast-walk", "fast_walk"], {"speed_kmh": [1, 6]})
+    one.parameters["conditions"]["fast_walk"]["vary"] = {"world": [{}, {"clicks": 2}]}
+    (line,) = said(one)  # two rules would draw it
+    assert "found fast-walk and fast_walk, both results/figures/fast_walk.csv" in line
+
+
+@pytest.mark.parametrize("name", ["clock-errors", "calibration"])
+def test_a_condition_whose_figure_has_the_name_of_another_result_is_told(name):
+    (line,) = said(varied([name], {"speed_kmh": [1, 6]}))
+    assert line == (
+        "season.yaml: variations: expected a condition whose figure has a file of its own, found "
+        f"{name}: results/figures/{name.replace('-', '_')}.csv is another result of the study; "
+        "rename the condition"
+    )
+
+
+def test_conditions_of_seeds_alone_have_no_figure_and_any_name():
+    assert said(varied(["fast-walk", "fast_walk", "calibration"], {"seed": [1, 2]})) == []

@@ -113,3 +113,12 @@ def test_progress_speaks_only_after_the_interval(caplog, monkeypatch):
         "c1: frames: 5, 0.4 per second",
         "c1: frames: 5, 0.4 per second",
     ]
+
+
+def test_a_message_is_told_once_within_a_block_and_again_after_it(caplog):
+    with log.told_once():
+        for rate in (10, 10, 20, 10):
+            log.logger.warning("lowered at %d frames per second", rate)
+    log.logger.warning("lowered at %d frames per second", 10)
+    ten, twenty = "lowered at 10 frames per second", "lowered at 20 frames per second"
+    assert caplog.messages == [ten, twenty, ten]

@@ -27,6 +27,7 @@ from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.keypoints.skeleton import Skeleton
 from courtside.records.truth import session_truth, take_truth
 from courtside.records.truth.take_truth import TakeTruth
+from courtside.study.execution import log
 
 # ASSUME: weight of a joint by the number of cameras of its set: all sets of four cameras of one
 # size together count about as much as the one of four.
@@ -81,6 +82,24 @@ def triangulated(
     cameras, views = [one.camera for one in seen], [one.view for one in seen]
     clocks = [one.clock for one in seen]
     return fusion.triangulate_take(cameras, views, skeleton, people, clocks=clocks, **options)
+
+
+def joints_of_sets(
+    seen: Sequence[Footage],
+    skeleton: Skeleton,
+    sex_of: Mapping[str, str | None],
+    table: pd.DataFrame | None,
+    truth: Truth,
+    options: Mapping[str, Any],
+    filtering: Mapping[str, Any],
+) -> list[tuple[NDArray, NDArray, NDArray, NDArray]]:
+    """Return `joints_of` each set of cameras of a take.
+
+    The log says once what is true of all sets, such as a cut-off too high for the frame rate.
+    """
+    given = skeleton, sex_of, table, truth, options, filtering
+    with log.told_once():
+        return [joints_of(used, *given) for used in sets_of_cameras(seen)]
 
 
 def joints_of(

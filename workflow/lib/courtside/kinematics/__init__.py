@@ -11,5 +11,5 @@ centre_of_mass: `shares`, `weights`, `place` (of one segment)
 measures: `measure` (all of a take), `Filter`, `Person`, `Point`
 joint_means: `table`
 smoothness: `sparc`, `of_path`, `of_arcs`
-wrist_arcs: `arcs`, `paths`, `distortion`
+wrist_arcs: `arcs`, `arcs_or_none`, `paths`, `distortion`
 """

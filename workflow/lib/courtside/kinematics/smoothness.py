@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from courtside.geometry.interpolation import linear
-from courtside.kinematics.wrist_arcs import Arc
+from courtside.kinematics.wrist_arcs import SIDES, Arc
 from courtside.records.keypoints.body_motion import BodyMotion
 
 # Of the authors' own code (references in `sparc`).
@@ -60,7 +60,9 @@ def of_path(
 
 
 def of_arcs(body: BodyMotion, arcs: Sequence[Arc], rate_hz: float) -> list[float]:
-    """Return the SPARC of each wrist of a body on its arc from T-pose to clap."""
+    """Return the SPARC of each wrist of a body on its arc from T-pose to clap; NaN without arcs."""
+    if not arcs:
+        return [float("nan")] * len(SIDES)
     return [
         of_path(
             body.time_s,

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from courtside.records.devices.events import CLAP_WITHIN_S
 from courtside.records.keypoints.body_motion import BodyMotion
 from courtside.study.errors import InputError
+from courtside.study.execution import log
 
 PLANE = [0, 2]  # x to the left hand, z forwards
 SIDES = ("left", "right")
@@ -86,6 +87,14 @@ def arcs(body: BodyMotion) -> list[Arc]:
     return found
 
 
+def arcs_or_none(body: BodyMotion, whose: str = "arcs") -> list[Arc]:
+    """Return the arcs of a source; none, and why in the log, if it has none (`missing`)."""
+    if why := missing(body):
+        log.logger.warning("no %s of %s", whose, why)
+        return []
+    return arcs(body)
+
+
 def _claps_s(body: BodyMotion) -> NDArray:
     """Return the claps that belong to the T-pose: later ones end other movements."""
     after_s = body.clap_s - body.tpose_s[1]
@@ -99,7 +108,7 @@ def paths(found: Sequence[Arc]) -> pd.DataFrame:
         for arc in found
         for values in zip(arc.time_s, *arc.path.T, arc.off_arc, arc.off_circle, strict=True)
     ]
-    return pd.DataFrame(rows, columns=PATHS)
+    return pd.DataFrame(rows, columns=PATHS).astype(dict.fromkeys(PATHS[1:], float))
 
 
 def distortion(found: Sequence[Arc]) -> pd.DataFrame:
@@ -130,4 +139,4 @@ def distortion(found: Sequence[Arc]) -> pd.DataFrame:
                 "end_radius": 1.0 + circle[-1],
             }
         rows.append(row)
-    return pd.DataFrame(rows, columns=DISTORTION)
+    return pd.DataFrame(rows, columns=DISTORTION).astype(dict.fromkeys(DISTORTION[2:], float))

@@ -188,6 +188,13 @@ NETWORK_PAIRS = "results/figures/agreement.pairs.csv"
 NETWORK_AGREEMENT = "results/figures/agreement.table.csv"
 NETWORK_ERRORS = "results/figures/networks.table.csv"
 
+# Names in the folder of STUDY_FIGURE that are taken: no condition's figure may have them.
+TAKEN_FIGURES = (
+    *("agreement", "archive", "badminton_fig05", "badminton_fig12", "clock_errors", "networks"),
+    *("reliability", "smoothness", "thesis_fig3_1", "thesis_fig3_2"),
+    *("angles", "calibration", "players", "study", "ways"),  # tables
+)
+
 # Below the folder config/.
 COURT_YAML = "courts/{court}.yaml"
 SKELETON_YAML = "skeletons/{skeleton}.yaml"

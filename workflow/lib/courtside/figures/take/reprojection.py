@@ -4,12 +4,13 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullFormatter
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from courtside.figures.style import bars, style
 from courtside.records.keypoints.keypoints import Keypoints3D
 
 SMALLEST_PX = 0.1  # where the logarithmic axis begins
+MOST_NUMBERS = 5  # on the axis of a narrow panel
 
 
 def table(points: Keypoints3D) -> pd.DataFrame:
@@ -42,6 +43,8 @@ def draw(rows: pd.DataFrame) -> Figure:
         axis.set_xlabel("reprojection error (px)")
     bars.name_rows(axes[0], joints)
     bars.plain_log(axes[0], "x")
+    # By its own choice matplotlib leaves out 1 and 10 px, between which most errors are.
+    axes[0].xaxis.set_major_locator(LogLocator(numticks=MOST_NUMBERS))
     axes[0].xaxis.set_minor_formatter(NullFormatter())
     if rows.median_px.max() > SMALLEST_PX:
         axes[0].set_xlim(left=SMALLEST_PX)

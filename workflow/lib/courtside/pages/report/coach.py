@@ -96,9 +96,11 @@ def _steps(measures: dict) -> list[tuple]:
         return []
     also = f" (lunges: {n['lunges']:.0f}, split steps: {n['split_steps']:.0f})"
     phrases: list[tuple] = [("landings of a foot", f"{n['steps']:.0f}", also)]
-    for name, words in (("stance_time", "a foot stands for"), ("swing_time", "and swings for")):
-        if not math.isnan(measures[name][0]):
-            phrases.append((words, with_error(*measures[name]), " on average"))
+    verbs = {"stance_time": "stands for", "swing_time": "swings for"}
+    known = [name for name in verbs if not math.isnan(measures[name][0])]
+    for name, start in zip(known, ("a foot", "and"), strict=False):
+        words = f"{start} {verbs[name]}"
+        phrases.append((words, with_error(*measures[name]), " on average"))
     return phrases
 
 

@@ -9,7 +9,7 @@ import pandas as pd
 from markupsafe import Markup
 
 from courtside.pages import page, pictures
-from courtside.pages.report import captions
+from courtside.pages.report import captions, columns
 from courtside.records import tables
 from courtside.study.errors import InputError
 
@@ -120,11 +120,12 @@ def identity(*parts: str) -> str:
 def table(entry: dict) -> Markup:
     """Return a CSV file as HTML, folded away, without the columns that are empty throughout.
 
+    Columns have headings in words; one that differs from its name in the file has it as a tip.
     `entry` has `file` (path), `title`, `words` and `link` (address).
     """
     found = pd.read_csv(entry["file"], dtype=str, keep_default_na=False)
     found = found.loc[:, (found != "").any()]
-    head = [name.replace("_", " ") for name in found]
+    head = [(name, columns.words(Path(entry["file"]).stem, name)) for name in found]
     named = [name in NAMES for name in found]
     cells = [
         [(value, False) if name else _cell(value) for value, name in zip(row, named, strict=True)]

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from itertools import product
 from typing import Any
 
-from courtside.study import measure_names
-from courtside.study.configuration import yaml_files
+from courtside.study import measure_names, paths
+from courtside.study.configuration import session_files, yaml_files
 from courtside.study.configuration.sessions import DEFAULT, Session, Study
 from courtside.study.errors import nearest
 
@@ -34,7 +34,10 @@ def find(config_file: str, study: Study) -> Iterator[str]:
                 f"{config_file}: {key}: expected one of the takes of session {session_name}, "
                 f"{_takes(session)}, found {name}; correct the name, or remove it"
             )
-    checks = (_without_truth, _without_sources, _without_views, _without_networks, _without_takes)
+    checks = (
+        *(_without_truth, _without_sources, _without_views, _without_networks, _without_takes),
+        _of_one_figure,
+    )
     for key, told in (fault for check in checks for fault in check(study)):
         if is_own(key):
             yield f"{config_file}: {told}"
@@ -132,6 +135,28 @@ def _without_sources(study: Study) -> Iterator[tuple[str, str]]:
                 f"draw_thesis_fig3.sources: expected sources of {step['take']}, {there}, found "
                 f"{unknown}; name two of them",
             )
+
+
+def _of_one_figure(study: Study) -> Iterator[tuple[str, str]]:
+    """Yield the key and a fault of each condition whose figure has a name that is taken."""
+    key, drawn = "variations", dict[str, str]()
+    for name in study.parameters[key]:
+        figure = session_files.figure_of(name, study.parameters["conditions"][name])
+        file = f"{paths.STUDY_FIGURE.format(figure=figure)}.csv"
+        if figure in paths.TAKEN_FIGURES:
+            yield (
+                key,
+                f"{key}: expected a condition whose figure has a file of its own, found {name}: "
+                f"{file} is another result of the study; rename the condition",
+            )
+        elif figure in drawn:
+            yield (
+                key,
+                f"{key}: expected conditions whose figures have different files, found "
+                f"{drawn[figure]} and {name}, both {file}; rename one of these conditions",
+            )
+        elif figure:
+            drawn[figure] = name
 
 
 def _takes(session: Session) -> list[str]:

@@ -33,6 +33,7 @@ MADE = re.compile(  # the cameras of a session of the study
         session="(?P<session>[^/]+)", calibration="(?P<calibration>[^/]+)"
     )
 )
+SEEDS = {"seed", "walk_seed"}  # of virtual sessions; variations of these alone have no figure
 OVERRIDDEN = ("principal_point_px", "reason")  # of a calibration file, as its session states them
 
 
@@ -226,6 +227,11 @@ def variations(base: Session, name: str, content: Content) -> dict[str, Session]
             | {"calibrations": override.get("calibrations", [])},
         )
     return found
+
+
+def figure_of(condition: str, content: Content) -> str | None:
+    """Return the name of a condition's figure; None if it varies seeds alone and has none."""
+    return None if set(content["vary"]) <= SEEDS else condition.replace("-", "_")
 
 
 def _merged(parameters: Content, override: Content) -> Content:

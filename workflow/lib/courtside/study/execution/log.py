@@ -4,6 +4,7 @@ import logging
 import sys
 import time
 from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import TypeVar
@@ -44,6 +45,24 @@ def tell(warning: str, path: StrPath) -> None:
     """
     logger.warning("%s", warning)
     print(f"Warning: {warning}; see {path}", file=sys.stderr, flush=True)
+
+
+@contextmanager
+def told_once() -> Iterator[None]:
+    """Within the block, log a message only if it was not logged there before, word by word."""
+    told: set[str] = set()
+
+    def is_new(record: logging.LogRecord) -> bool:
+        line = record.getMessage()
+        found = line not in told
+        told.add(line)
+        return found
+
+    logger.addFilter(is_new)
+    try:
+        yield
+    finally:
+        logger.removeFilter(is_new)
 
 
 def _log_exception(

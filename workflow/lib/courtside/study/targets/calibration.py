@@ -3,10 +3,9 @@
 from collections.abc import Callable, Collection, Iterable
 
 from courtside.study import paths
+from courtside.study.configuration import session_files
 from courtside.study.configuration.sessions import Session, Study
 from courtside.study.methods import Calibration, Variant
-
-SEEDS = ("seed", "walk_seed")
 
 
 def every_calibration(study: Study) -> list[str]:
@@ -118,7 +117,7 @@ def varied(study: Study, condition: str) -> list[Session]:
 
 def drawn_conditions(study: Study) -> dict[str, str]:
     """Return {figure: condition} of the conditions that vary how a session is filmed."""
-    return _conditions(study, lambda keys: "world" not in keys and not set(keys) <= set(SEEDS))
+    return _conditions(study, lambda keys: "world" not in keys)
 
 
 def world_conditions(study: Study) -> dict[str, str]:
@@ -127,9 +126,10 @@ def world_conditions(study: Study) -> dict[str, str]:
 
 
 def _conditions(study: Study, wanted: Callable[[Collection[str]], bool]) -> dict[str, str]:
-    conditions = study.parameters["conditions"]
-    names = study.parameters["variations"]
-    return {name.replace("-", "_"): name for name in names if wanted(conditions[name]["vary"])}
+    known = study.parameters["conditions"]
+    names = [name for name in study.parameters["variations"] if wanted(known[name]["vary"])]
+    figures = [(session_files.figure_of(name, known[name]), name) for name in names]
+    return {figure: name for figure, name in figures if figure}
 
 
 def racket_models(study: Study, session: Session) -> list[Variant]:
