@@ -28,8 +28,10 @@ class _StrictLoader(yaml.SafeLoader):
             key = self.construct_object(key_node, deep=True)
             problem = ""
             if not isinstance(key, str):
-                problem = f"expected a name, found {key!r}; put it in quotes"
-                if node.flow_style and isinstance(key, int | float):
+                scalar = isinstance(key_node, yaml.ScalarNode)
+                written = " ".join(key_node.value.split()) if scalar else repr(key)
+                problem = f"expected a name, found {written or 'nothing'}; put it in quotes"
+                if node.flow_style and type(key) in (int, float):  # `no` is a bool
                     problem += ", or, if it is the rest of a number such as 1,74, write 1.74"
             elif key[:1].isspace() and key[0] != " ":  # of Japanese input, or one that never breaks
                 problem = f"found a wide space (U+{ord(key[0]):04X}); write plain spaces"
