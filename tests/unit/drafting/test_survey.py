@@ -85,6 +85,32 @@ def test_a_table_of_named_persons_is_known_by_its_columns(tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("header", "kind"),
+    [
+        ("camera;point;frame_idx;x_px;y_px\r\n", "court_points"),
+        ('"camera"\t"point"\t"frame_idx"\t"x_px"\t"y_px"\n', "court_points"),
+        ("\ufefftake;subject;camera;time_s;x_px;y_px\r\nKür;p1;left;0,5;1;2\r\n", "people"),
+    ],
+)
+@pytest.mark.parametrize("encoding", ["utf-8", "cp1252"])
+def test_a_table_is_known_whatever_a_spreadsheet_writes_between_its_cells(
+    tmp_path, header, kind, encoding
+):
+    (tmp_path / "table.csv").write_bytes(header.encode(encoding, errors="ignore"))
+    (found,) = survey.survey(tmp_path, root=tmp_path)
+    assert (found.kind, found.note) == (kind, "")
+
+
+@pytest.mark.parametrize("kind", ["court_points", "people"])
+def test_a_table_of_the_name_that_a_draft_gives_is_not_left_out(tmp_path, kind):
+    """The check of the session says what is wrong with it; a draft took it for one to come."""
+    (tmp_path / f"{kind}.csv").write_text("cam,x,y\nleft,1,2\n")
+    (tmp_path / "notes.csv").write_text("cam,x,y\nleft,1,2\n")
+    (found,) = survey.survey(tmp_path, root=tmp_path)
+    assert (found.path, found.kind) == (f"{kind}.csv", kind)
+
+
+@pytest.mark.parametrize(
     ("columns", "key"),
     [
         ("camera,x_px,y_px,x_m,y_m,z_m", "court_points"),

@@ -1,6 +1,5 @@
 """Find out what the files of a folder are: videos, photos, clicks, calibrations, of devices."""
 
-import csv
 import math
 import os
 import re
@@ -32,8 +31,13 @@ OTHER_TABLES = {  # by the key of a session that names them: columns beside thos
     "board: corners": {"picture", "corner"},
     "wand: points": {"marker"},
 }
-PEOPLE = {*CLICKED, "take", "subject", "time_s"}
-RACKET = {"take", "camera", "frame_idx", "end"}
+TABLES = {  # by kind: columns
+    "court_points": set(clicks.COLUMNS),
+    "racket": {"take", "camera", "frame_idx", "end"},
+    "people": {*CLICKED, "take", "subject", "time_s"},
+}
+NAMED = {f"{kind}.csv": kind for kind in ("court_points", "people")}  # as the draft names them
+LONGEST = 10_000  # characters of a header; a file of something else may have no line's end
 DEPTH = (
     "16 bits and one channel, as pictures of depth: a depth camera's folder has cameras.toml, "
     "colour.mp4 and depth/ (config/README.md); write photos with 8 bits"
@@ -174,20 +178,25 @@ def _points_of_all_frames(path: Path) -> dict[str, Any] | None:
 
 
 def _table(path: Path) -> dict[str, Any] | None:
+    """Describe a table by its columns, or by the name that the draft gives it.
+
+    Also one with other characters than commas between the cells, which is refused later.
+    """
     try:
-        with path.open(newline="", encoding="utf-8-sig") as stream:
-            header = set(next(csv.reader(stream), []))
-    except (OSError, UnicodeDecodeError, csv.Error):
+        with path.open(encoding="utf-8-sig", errors="replace") as stream:
+            first = stream.readline(LONGEST)
+    except OSError:
         return None
-    if set(clicks.COLUMNS) <= header:
-        return {"kind": "court_points"}
-    for kind, columns in (("racket", RACKET), ("people", PEOPLE)):
+    header = {cell.strip(' "\n') for cell in re.split("[,;\t]", first)}
+    for kind, columns in TABLES.items():
         if header >= columns:
             return {"kind": kind}
     for key, columns in OTHER_TABLES.items():
         if header >= CLICKED | columns:
             note = f"by its columns the table of the key `{key}`; name it there in the session"
             return {"kind": "unusable", "note": note}
+    if path.name in NAMED:
+        return {"kind": NAMED[path.name]}
     if header >= CLICKED:
         expected = ",".join(clicks.COLUMNS)
         note = f"clicked points? expected the columns {expected}, found {','.join(sorted(header))}"
