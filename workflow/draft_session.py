@@ -93,8 +93,8 @@ if __name__ == "__main__":
     parser.add_argument("--name", help="of the session (default: the name of the folder)")
     parser.add_argument(
         "--court",
-        help="a file of config/courts, or none (default: badminton; none with a calibration file "
-        "or without videos of fixed cameras)",
+        help="a file of config/courts, or none (default: badminton; none with a calibration file, "
+        "with points that have their own coordinates, or without videos of fixed cameras)",
     )
     parser.add_argument(
         "--sessions",

@@ -420,3 +420,31 @@ def test_clicks_beside_a_calibration_are_not_passed_over():
     _, text, content = draft(*TAKE, calibration, clicked)
     assert not {"court_points", "static_points"} & set(content)
     assert '"data/north/clicks.csv": clicked points; as `static_points`' in text
+
+
+def test_points_with_their_own_coordinates_need_no_court_and_no_page():
+    points = recording("data/north/court_points.csv", "own_points")
+    guess, text, content = draft(*THREE, points)
+    assert (content["court"], content["court_points"]) == ("none", points.path)
+    assert content["cameras"] == {"left": {}, "right": {}, "back": {}}  # nothing is clicked
+    assert "click them" not in text and "not used" not in text
+    assert "calibrations: [people]" not in text
+    for court in (None, "data/north/court_points.csv"):  # as the command says it with --court none
+        said = advice.to_check(guess, "n.yaml", court, "s.yaml")
+        (line,) = (line for line in said if "points" in line)
+        assert line == (
+            "Cameras: they will be calibrated from the points with their own coordinates in "
+            "data/north/court_points.csv."
+        )
+
+
+def test_points_with_their_own_coordinates_beside_other_ways_are_told():
+    points = recording("data/north/points.csv", "own_points")
+    _, text, content = draft(*TAKE, CALIBRATION, points)
+    assert "court_points" not in content
+    said = "points with their own coordinates; without `calibration` they calibrate"
+    assert f'"data/north/points.csv": {said}' in text
+    guess, _, content = draft(*TAKE, WALK, points)  # the check tells that a walk needs a court
+    assert content["court_points"] == points.path
+    lines = advice.to_check(guess, "n.yaml", points.path, "s.yaml")
+    assert not any("will be calibrated" in line for line in lines)

@@ -88,6 +88,7 @@ def test_a_table_of_named_persons_is_known_by_its_columns(tmp_path):
     ("header", "kind"),
     [
         ("camera;point;frame_idx;x_px;y_px\r\n", "court_points"),
+        ("point;camera;x_px;y_px;x_m;y_m;z_m\r\nTür;left;1,5;2;0;0;0\r\n", "own_points"),
         ('"camera"\t"point"\t"frame_idx"\t"x_px"\t"y_px"\n', "court_points"),
         ("\ufefftake;subject;camera;time_s;x_px;y_px\r\nKür;p1;left;0,5;1;2\r\n", "people"),
     ],
@@ -113,7 +114,6 @@ def test_a_table_of_the_name_that_a_draft_gives_is_not_left_out(tmp_path, kind):
 @pytest.mark.parametrize(
     ("columns", "key"),
     [
-        ("camera,x_px,y_px,x_m,y_m,z_m", "court_points"),
         ("picture,camera,corner,x_px,y_px", "board: corners"),
         ("camera,frame,marker,x_px,y_px", "wand: points"),
     ],

@@ -28,8 +28,8 @@ def text(guess: Guess, *, title: str, folder: str, court: str | None = None) -> 
 
     `title` is one line on the session. `folder` is that of the recordings, as paths in the file
     begin; clicked court points are expected in it. `court` is one of config/courts, or `none`; by
-    default badminton where cameras are to be calibrated by it, otherwise `none`. An `InputError` if
-    there is no recording to make a session of.
+    default badminton where cameras are to be calibrated by it, otherwise `none`, also with points
+    that have their own coordinates. An `InputError` if there is no recording to make a session of.
     """
     if not guess.walks and not guess.takes and not guess.static:
         raise InputError(
@@ -37,7 +37,7 @@ def text(guess: Guess, *, title: str, folder: str, court: str | None = None) -> 
             f"{_what_is_there(guess)}; put the videos of the fixed cameras and of the walk there"
         )
     measured = guess.calibration is None and bool(guess.cameras) and not unfilmed(guess)
-    court = court or ("badminton" if measured else "none")
+    court = court or ("badminton" if measured and not guess.own_points else "none")
     lines = [
         f"# Drafted from {_quoted(folder)}: check the lines with `{MARK}`; config/README.md lists "
         "all keys.",
@@ -47,15 +47,15 @@ def text(guess: Guess, *, title: str, folder: str, court: str | None = None) -> 
     ]
     if guess.takes:
         lines += ["subjects:", f"  p1: {{consent: [analysis, pictures]}}  {MARK} {SUBJECTS}"]
-    clicked = measured and court != "none"
-    if clicked or guess.walks:  # both need a picture of every camera
+    clicked = measured and (court != "none" or guess.own_points)
+    if (clicked and not guess.own_points) or guess.walks:  # both need a picture of every camera
         lines += _cameras(guess, _stand_ins(guess))
     else:
         lines += _cameras(guess, {})
     lines += [*_walks(guess), *_places(guess, folder, clicked)]
     lines += [*_people(guess, folder), *synchronised(guess), *_takes(guess)]
     lines += _override(guess)
-    if measured and court == "none" and not guess.walks:
+    if measured and court == "none" and not guess.walks and not guess.own_points:
         lines += people_alone(guess)
     return "\n".join([*lines, *_unused(guess)]) + "\n"
 
@@ -196,6 +196,7 @@ def _places(guess: Guess, folder: str, clicked: bool) -> list[str]:
     if not clicked:
         return []
     remark = "" if guess.court_points else "  # not there yet: click them, see config/README.md"
+    remark = f"  {MARK} points with their own coordinates" if guess.own_points else remark
     return [f"court_points: {_quoted(court_points(guess, folder))}{remark}"]
 
 
@@ -347,6 +348,8 @@ def left_out(guess: Guess) -> list[tuple[str, str]]:
     found += [(r.path, f"{d} of no take") for take, d, r in guess.devices if not take]
     if guess.calibration and guess.court_points:
         why = "clicked points; as `static_points` they check the calibration file"
+        if guess.own_points:
+            why = "points with their own coordinates; without `calibration` they calibrate"
         found.append((guess.court_points.path, why))
     return found
 

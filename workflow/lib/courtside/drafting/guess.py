@@ -225,11 +225,12 @@ def _sort_others(found: Guess, recordings: Iterable[Recording], own: Words) -> N
     if alone:  # a session of devices
         _place_single_views(found, [r for r in recordings if r.kind in DEVICES])
     for recording in recordings:
-        if recording.kind in ("court_points", "people", "calibration"):
-            if getattr(found, recording.kind) is None:
-                setattr(found, recording.kind, recording)
+        if recording.kind in ("court_points", "own_points", "people", "calibration"):
+            key = recording.kind.replace("own", "court")
+            if getattr(found, key) is None:
+                setattr(found, key, recording)
             else:
-                kind = recording.kind.replace("_", " ")
+                kind = key.replace("_", " ")
                 found.unused.append((recording, f"there is another {kind} file"))
         elif recording.kind in DEVICES and not alone:
             take = _nearest(found.takes, set(own[recording.path]))

@@ -27,11 +27,11 @@ BAGS = {".bag", ".db3"}
 CALIBRATIONS = {".toml", ".txt", ".xml", ".xcp", ".mcal"}
 CLICKED = {"camera", "x_px", "y_px"}
 OTHER_TABLES = {  # by the key of a session that names them: columns beside those
-    "court_points": {"x_m", "y_m", "z_m"},
     "board: corners": {"picture", "corner"},
     "wand: points": {"marker"},
 }
 TABLES = {  # by kind: columns
+    "own_points": {*CLICKED, "x_m", "y_m", "z_m"},
     "court_points": set(clicks.COLUMNS),
     "racket": {"take", "camera", "frame_idx", "end"},
     "people": {*CLICKED, "take", "subject", "time_s"},
