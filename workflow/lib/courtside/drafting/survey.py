@@ -52,9 +52,9 @@ EMPTY = "an empty folder; copy its recordings into it, or delete it"
 def survey(folder: StrPath, *, root: StrPath) -> list[Recording]:
     """Describe every recording of a folder and of the folders in it, in name order.
 
-    Files that are clearly no recordings are left out; unreadable ones come as `unusable` with the
-    reason. Paths start from `root`, as those of sessions do; a folder elsewhere gives absolute
-    paths. An `InputError` if there is no such folder.
+    Links are followed. Files that are clearly no recordings are left out; unreadable ones come as
+    `unusable` with the reason. Paths start from `root`, as those of sessions do; a folder elsewhere
+    gives absolute paths. An `InputError` if there is no such folder.
     """
     folder = Path(folder)
     if not folder.is_dir():
@@ -63,8 +63,10 @@ def survey(folder: StrPath, *, root: StrPath) -> list[Recording]:
             f"{'a file' if folder.exists() else 'none'}; correct the path"
         )
     found = []
-    for at, inner, names in os.walk(folder):
-        inner[:] = _in_name_order(inner)
+    for at, inner, names in os.walk(folder, followlinks=True):
+        inner[:] = [
+            name for name in _in_name_order(inner) if not _leads_back(Path(at, name), folder)
+        ]
         if depth_folder.is_one(at):
             found.append(_described(Path(at), folder, root, _depth))
             inner[:] = []
@@ -73,6 +75,14 @@ def survey(folder: StrPath, *, root: StrPath) -> list[Recording]:
         for path, reader in _readers(Path(at), inner, files, below=Path(at) != folder):
             found.append(_described(path, folder, root, reader))
     return [recording for recording in found if recording]
+
+
+def _leads_back(path: Path, folder: Path) -> bool:
+    """Say whether a link leads to a folder in which it lies, whose recordings would come again."""
+    if not path.is_symlink():
+        return False
+    above = [parent.resolve() for parent in path.parents if parent.is_relative_to(folder)]
+    return any(one.is_relative_to(path.resolve()) for one in above)
 
 
 def _in_name_order(names: Sequence[str]) -> list[str]:
@@ -90,6 +100,11 @@ def _readers(
     through.
     """
     files = [at / name for name in names if (at / name).is_file()]  # reading a pipe would block
+    yield from (
+        (at / name, _lost)
+        for name in names
+        if (at / name).is_symlink() and not (at / name).exists()
+    )
     photos = [path for path in files if READERS.get(path.suffix.lower()) is _photos]
     # Beside videos, photos in the folder itself are of its cameras.
     alone = not inner and not any(_reads_no_photo(path) for path in files)
@@ -137,6 +152,11 @@ def written(path: Path, root: StrPath) -> str:
 
 def _depth(_: Path) -> dict[str, Any]:
     return {"kind": "depth"}
+
+
+def _lost(path: Path) -> dict[str, Any]:
+    where = f"a link to {path.readlink()}, where nothing is"
+    return {"kind": "unusable", "note": f"{where}; connect that disk, or copy the recording here"}
 
 
 def _empty(_: Path) -> dict[str, Any]:
