@@ -52,6 +52,20 @@ def test_only_a_number_may_be_the_rest_of_one(tmp_path, key):
     assert str(caught.value).endswith(f"line 1: expected a name, found {key}; put it in quotes")
 
 
+def test_a_key_that_a_study_has_twice_is_told_of_each_file(tmp_path):
+    files = [tmp_path / name for name in ("good.yaml", "one.yaml", "two.yaml", "other.json")]
+    texts = ["models: [a]\n", "models: [a]\nmodels: [b]\n", "a: 1\n\na: 1\n", "{\n\t1: 2}"]
+    for path, text in zip(files, texts, strict=True):
+        path.write_text(text)
+    with pytest.raises(InputError) as caught:
+        yaml_files.check(files)
+    assert caught.value.lines == [
+        f"{tmp_path}/one.yaml: line 2: expected each key once, found 'models' again",
+        f"{tmp_path}/two.yaml: line 3: expected each key once, found 'a' again",
+    ]
+    yaml_files.check(files[:1])
+
+
 def test_a_missing_file_is_one_line(tmp_path):
     with pytest.raises(InputError, match="expected a readable YAML file"):
         yaml_files.read(tmp_path / "none.yaml")

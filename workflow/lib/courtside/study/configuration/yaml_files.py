@@ -1,5 +1,6 @@
 """YAML files without YAML's surprises: no duplicate keys, names stay text."""
 
+from collections.abc import Iterable
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -69,6 +70,21 @@ def read(path: StrPath) -> Content:
         )
     _check_extent(path, content)
     return content
+
+
+def check(paths: Iterable[StrPath]) -> None:
+    """Raise an `InputError` with the faults of a study's files, which Snakemake has read by itself.
+
+    Of a key that is there twice it takes the last value. Files of JSON are left to it, and pipes.
+    """
+    faults = []
+    for path in (p for p in paths if Path(p).is_file() and Path(p).suffix != ".json"):
+        try:
+            read(path)
+        except InputError as error:
+            faults += error.lines
+    if faults:
+        raise InputError(*faults)
 
 
 def file_of(key: str, content: Content, own: str, default: Path) -> str:
