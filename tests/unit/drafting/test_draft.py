@@ -448,3 +448,13 @@ def test_points_with_their_own_coordinates_beside_other_ways_are_told():
     assert content["court_points"] == points.path
     lines = advice.to_check(guess, "n.yaml", points.path, "s.yaml")
     assert not any("will be calibrated" in line for line in lines)
+
+
+def test_of_recordings_that_all_fit_nowhere_the_commonest_reason_is_told():
+    names = ("left/IMG_E0001", "left/IMG_0001", "right/IMG_0007", "right/IMG_0008")
+    films = [recording(f"data/north/{name}.MOV") for name in names]
+    told = (
+        r"found data/north/left/IMG_0001.MOV \(no name tells .* \(left 1, right 2\).* and 3 more;"
+    )
+    with pytest.raises(InputError, match=told):
+        draft(*films)

@@ -2,6 +2,7 @@
 
 import json
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
@@ -367,7 +368,8 @@ def _described(recording: Recording) -> str:
 def _what_is_there(guess: Guess) -> str:
     if not guess.unused:
         return "none"
-    recording, why = guess.unused[0]
+    reasons = Counter(why for _, why in guess.unused)
+    recording, why = max(guess.unused, key=lambda one: reasons[one[1]])  # the first of most
     more = f" and {len(guess.unused) - 1} more" if len(guess.unused) > 1 else ""
     return f"{recording.path} ({_one_line(why)}){more}"
 
