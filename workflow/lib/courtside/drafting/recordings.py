@@ -10,9 +10,10 @@ from courtside.drafting.device_names import DeviceName
 from courtside.drafting.names import words_of
 
 # Words that mark a recording of the empty court, of the carried camera, of a chessboard, and words
-# that say nothing, as people name files in English, German and French.
+# that say nothing, as people name files in English, German, French, Spanish, Italian, Portuguese.
 STATIC = {"empty", "static", "still", "background", "bg", "vacant", "nobody", "blank"}
 STATIC |= {"leer", "leere", "leeraufnahme", "leerbild", "vide"}
+STATIC |= {"vacio", "vacia", "vuoto", "vuota", "vazio", "vazia"}
 WALK = {"walk", "walking", "mobile", "moving", "handheld", "bridge", "bridging", "sweep", "gang"}
 BOARD = {"board", "boards", "chess", "chessboard", "checker", "checkerboard"}
 CALIBRATION = {"calib", "calibration"}
