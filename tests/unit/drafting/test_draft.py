@@ -458,3 +458,26 @@ def test_of_recordings_that_all_fit_nowhere_the_commonest_reason_is_told():
     )
     with pytest.raises(InputError, match=told):
         draft(*films)
+
+
+@pytest.mark.parametrize(
+    ("there", "named"),
+    [
+        ({"cam_01", "cam_02"}, {"kamera1": "cam_01", "kamera2": "cam_02"}),
+        ({"cam_2", "Left1"}, {"kamera1": "Left1", "kamera2": "cam_2"}),
+        ({"cam_0", "cam_1"}, None),  # counted from 0
+        ({"cam_1", "cam_2", "cam_3"}, None),
+        ({"cam_1", "view_1", "cam_2"}, None),
+        ({"a1", "b1"}, None),
+        ({"left", "cam_1"}, None),
+    ],
+)
+def test_cameras_of_a_calibration_are_told_by_their_numbers(there, named):
+    films = [recording(f"data/north/a_Kamera {n}.mp4") for n in (1, 2)]
+    calibration = recording(
+        "data/north/c.toml", "calibration", cameras=dict.fromkeys(sorted(there), (64, 48))
+    )
+    _, text, content = draft(*films, calibration)
+    found = {name: camera["name_in_calibration"] for name, camera in content["cameras"].items()}
+    assert found == (named or {"kamera1": "kamera1", "kamera2": "kamera2"})
+    assert text.count(f"{session_draft.MARK} the same number there") == (2 if named else 0)

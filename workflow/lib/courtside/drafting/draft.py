@@ -3,7 +3,7 @@
 import json
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 
 import yaml
@@ -144,13 +144,15 @@ def _calibrated(
     """Yield the keys that a camera needs to match the calibration, each with a remark."""
     if not calibrated:
         return
-    theirs = _name_there(guess, camera, calibrated)
+    theirs, like = _name_there(guess, camera, calibrated), "name"
+    if theirs is None:
+        theirs, like = _of_number(guess, camera, calibrated), "number"
     if theirs is None:
         names = ", ".join(_quoted(name) for name in calibrated)
         yield f"name_in_calibration: {_quoted(camera)}", f"one of {names} is its name there"
         return
     if theirs != camera:
-        yield f"name_in_calibration: {_quoted(theirs)}", "the same name there"
+        yield f"name_in_calibration: {_quoted(theirs)}", f"the same {like} there"
     size = next((film.size for film in guess.films(camera)), None)
     if size and tuple(size) != tuple(calibrated[theirs]):
         yield from _resized(calibrated[theirs], size)
@@ -166,6 +168,23 @@ def _name_there(guess: Guess, camera: str, calibrated: Mapping[str, tuple[int, i
         ),
     )
     return next((there for like in ways for there in calibrated if like(there)), None)
+
+
+def _of_number(guess: Guess, camera: str, calibrated: Collection[str]) -> str | None:
+    """Return the camera of the calibration with the same number, if all have the same numbers.
+
+    Where one side counts from 0 and the other one from 1, none.
+    """
+    own = {name: _number(name) for name in guess.cameras}
+    theirs = {_number(name): name for name in calibrated}
+    same = sorted(map(str, own.values())) == sorted(str(_number(name)) for name in calibrated)
+    distinct = len(theirs) == len(calibrated) and None not in theirs
+    return theirs[own[camera]] if same and distinct else None
+
+
+def _number(name: str) -> int | None:
+    found = re.search("[0-9]{1,3}$", name)
+    return int(found[0]) if found else None
 
 
 def _resized(calibrated: tuple[int, int], size: tuple[int, int]) -> Iterator[tuple[str, str]]:
