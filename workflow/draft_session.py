@@ -33,7 +33,8 @@ CONFIG_FILES = ("config", "derived_joints", "detectors", "external", "full", "mo
 def main(folder, name, court, sessions):
     """Draft one session and return the lines to print."""
     check_court(court)
-    name = name or file_names.name(folder.resolve().name, "session1")
+    title = (folder.resolve() if folder.name in ("", "..") else folder).name  # of a link its own
+    name = name or file_names.name(title, "session1")
     check_name(name)
     check_folder(sessions)
     recordings = survey.survey(folder, root=Path.cwd())
@@ -43,7 +44,6 @@ def main(folder, name, court, sessions):
     if path.is_file():
         content = session_files.filled(schemas.read(path, "session"))
         return additions.to_paste(found, content, path=shown(path), folder=written)
-    title = folder.resolve().name
     draft.write(path, draft.text(found, title=title, folder=written, court=court))
     study = shown(sessions.parent / f"{name}.yaml")
     filmed = [t for t, films in found.takes.items() if films and t not in draft.unfilmed(found)]
@@ -93,8 +93,8 @@ if __name__ == "__main__":
     parser.add_argument("--name", help="of the session (default: the name of the folder)")
     parser.add_argument(
         "--court",
-        help="a file of config/courts, or none (default: badminton; none with a calibration file "
-        "or without videos of fixed cameras)",
+        help="a file of config/courts, or none (default: badminton; none with a calibration file, "
+        "with points that have their own coordinates, or without videos of fixed cameras)",
     )
     parser.add_argument(
         "--sessions",

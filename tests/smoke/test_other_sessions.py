@@ -271,6 +271,15 @@ def test_a_fault_is_told_of_the_configuration_that_was_given(gym):
     assert sum(line.startswith("Error: --config: sessions: ") for line in said) == 1
 
 
+def test_a_key_that_a_study_has_twice_is_told_before_its_last_value_counts(gym):
+    tiny = (gym / "config/tiny.yaml").read_text()
+    (gym / "config/twice.yaml").write_text(tiny + "models: [blazepose-lite]\n")
+    said = snakemake("-n", "--configfile", "config/twice.yaml", root=gym).stderr.splitlines()
+    (line,) = (line for line in said if line.startswith("Error: "))
+    assert line.startswith("Error: config/twice.yaml: line ")
+    assert line.endswith(": expected each key once, found 'models' again")
+
+
 @pytest.mark.parametrize(
     ("target", "said"),
     [

@@ -18,7 +18,7 @@ sys.path.insert(0, str(LIBRARY))
 os.environ.update(OPENBLAS_NUM_THREADS="1")  # sums do not depend on the number of cores
 
 from courtside.study import methods, paths, targets
-from courtside.study.configuration import configuration, consent, plans
+from courtside.study.configuration import configuration, consent, plans, yaml_files
 from courtside.study.errors import InputError
 from courtside.study.execution import digest, file_dates, files, machine_resources
 from courtside.study.jobs import (
@@ -53,10 +53,13 @@ NAME = "[a-z0-9][a-z0-9_-]*"
 # Where faults are told to be, but those of the default file's values: the files of --configfile,
 # which come before it, and --config.
 OWN_FILES = [files.seen_from(path) for path in workflow.configfiles]
-OWN_FILES = OWN_FILES[:-1] + ["--config"] * bool(workflow.config_settings.config) or OWN_FILES
+GIVEN = OWN_FILES[:-1]
+OWN_FILES = GIVEN + ["--config"] * bool(workflow.config_settings.config) or OWN_FILES
 OWN_FILES = " or ".join(OWN_FILES)
 
 try:
+    if workflow.is_main_process:
+        yaml_files.check(GIVEN)
     STUDY = configuration.load(config, OWN_FILES, folder=CONFIG, root=Path.cwd())
     PLANS = {
         name: plans.read(CONFIG / paths.PLAN_YAML.format(plan=name)) for name in config["plans"]

@@ -253,3 +253,21 @@ def test_a_camera_that_films_the_empty_hall_alone_stays():
 def test_a_walk_that_is_called_so_needs_no_look_in_the_folder_of_its_take():
     films = [f"{take}/{camera}" for take in ("match", "warmup") for camera in ("left", "right")]
     assert takes(*films, "match/walk")[1] == []
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "empty", "stroke"),
+    [
+        ("gauche", "droite", "vide", "service"),
+        ("izquierda", "derecha", "vacía", "saque"),
+        ("sinistra", "destra", "vuoto", "battuta"),
+        ("esquerda", "direita", "vazio", "saque"),
+    ],
+)
+def test_romance_words_name_cameras_and_the_empty_court(left, right, empty, stroke):
+    names = [f"{side} {stroke} {n}" for n in (1, 2) for side in (left, right)]
+    alone, odd = takes(*names)
+    assert {take: sorted(films) for take, films in alone.items()} == {
+        f"{stroke}{n}": sorted([left, right]) for n in (1, 2)
+    }
+    assert takes(*names, f"{left} {empty}", f"{right} {empty}") == (alone, odd) == (alone, [])

@@ -420,3 +420,64 @@ def test_clicks_beside_a_calibration_are_not_passed_over():
     _, text, content = draft(*TAKE, calibration, clicked)
     assert not {"court_points", "static_points"} & set(content)
     assert '"data/north/clicks.csv": clicked points; as `static_points`' in text
+
+
+def test_points_with_their_own_coordinates_need_no_court_and_no_page():
+    points = recording("data/north/court_points.csv", "own_points")
+    guess, text, content = draft(*THREE, points)
+    assert (content["court"], content["court_points"]) == ("none", points.path)
+    assert content["cameras"] == {"left": {}, "right": {}, "back": {}}  # nothing is clicked
+    assert "click them" not in text and "not used" not in text
+    assert "calibrations: [people]" not in text
+    for court in (None, "data/north/court_points.csv"):  # as the command says it with --court none
+        said = advice.to_check(guess, "n.yaml", court, "s.yaml")
+        (line,) = (line for line in said if "points" in line)
+        assert line == (
+            "Cameras: they will be calibrated from the points with their own coordinates in "
+            "data/north/court_points.csv."
+        )
+
+
+def test_points_with_their_own_coordinates_beside_other_ways_are_told():
+    points = recording("data/north/points.csv", "own_points")
+    _, text, content = draft(*TAKE, CALIBRATION, points)
+    assert "court_points" not in content
+    said = "points with their own coordinates; without `calibration` they calibrate"
+    assert f'"data/north/points.csv": {said}' in text
+    guess, _, content = draft(*TAKE, WALK, points)  # the check tells that a walk needs a court
+    assert content["court_points"] == points.path
+    lines = advice.to_check(guess, "n.yaml", points.path, "s.yaml")
+    assert not any("will be calibrated" in line for line in lines)
+
+
+def test_of_recordings_that_all_fit_nowhere_the_commonest_reason_is_told():
+    names = ("left/IMG_E0001", "left/IMG_0001", "right/IMG_0007", "right/IMG_0008")
+    films = [recording(f"data/north/{name}.MOV") for name in names]
+    told = (
+        r"found data/north/left/IMG_0001.MOV \(no name tells .* \(left 1, right 2\).* and 3 more;"
+    )
+    with pytest.raises(InputError, match=told):
+        draft(*films)
+
+
+@pytest.mark.parametrize(
+    ("there", "named"),
+    [
+        ({"cam_01", "cam_02"}, {"kamera1": "cam_01", "kamera2": "cam_02"}),
+        ({"cam_2", "Left1"}, {"kamera1": "Left1", "kamera2": "cam_2"}),
+        ({"cam_0", "cam_1"}, None),  # counted from 0
+        ({"cam_1", "cam_2", "cam_3"}, None),
+        ({"cam_1", "view_1", "cam_2"}, None),
+        ({"a1", "b1"}, None),
+        ({"left", "cam_1"}, None),
+    ],
+)
+def test_cameras_of_a_calibration_are_told_by_their_numbers(there, named):
+    films = [recording(f"data/north/a_Kamera {n}.mp4") for n in (1, 2)]
+    calibration = recording(
+        "data/north/c.toml", "calibration", cameras=dict.fromkeys(sorted(there), (64, 48))
+    )
+    _, text, content = draft(*films, calibration)
+    found = {name: camera["name_in_calibration"] for name, camera in content["cameras"].items()}
+    assert found == (named or {"kamera1": "kamera1", "kamera2": "kamera2"})
+    assert text.count(f"{session_draft.MARK} the same number there") == (2 if named else 0)

@@ -477,6 +477,19 @@ def test_a_video_of_a_chessboard_is_left_out(other):
     assert "chessboard" in why
 
 
+def test_copies_that_an_iphone_edited_are_no_takes_beside_the_recordings():
+    names = ["left/IMG_0004.MOV", "left/IMG_0005.MOV", "right/IMG_0071.MOV", "right/IMG_0072.MOV"]
+    found = guess(*names, "left/IMG_E0004.MOV")
+    assert paths(found.takes["take1"]) == {"left": names[0], "right": names[2]}
+    assert paths(found.takes["take2"]) == {"left": names[1], "right": names[3]}
+    ((copy, why),) = found.unused
+    assert copy.path == "gym/left/IMG_E0004.MOV"
+    assert why.startswith("an edited copy of IMG_0004, by its name: ")
+    alone = guess("left/IMG_E0004.MOV", "left/IMG_0005.MOV", *names[2:])
+    assert paths(alone.takes["take1"]) == {"left": "left/IMG_E0004.MOV", "right": names[2]}
+    assert not alone.unused
+
+
 def test_small_pictures_on_cards_of_sony_are_no_walks_and_no_pictures_of_the_empty_court():
     films = [f"{camera}/C000{k}.MP4" for camera in ("left", "right") for k in (1, 2)]
     found = guess(*films, "left/THMBNL", "right/THMBNL/C0001T01.jpg")

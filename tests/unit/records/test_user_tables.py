@@ -18,6 +18,16 @@ def test_rows_have_their_lines_and_cells_without_blanks(tmp_path):
     assert rows == [(3, {"b": "1", "a": "x y"}), (5, {"b": "2", "a": "z"})]
 
 
+def test_empty_cells_beyond_the_columns_are_left_out_as_spreadsheets_write_them(tmp_path):
+    path = written(tmp_path, "a,b,,\n1,2,,\n3,,,\n4,5\n,,,\n")
+    rows = user_tables.table(path, ("a", "b"))
+    assert rows == [(2, {"a": "1", "b": "2"}), (3, {"a": "3", "b": ""}), (4, {"a": "4", "b": "5"})]
+    with pytest.raises(InputError, match="line 2: expected 2 cells, found 4; correct it"):
+        user_tables.table(written(tmp_path, "a,b,,\n1,2,,left\n"), ("a", "b"))
+    with pytest.raises(InputError, match="with commas between, found a,,b; correct the first"):
+        user_tables.table(written(tmp_path, "a,,b,\n1,2,3,\n"), ("a", "b"))
+
+
 def test_lines_have_their_numbers_empty_ones_too(tmp_path):
     path = written(tmp_path, "a, b\n\n,\n1\n")
     assert user_tables.lines(path, "do") == [(1, ["a", "b"]), (2, []), (3, ["", ""]), (4, ["1"])]

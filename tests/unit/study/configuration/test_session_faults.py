@@ -649,6 +649,16 @@ def test_missing_points_without_a_court_are_told_once_and_no_page_is_promised(ro
     ]
 
 
+def test_a_path_that_is_nearly_right_is_told_with_what_is_there(root):
+    (root / "Clicks").mkdir()
+    (root / "Clicks" / "Points.csv").write_text("camera,x_px,y_px,x_m,y_m,z_m\n")
+    found = find(root, ALONE | {"court": "none", "court_points": "clicks\\points.CSV"})
+    assert [line for line in found if "court_points" in line] == [
+        f"{FILE}: court_points: expected a file, found none at clicks\\points.CSV; did you mean "
+        "'Clicks/Points.csv'?"
+    ]
+
+
 @pytest.mark.parametrize("header", ["camera;x_px;y_px;x_m;y_m;z_m", '"x_m"\t"y_m"\t"camera"'])
 def test_places_between_other_characters_than_commas_are_places(root, header):
     """What is wrong with them is told where they are read."""

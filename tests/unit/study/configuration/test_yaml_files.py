@@ -21,7 +21,10 @@ def test_a_mapping_is_read_with_anchors(tmp_path):
     ("text", "message"),
     [
         ("a: 1\nb: 2\na: 3\n", "line 3: expected each key once, found 'a' again"),
-        ("takes:\n  no: 1\n", "line 2: expected a name, found False"),
+        ("takes:\n  no: 1\n", "line 2: expected a name, found no; put it in quotes"),
+        ("cameras: {07: {}}\n", "line 1: expected a name, found 07; put it in quotes"),
+        ("2026-12-01: 1\n", "line 1: expected a name, found 2026-12-01; put it in quotes"),
+        ('? !!int "1\\n"\n: 1\n', "line 1: expected a name, found 1; put it in quotes"),
         ("1: 2\n", "line 1: expected a name, found 1"),
         ("a: [1\n", "line 2"),
         ("a:\n\tb: 1\n", "line 2: found character '\\t' that cannot start any token; write spaces"),
@@ -40,6 +43,27 @@ def test_what_is_wrong_is_one_line_with_its_number(tmp_path, text, message):
     assert message in str(caught.value)
     assert "f.yaml" in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("key", ["no", "on", "~"])
+def test_only_a_number_may_be_the_rest_of_one(tmp_path, key):
+    with pytest.raises(InputError) as caught:
+        read(tmp_path, f"cameras: {{{key}: 1}}\n")
+    assert str(caught.value).endswith(f"line 1: expected a name, found {key}; put it in quotes")
+
+
+def test_a_key_that_a_study_has_twice_is_told_of_each_file(tmp_path):
+    files = [tmp_path / name for name in ("good.yaml", "one.yaml", "two.yaml", "other.json")]
+    texts = ["models: [a]\n", "models: [a]\nmodels: [b]\n", "a: 1\n\na: 1\n", "{\n\t1: 2}"]
+    for path, text in zip(files, texts, strict=True):
+        path.write_text(text)
+    with pytest.raises(InputError) as caught:
+        yaml_files.check(files)
+    assert caught.value.lines == [
+        f"{tmp_path}/one.yaml: line 2: expected each key once, found 'models' again",
+        f"{tmp_path}/two.yaml: line 3: expected each key once, found 'a' again",
+    ]
+    yaml_files.check(files[:1])
 
 
 def test_a_missing_file_is_one_line(tmp_path):

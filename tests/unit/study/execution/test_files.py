@@ -3,6 +3,7 @@
 import hashlib
 import json
 import os
+import unicodedata
 from pathlib import Path
 
 import numpy as np
@@ -208,3 +209,33 @@ def test_a_path_on_another_drive_stays_absolute(tmp_path, monkeypatch):
 
     monkeypatch.setattr(files.os.path, "relpath", between_drives)
     assert files.seen_from(tmp_path / "a") == (tmp_path / "a").resolve().as_posix()
+
+
+def test_what_is_nearly_there_is_told(tmp_path):
+    (tmp_path / "Halle Süd").mkdir()
+    (tmp_path / "Halle Süd" / "left.MP4").touch()
+    assert files.misspelt("halle süd/Left.mp4", tmp_path) == "did you mean 'Halle Süd/left.MP4'?"
+    assert files.misspelt("Halle Süd\\left.MP4", tmp_path) == "did you mean 'Halle Süd/left.MP4'?"
+    whole = str(tmp_path / "Halle Süd" / "left.MP4")
+    assert files.misspelt(whole.replace("MP4", "mp4"), "/elsewhere") == f"did you mean {whole!r}?"
+    assert files.misspelt("~/left.MP4", tmp_path) == "write the whole path in place of ~"
+    for other in ("Halle Süd/right.MP4", "Halle/left.MP4", "Halle Süd/left.MP4/a", "a" * 5000):
+        assert files.misspelt(other, tmp_path) == ""
+
+
+def test_of_several_names_that_are_nearly_right_none_is_told(tmp_path):
+    for name in ("A.mp4", "a.MP4"):
+        (tmp_path / name).touch()
+    if len(list(tmp_path.iterdir())) < 2:
+        pytest.skip("on this disk capital letters are small ones")
+    assert files.misspelt("a.mp4", tmp_path) == ""
+
+
+def test_accents_that_are_stored_in_another_way_are_told(tmp_path):
+    typed, stored = (unicodedata.normalize(form, "Süd.mp4") for form in ("NFC", "NFD"))
+    (tmp_path / stored).touch()
+    if (tmp_path / typed).exists():
+        pytest.skip("on this disk both are one name")
+    assert files.misspelt(typed, tmp_path).startswith(
+        "a name there looks the same, but its accents"
+    )

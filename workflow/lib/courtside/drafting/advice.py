@@ -51,6 +51,12 @@ def to_check(guess: Guess, path: StrPath, court_points: str | None, study: StrPa
 
 def _of_cameras(guess: Guess, court_points: str | None) -> Iterator[str]:
     """Yield how the cameras will be found, and what that takes."""
+    if guess.court_points and guess.own_points and not guess.walks:
+        yield (
+            "Cameras: they will be calibrated from the points with their own coordinates in "
+            f"{guess.court_points.path}."
+        )
+        return
     if court_points is None:
         if guess.walks and any(guess.takes.values()):
             yield f"Court: {NEEDS_COURT}."

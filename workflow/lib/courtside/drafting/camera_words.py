@@ -22,7 +22,9 @@ NUMBERED = re.compile(
 CAMERA = re.compile(
     NUMBERED.pattern
     + r"|(left|right|centre|center|middle|back|front|side|rear|top|oblique|mirror"
-    + r"|links|rechts|mitte|vorne|hinten|oben)[0-9]*"
+    + r"|links|rechts|mitte|vorne|hinten|oben|gauche|droite|devant|derriere|arriere"
+    + r"|izquierd[ao]|derech[ao]|esquerda|direita|sinistra|destra|centro"
+    + r"|delante|detras|frente|atras|davanti|dietro)[0-9]*"
 )
 Named = list[tuple[str, ...]]  # words of cameras, one of each video; empty where it names none
 

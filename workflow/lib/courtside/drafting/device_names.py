@@ -21,6 +21,7 @@ class DeviceName:
     serial: str = ""  # of the camera
     chapter: int = 1  # of a recording that the camera cut into several files
     begun: datetime | None = None  # on the device's own clock
+    copy_of: str = ""  # the mark of the recording of which this is an edited copy
 
 
 DATE = r"(?P<y>20\d\d)(?P<mo>[01]\d)(?P<d>[0-3]\d)"
@@ -81,10 +82,12 @@ FORMS: tuple[tuple[re.Pattern, Callable[[re.Match], dict]], ...] = (
         re.compile(rf"{EDGE}(?:VID-\d{{8}}-WA\d{{4}}|WhatsApp Video [\d-]+ at [\d.]+){END}"),
         _nothing,
     ),
+    (  # of an iPhone, beside the recording itself
+        re.compile(rf"{EDGE}IMG_E(?P<n>\d{{4}}){END}", re.IGNORECASE),
+        lambda found: {"copy_of": f"img_{found['n']}"},
+    ),
     (
-        re.compile(
-            rf"{EDGE}(?:IMG|IMG_E|MVI|DSC|DSCN|DSCF|MOV|DJI)_?\d{{4,5}}{END}", re.IGNORECASE
-        ),
+        re.compile(rf"{EDGE}(?:IMG|MVI|DSC|DSCN|DSCF|MOV|DJI)_?\d{{4,5}}{END}", re.IGNORECASE),
         _nothing,
     ),
     (re.compile(rf"{EDGE}P1\d{{6}}{END}"), _nothing),  # Panasonic

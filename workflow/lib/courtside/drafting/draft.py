@@ -2,7 +2,8 @@
 
 import json
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 
 import yaml
@@ -28,8 +29,8 @@ def text(guess: Guess, *, title: str, folder: str, court: str | None = None) -> 
 
     `title` is one line on the session. `folder` is that of the recordings, as paths in the file
     begin; clicked court points are expected in it. `court` is one of config/courts, or `none`; by
-    default badminton where cameras are to be calibrated by it, otherwise `none`. An `InputError` if
-    there is no recording to make a session of.
+    default badminton where cameras are to be calibrated by it, otherwise `none`, also with points
+    that have their own coordinates. An `InputError` if there is no recording to make a session of.
     """
     if not guess.walks and not guess.takes and not guess.static:
         raise InputError(
@@ -37,7 +38,7 @@ def text(guess: Guess, *, title: str, folder: str, court: str | None = None) -> 
             f"{_what_is_there(guess)}; put the videos of the fixed cameras and of the walk there"
         )
     measured = guess.calibration is None and bool(guess.cameras) and not unfilmed(guess)
-    court = court or ("badminton" if measured else "none")
+    court = court or ("badminton" if measured and not guess.own_points else "none")
     lines = [
         f"# Drafted from {_quoted(folder)}: check the lines with `{MARK}`; config/README.md lists "
         "all keys.",
@@ -47,15 +48,15 @@ def text(guess: Guess, *, title: str, folder: str, court: str | None = None) -> 
     ]
     if guess.takes:
         lines += ["subjects:", f"  p1: {{consent: [analysis, pictures]}}  {MARK} {SUBJECTS}"]
-    clicked = measured and court != "none"
-    if clicked or guess.walks:  # both need a picture of every camera
+    clicked = measured and (court != "none" or guess.own_points)
+    if (clicked and not guess.own_points) or guess.walks:  # both need a picture of every camera
         lines += _cameras(guess, _stand_ins(guess))
     else:
         lines += _cameras(guess, {})
     lines += [*_walks(guess), *_places(guess, folder, clicked)]
     lines += [*_people(guess, folder), *synchronised(guess), *_takes(guess)]
     lines += _override(guess)
-    if measured and court == "none" and not guess.walks:
+    if measured and court == "none" and not guess.walks and not guess.own_points:
         lines += people_alone(guess)
     return "\n".join([*lines, *_unused(guess)]) + "\n"
 
@@ -143,13 +144,15 @@ def _calibrated(
     """Yield the keys that a camera needs to match the calibration, each with a remark."""
     if not calibrated:
         return
-    theirs = _name_there(guess, camera, calibrated)
+    theirs, like = _name_there(guess, camera, calibrated), "name"
+    if theirs is None:
+        theirs, like = _of_number(guess, camera, calibrated), "number"
     if theirs is None:
         names = ", ".join(_quoted(name) for name in calibrated)
         yield f"name_in_calibration: {_quoted(camera)}", f"one of {names} is its name there"
         return
     if theirs != camera:
-        yield f"name_in_calibration: {_quoted(theirs)}", "the same name there"
+        yield f"name_in_calibration: {_quoted(theirs)}", f"the same {like} there"
     size = next((film.size for film in guess.films(camera)), None)
     if size and tuple(size) != tuple(calibrated[theirs]):
         yield from _resized(calibrated[theirs], size)
@@ -165,6 +168,23 @@ def _name_there(guess: Guess, camera: str, calibrated: Mapping[str, tuple[int, i
         ),
     )
     return next((there for like in ways for there in calibrated if like(there)), None)
+
+
+def _of_number(guess: Guess, camera: str, calibrated: Collection[str]) -> str | None:
+    """Return the camera of the calibration with the same number, if all have the same numbers.
+
+    Where one side counts from 0 and the other one from 1, none.
+    """
+    own = {name: _number(name) for name in guess.cameras}
+    theirs = {_number(name): name for name in calibrated}
+    same = sorted(map(str, own.values())) == sorted(str(_number(name)) for name in calibrated)
+    distinct = len(theirs) == len(calibrated) and None not in theirs
+    return theirs[own[camera]] if same and distinct else None
+
+
+def _number(name: str) -> int | None:
+    found = re.search("[0-9]{1,3}$", name)
+    return int(found[0]) if found else None
 
 
 def _resized(calibrated: tuple[int, int], size: tuple[int, int]) -> Iterator[tuple[str, str]]:
@@ -196,6 +216,7 @@ def _places(guess: Guess, folder: str, clicked: bool) -> list[str]:
     if not clicked:
         return []
     remark = "" if guess.court_points else "  # not there yet: click them, see config/README.md"
+    remark = f"  {MARK} points with their own coordinates" if guess.own_points else remark
     return [f"court_points: {_quoted(court_points(guess, folder))}{remark}"]
 
 
@@ -347,6 +368,8 @@ def left_out(guess: Guess) -> list[tuple[str, str]]:
     found += [(r.path, f"{d} of no take") for take, d, r in guess.devices if not take]
     if guess.calibration and guess.court_points:
         why = "clicked points; as `static_points` they check the calibration file"
+        if guess.own_points:
+            why = "points with their own coordinates; without `calibration` they calibrate"
         found.append((guess.court_points.path, why))
     return found
 
@@ -364,7 +387,8 @@ def _described(recording: Recording) -> str:
 def _what_is_there(guess: Guess) -> str:
     if not guess.unused:
         return "none"
-    recording, why = guess.unused[0]
+    reasons = Counter(why for _, why in guess.unused)
+    recording, why = max(guess.unused, key=lambda one: reasons[one[1]])  # the first of most
     more = f" and {len(guess.unused) - 1} more" if len(guess.unused) > 1 else ""
     return f"{recording.path} ({_one_line(why)}){more}"
 

@@ -1,7 +1,7 @@
 """Guess the cameras, walks and takes of a session from the names of its files."""
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 
 from courtside.drafting import camera_words, names, pairing
 from courtside.drafting.names import distinct, words_of
@@ -57,12 +57,26 @@ def guess(recordings: Sequence[Recording]) -> Guess:
 def _without_others(found: Guess, recordings: Iterable[Recording]) -> list[Recording]:
     """Leave out what is neither of the empty court, nor of a walk, nor of a take."""
     kept, names = [], Counter(recording.parts[-1] for recording in recordings)
+    marks = {(r.kind, *r.parts[:-1], r.device.mark) for r in recordings if r.device}
     for recording in recordings:
-        if why := _what_else(recording, again=names[recording.parts[-1]] > 1):
+        why = _edited(recording, marks)
+        why = why or _what_else(recording, again=names[recording.parts[-1]] > 1)
+        if why:
             found.unused.append((recording, why))
         else:
             kept.append(recording)
     return kept
+
+
+def _edited(recording: Recording, marks: Container[tuple[str, ...]]) -> str:
+    """Say why an edited copy is of no use beside the recording itself, in the same folder."""
+    original = recording.device.copy_of if recording.device else ""
+    if not original or (recording.kind, *recording.parts[:-1], original) not in marks:
+        return ""
+    return (
+        f"an edited copy of {original.upper()}, by its name: its times and size may differ from "
+        "those of the recording, which is used"
+    )
 
 
 def _what_else(recording: Recording, *, again: bool) -> str:
@@ -225,11 +239,12 @@ def _sort_others(found: Guess, recordings: Iterable[Recording], own: Words) -> N
     if alone:  # a session of devices
         _place_single_views(found, [r for r in recordings if r.kind in DEVICES])
     for recording in recordings:
-        if recording.kind in ("court_points", "people", "calibration"):
-            if getattr(found, recording.kind) is None:
-                setattr(found, recording.kind, recording)
+        if recording.kind in ("court_points", "own_points", "people", "calibration"):
+            key = recording.kind.replace("own", "court")
+            if getattr(found, key) is None:
+                setattr(found, key, recording)
             else:
-                kind = recording.kind.replace("_", " ")
+                kind = key.replace("_", " ")
                 found.unused.append((recording, f"there is another {kind} file"))
         elif recording.kind in DEVICES and not alone:
             take = _nearest(found.takes, set(own[recording.path]))

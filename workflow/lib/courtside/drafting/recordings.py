@@ -10,9 +10,10 @@ from courtside.drafting.device_names import DeviceName
 from courtside.drafting.names import words_of
 
 # Words that mark a recording of the empty court, of the carried camera, of a chessboard, and words
-# that say nothing, as people name files in English, German and French.
+# that say nothing, as people name files in English, German, French, Spanish, Italian, Portuguese.
 STATIC = {"empty", "static", "still", "background", "bg", "vacant", "nobody", "blank"}
 STATIC |= {"leer", "leere", "leeraufnahme", "leerbild", "vide"}
+STATIC |= {"vacio", "vacia", "vuoto", "vuota", "vazio", "vazia"}
 WALK = {"walk", "walking", "mobile", "moving", "handheld", "bridge", "bridging", "sweep", "gang"}
 BOARD = {"board", "boards", "chess", "chessboard", "checker", "checkerboard"}
 CALIBRATION = {"calib", "calibration"}
@@ -42,7 +43,8 @@ class Recording:
     # Folders below the one that was searched, and the name without its suffix
     parts: tuple[str, ...]
     # `video`, `photo`, `photos`, `keypoints` (a folder of JSON), `bvh`, `bag`, `depth` (a folder
-    # of plain files), `court_points`, `people`, `racket`, `calibration`, or `unusable`
+    # of plain files), `court_points`, `own_points` (with their own coordinates), `people`,
+    # `racket`, `calibration`, or `unusable`
     kind: str
     size: tuple[int, int] | None = None  # of its pictures, px
     rate_hz: float | None = None  # of a video
@@ -100,12 +102,17 @@ class Guess:
     # Cameras that no name tells apart: numbered in the order of their files
     numbered: list[str] = field(default_factory=list)
     serials: dict[str, str] = field(default_factory=dict)  # by camera
-    court_points: Recording | None = None
+    court_points: Recording | None = None  # or points with their own coordinates
     people: Recording | None = None  # in which persons are named
     calibration: Recording | None = None
     unused: list[tuple[Recording, str]] = field(default_factory=list)  # with the reason
     by_order: list[str] = field(default_factory=list)  # takes that no name tells, but the order
     doubtful: bool = False  # whether names may be read in another way: takes for cameras
+
+    @property
+    def own_points(self) -> bool:
+        """Whether the points have their own coordinates, so that no court is needed."""
+        return self.court_points is not None and self.court_points.kind == "own_points"
 
     def films(self, camera: str) -> list[Recording]:
         """Return a camera's recordings of takes."""

@@ -1,6 +1,5 @@
 """Find out what the files of a folder are: videos, photos, clicks, calibrations, of devices."""
 
-import csv
 import math
 import os
 import re
@@ -28,12 +27,17 @@ BAGS = {".bag", ".db3"}
 CALIBRATIONS = {".toml", ".txt", ".xml", ".xcp", ".mcal"}
 CLICKED = {"camera", "x_px", "y_px"}
 OTHER_TABLES = {  # by the key of a session that names them: columns beside those
-    "court_points": {"x_m", "y_m", "z_m"},
     "board: corners": {"picture", "corner"},
     "wand: points": {"marker"},
 }
-PEOPLE = {*CLICKED, "take", "subject", "time_s"}
-RACKET = {"take", "camera", "frame_idx", "end"}
+TABLES = {  # by kind: columns
+    "own_points": {*CLICKED, "x_m", "y_m", "z_m"},
+    "court_points": set(clicks.COLUMNS),
+    "racket": {"take", "camera", "frame_idx", "end"},
+    "people": {*CLICKED, "take", "subject", "time_s"},
+}
+NAMED = {f"{kind}.csv": kind for kind in ("court_points", "people")}  # as the draft names them
+LONGEST = 10_000  # characters of a header; a file of something else may have no line's end
 DEPTH = (
     "16 bits and one channel, as pictures of depth: a depth camera's folder has cameras.toml, "
     "colour.mp4 and depth/ (config/README.md); write photos with 8 bits"
@@ -48,9 +52,9 @@ EMPTY = "an empty folder; copy its recordings into it, or delete it"
 def survey(folder: StrPath, *, root: StrPath) -> list[Recording]:
     """Describe every recording of a folder and of the folders in it, in name order.
 
-    Files that are clearly no recordings are left out; unreadable ones come as `unusable` with the
-    reason. Paths start from `root`, as those of sessions do; a folder elsewhere gives absolute
-    paths. An `InputError` if there is no such folder.
+    Links are followed. Files that are clearly no recordings are left out; unreadable ones come as
+    `unusable` with the reason. Paths start from `root`, as those of sessions do; a folder elsewhere
+    gives absolute paths. An `InputError` if there is no such folder.
     """
     folder = Path(folder)
     if not folder.is_dir():
@@ -59,8 +63,10 @@ def survey(folder: StrPath, *, root: StrPath) -> list[Recording]:
             f"{'a file' if folder.exists() else 'none'}; correct the path"
         )
     found = []
-    for at, inner, names in os.walk(folder):
-        inner[:] = _in_name_order(inner)
+    for at, inner, names in os.walk(folder, followlinks=True):
+        inner[:] = [
+            name for name in _in_name_order(inner) if not _leads_back(Path(at, name), folder)
+        ]
         if depth_folder.is_one(at):
             found.append(_described(Path(at), folder, root, _depth))
             inner[:] = []
@@ -69,6 +75,14 @@ def survey(folder: StrPath, *, root: StrPath) -> list[Recording]:
         for path, reader in _readers(Path(at), inner, files, below=Path(at) != folder):
             found.append(_described(path, folder, root, reader))
     return [recording for recording in found if recording]
+
+
+def _leads_back(path: Path, folder: Path) -> bool:
+    """Say whether a link leads to a folder in which it lies, whose recordings would come again."""
+    if not path.is_symlink():
+        return False
+    above = [parent.resolve() for parent in path.parents if parent.is_relative_to(folder)]
+    return any(one.is_relative_to(path.resolve()) for one in above)
 
 
 def _in_name_order(names: Sequence[str]) -> list[str]:
@@ -86,6 +100,11 @@ def _readers(
     through.
     """
     files = [at / name for name in names if (at / name).is_file()]  # reading a pipe would block
+    yield from (
+        (at / name, _lost)
+        for name in names
+        if (at / name).is_symlink() and not (at / name).exists()
+    )
     photos = [path for path in files if READERS.get(path.suffix.lower()) is _photos]
     # Beside videos, photos in the folder itself are of its cameras.
     alone = not inner and not any(_reads_no_photo(path) for path in files)
@@ -135,6 +154,11 @@ def _depth(_: Path) -> dict[str, Any]:
     return {"kind": "depth"}
 
 
+def _lost(path: Path) -> dict[str, Any]:
+    where = f"a link to {path.readlink()}, where nothing is"
+    return {"kind": "unusable", "note": f"{where}; connect that disk, or copy the recording here"}
+
+
 def _empty(_: Path) -> dict[str, Any]:
     return {"kind": "unusable", "note": EMPTY}
 
@@ -174,20 +198,25 @@ def _points_of_all_frames(path: Path) -> dict[str, Any] | None:
 
 
 def _table(path: Path) -> dict[str, Any] | None:
+    """Describe a table by its columns, or by the name that the draft gives it.
+
+    Also one with other characters than commas between the cells, which is refused later.
+    """
     try:
-        with path.open(newline="", encoding="utf-8-sig") as stream:
-            header = set(next(csv.reader(stream), []))
-    except (OSError, UnicodeDecodeError, csv.Error):
+        with path.open(encoding="utf-8-sig", errors="replace") as stream:
+            first = stream.readline(LONGEST)
+    except OSError:
         return None
-    if set(clicks.COLUMNS) <= header:
-        return {"kind": "court_points"}
-    for kind, columns in (("racket", RACKET), ("people", PEOPLE)):
+    header = {cell.strip(' "\n') for cell in re.split("[,;\t]", first)}
+    for kind, columns in TABLES.items():
         if header >= columns:
             return {"kind": kind}
     for key, columns in OTHER_TABLES.items():
         if header >= CLICKED | columns:
             note = f"by its columns the table of the key `{key}`; name it there in the session"
             return {"kind": "unusable", "note": note}
+    if path.name in NAMED:
+        return {"kind": NAMED[path.name]}
     if header >= CLICKED:
         expected = ",".join(clicks.COLUMNS)
         note = f"clicked points? expected the columns {expected}, found {','.join(sorted(header))}"

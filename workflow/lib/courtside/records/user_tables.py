@@ -28,10 +28,13 @@ def table(
 ) -> list[tuple[int, dict[str, str]]]:
     """Return (line number, row) of every row of a CSV, cells stripped.
 
-    The header has the `columns`, and perhaps `more`, in any order; an `InputError` otherwise.
+    The header has the `columns`, and perhaps `more`, in any order; an `InputError` otherwise. What
+    spreadsheets add is left out: empty lines, and empty cells beyond the last name of a column.
     """
     rows = [one for one in lines(path, "save it again as CSV (UTF-8)") if any(one[1])]
-    header = rows[0][1] if rows else []
+    header = list(rows[0][1]) if rows else []
+    while header and not header[-1]:
+        header.pop()
     known = {*columns, *more}
     if len(set(header)) < len(header) or not set(columns) <= set(header) <= known:
         perhaps = f" and perhaps {','.join(more)}" if more else ""
@@ -42,12 +45,15 @@ def table(
             f"{path}: expected the columns {','.join(columns)}{perhaps} with commas between, found "
             f"{','.join(header)[:80] or 'an empty file'}; {mend}"
         )
+    found, width = [], len(header)
     for line, row in rows[1:]:
-        if len(row) != len(header):
+        cells = row if any(row[width:]) else row[:width]
+        if len(cells) != width:
             raise InputError(
-                f"{path}: line {line}: expected {len(header)} cells, found {len(row)}; correct it"
+                f"{path}: line {line}: expected {width} cells, found {len(cells)}; correct it"
             )
-    return [(line, dict(zip(header, row, strict=True))) for line, row in rows[1:]]
+        found.append((line, dict(zip(header, cells, strict=True))))
+    return found
 
 
 def known(where: str, what: str, name: str, names: Collection[str]) -> str:

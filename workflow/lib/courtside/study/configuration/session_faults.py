@@ -17,6 +17,7 @@ from courtside.study.configuration.sessions import FEWEST_ALONE
 from courtside.study.configuration.yaml_files import Content
 from courtside.study.errors import nearest
 from courtside.study.execution.artefacts import Artefact
+from courtside.study.execution.files import misspelt
 from courtside.study.paths import EXTERNAL, VIRTUAL
 
 SIMULATED = VIRTUAL.format(session="")
@@ -476,10 +477,8 @@ def _path_faults(
         return
     if not path.startswith(EXTERNAL):
         if not is_there(root / path):
-            yield (
-                f"{where}: expected a file, found none at {path}; correct the path or put it there"
-                + advice
-            )
+            mend = misspelt(path, root) or f"correct the path or put it there{advice}"
+            yield f"{where}: expected a file, found none at {path}; {mend}"
         return
     if known is None:
         return

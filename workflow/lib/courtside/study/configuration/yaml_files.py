@@ -1,5 +1,6 @@
 """YAML files without YAML's surprises: no duplicate keys, names stay text."""
 
+from collections.abc import Iterable
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -28,8 +29,10 @@ class _StrictLoader(yaml.SafeLoader):
             key = self.construct_object(key_node, deep=True)
             problem = ""
             if not isinstance(key, str):
-                problem = f"expected a name, found {key!r}; put it in quotes"
-                if node.flow_style and isinstance(key, int | float):
+                scalar = isinstance(key_node, yaml.ScalarNode)
+                written = " ".join(key_node.value.split()) if scalar else repr(key)
+                problem = f"expected a name, found {written or 'nothing'}; put it in quotes"
+                if node.flow_style and type(key) in (int, float):  # `no` is a bool
                     problem += ", or, if it is the rest of a number such as 1,74, write 1.74"
             elif key[:1].isspace() and key[0] != " ":  # of Japanese input, or one that never breaks
                 problem = f"found a wide space (U+{ord(key[0]):04X}); write plain spaces"
@@ -67,6 +70,21 @@ def read(path: StrPath) -> Content:
         )
     _check_extent(path, content)
     return content
+
+
+def check(paths: Iterable[StrPath]) -> None:
+    """Raise an `InputError` with the faults of a study's files, which Snakemake has read by itself.
+
+    Of a key that is there twice it takes the last value. Files of JSON are left to it, and pipes.
+    """
+    faults = []
+    for path in (p for p in paths if Path(p).is_file() and Path(p).suffix != ".json"):
+        try:
+            read(path)
+        except InputError as error:
+            faults += error.lines
+    if faults:
+        raise InputError(*faults)
 
 
 def file_of(key: str, content: Content, own: str, default: Path) -> str:

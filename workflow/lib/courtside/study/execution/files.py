@@ -8,6 +8,7 @@ import re
 import secrets
 import shutil
 import time
+import unicodedata
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -93,6 +94,46 @@ def seen_from(path: StrPath, folder: StrPath = ".") -> str:
         return Path(os.path.relpath(path, folder)).as_posix()
     except ValueError:
         return Path(path).resolve().as_posix()
+
+
+def misspelt(path: str, root: StrPath = ".") -> str:
+    """Return the advice on a path from `root` where nothing is, if something is nearly there.
+
+    It may differ in capital letters, in how accents are stored (macOS takes them apart from their
+    letters), or in the signs between folders, which are backslashes on Windows alone. Empty if
+    nothing is.
+    """
+    if path.startswith("~"):
+        return "write the whole path in place of ~"
+    near = _nearly(path, Path(root))
+    if near is None:
+        return ""
+    if unicodedata.normalize("NFC", near) == unicodedata.normalize("NFC", path):
+        return (
+            "a name there looks the same, but its accents are stored in another way: copy the name "
+            "from a list of the files, or rename the file"
+        )
+    return f"did you mean {near!r}?"
+
+
+def _nearly(path: str, root: Path) -> str | None:
+    """Return the path of what is there in place of a misspelt one, as that is written."""
+    found = Path()
+    for part in Path(path.replace("\\", "/")).parts:
+        at = root / found
+        try:
+            others = [] if (at / part).exists() else [one.name for one in at.iterdir()]
+        except (OSError, ValueError):
+            return None
+        alike = [name for name in others if _plain(name) == _plain(part)] if others else [part]
+        if len(alike) != 1:
+            return None
+        found /= alike[0]
+    return found.as_posix() if (root / found).exists() else None
+
+
+def _plain(name: str) -> str:
+    return unicodedata.normalize("NFC", name).casefold()
 
 
 def delete_unfinished(folder: StrPath) -> None:
