@@ -295,6 +295,37 @@ def test_nor_do_they_outvote_a_clock():
     assert (rows["c1", ALL].cause, rows[ALL, ALL].cause) == (causes.CLOCK, causes.CLOCK)
 
 
+DRIFT = "expected a drift of at most 400 ppm, found 1100 ppm: look whether a file lacks frames"
+
+
+def test_a_camera_that_agrees_is_doubtful_where_its_clock_is_in_doubt():
+    cameras = judged.footage()
+    cameras[1] = replace(cameras[1], clock=Clock(doubt=DRIFT))
+    rows, _ = wholes(cameras)
+    whole, take = rows["c1", ALL], rows[ALL, ALL]
+    assert (whole.verdict, whole.cause) == (take.verdict, take.cause) == (DOUBTFUL, causes.CLOCK)
+    said = f"it agrees with the other cameras; its clock is in doubt: {DRIFT}."
+    assert whole.sentence == take.sentence == f"Camera c1: {said}"
+    assert {rows[name, ALL].verdict for name in ("c0", "c2", "c3")} == {GOOD}
+    assert {rows[ALL, person].verdict for person in ("p1", "p2")} == {GOOD}
+
+
+def test_a_clock_in_doubt_stands_beside_another_fault_of_its_camera():
+    said = {0: causes.CLOCK, 1: causes.CALIBRATION}  # poor detection does not hide it
+    cameras = judged.turned(judged.footage(hidden={0: 0.9}), 1, 2.0)
+    before, _ = wholes(cameras)
+    assert before["c0", ALL].verdict == FAILED and before["c0", ALL].cause == causes.DETECTION
+    cameras = [
+        replace(one, clock=Clock(doubt=DRIFT if at in said else ""))
+        for at, one in enumerate(cameras)
+    ]
+    rows, _ = wholes(cameras)
+    for at, cause in said.items():
+        was, is_now = before[f"c{at}", ALL], rows[f"c{at}", ALL]
+        assert (is_now.verdict, is_now.cause) == (was.verdict, cause)
+        assert is_now.sentence == f"{was.sentence[:-1]}; its clock is in doubt: {DRIFT}."
+
+
 def crowded(hidden=(), others=37):
     """Return the verdicts on a take whose camera c1 shows spectators beside the two players."""
     cameras = judged.footage(hidden=hidden)

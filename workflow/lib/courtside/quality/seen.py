@@ -49,6 +49,7 @@ class Seen:
     others: NDArray
     spread_m: NDArray  # (C, P, S, K): their standard deviation by keypoints of the usual error
     out: tuple[int, ...] = ()  # cameras that place nobody
+    clock_doubts: tuple[str, ...] = ()  # what speaks against each camera's clock; or empty
 
     @property
     def followed(self) -> NDArray:
@@ -165,7 +166,8 @@ def gather(footage: Sequence[Footage], points: Keypoints3D, skeleton: Skeleton) 
     limb_points = points.some_joints(sides[0] + sides[1])
     ran = np.stack(filmed)
     unknown = nowhere, nowhere[..., 0]
-    return without(Seen(cameras, limb_points, xy, score, rows, height_px, ran, at, *unknown), ())
+    found = Seen(cameras, limb_points, xy, score, rows, height_px, ran, at, *unknown)
+    return without(replace(found, clock_doubts=tuple(clock.doubt for clock in clocks)), ())
 
 
 def without(seen: Seen, out: tuple[int, ...]) -> Seen:

@@ -101,9 +101,11 @@ def judge(seen: Seen, doubts: Doubts = NONE) -> pd.DataFrame:
     Columns `COLUMNS`. A row with the measure `WHOLE` has the verdict, the likelier cause where it
     is not good, and one sentence; that with `ALL` cameras and persons is the take's. A take failed
     if a person failed in it, or half of its cameras; another camera that is not good makes it
-    doubtful, and so do `doubts` about its calibration, and more people than can be followed.
+    doubtful, and so do `doubts` about its calibration, the `clock_doubts` of what was `seen`, and
+    more people than can be followed.
     """
-    by_camera = [_doubted(rows, doubts) for rows in _cameras(seen, doubts)]
+    each = zip(_cameras(seen, doubts), seen.clock_doubts, strict=True)
+    by_camera = [_by_clock(_doubted(rows, doubts), doubt) for rows, doubt in each]
     by_person = [_person(seen, at) for at in range(len(seen.points.person_id))]
     take = _take([rows[0] for rows in by_camera], [rows[0] for rows in by_person], doubts)
     if crowd := _crowd(seen):
@@ -132,6 +134,20 @@ def _doubted(rows: list[dict], doubts: Doubts) -> list[dict]:
         return rows
     sentence = f"{whole['sentence'].removesuffix('.')}, but {said}."
     return [_whole(whole["camera"], ALL, DOUBTFUL, causes.CALIBRATION, sentence), *others]
+
+
+def _by_clock(rows: list[dict], doubt: str) -> list[dict]:
+    """Return the rows of a camera whose clock its synchronisation doubts; the same without a doubt.
+
+    It is doubtful at best, and the clock is the cause unless another that spoils measures is known.
+    """
+    whole, *others = rows
+    if not doubt:
+        return rows
+    verdict, cause = worst([whole["verdict"], DOUBTFUL]), whole["cause"]
+    cause = cause if cause in WRONG_CAMERA else causes.CLOCK
+    sentence = f"{whole['sentence'].removesuffix('.')}; its clock is in doubt: {doubt}."
+    return [_whole(whole["camera"], ALL, verdict, cause, sentence), *others]
 
 
 def _cameras(seen: Seen, doubts: Doubts) -> list[list[dict]]:
