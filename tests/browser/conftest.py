@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from browser.waiting import ready
+
 INSIDE = ("file:", "data:", "blob:", "about:")
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 
@@ -48,7 +50,7 @@ def open_page(browser):
         page.on("pageerror", lambda error: faults.append(f"error: {error}"))
         page.on("request", request)
         page.goto(Path(path).resolve().as_uri())
-        return page
+        return ready(page)
 
     yield opened
     for context in contexts:

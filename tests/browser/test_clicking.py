@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
-from browser.waiting import next_frames, reload, second_tab, until
+from browser.waiting import FORBIDDEN, next_frames, ready, reload, second_tab, until
 from courtside.geometry import camera as projection
 from courtside.pages import page as pages
 from courtside.pages.clicking import page as clicking_page
@@ -396,14 +396,13 @@ def test_other_clicks_or_another_session_start_of_their_own(open_page, make):
     page.keyboard.press("Space")
     for other in (make("other", clicks={"back": {"p02": (1, 2)}}), make("third", session="gym")):
         page.goto(other.as_uri())
+        ready(page)
         assert ("back", "p01") not in marked(page)
 
 
 def test_without_storage_the_page_still_works(open_page, make):
     page = open_page(make())
-    page.add_init_script(
-        "Object.defineProperty(window, 'localStorage', { get() { throw new Error('forbidden'); } })"
-    )
+    page.add_init_script(FORBIDDEN)
     reload(page)
     page.keyboard.press("Space")
     assert list(marked(page)) == [("back", "p01")]
@@ -520,9 +519,7 @@ def test_a_browser_that_keeps_nothing_says_so_and_asks_before_marks_are_lost(
     open_page, make, tmp_path
 ):
     page = open_page(make())
-    page.add_init_script(
-        "Object.defineProperty(window, 'localStorage', { get() { throw new Error('forbidden'); } })"
-    )
+    page.add_init_script(FORBIDDEN)
     reload(page)
     asked = []
     page.on("dialog", lambda dialog: (asked.append(dialog.type), dialog.accept()))

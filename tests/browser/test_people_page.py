@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from browser.waiting import reload, second_tab, until
+from browser.waiting import FORBIDDEN, reload, second_tab, until
 from courtside.pages import page as pages
 from courtside.pages.people import page as people_page
 from courtside.pages.people.strips import Shot
@@ -316,9 +316,7 @@ def test_a_page_in_two_tabs_keeps_the_work_of_the_first_to_change_it(opened):
 
 def test_a_browser_that_keeps_nothing_says_so_and_asks_before_names_are_lost(opened, tmp_path):
     page = opened()
-    page.add_init_script(
-        "Object.defineProperty(window, 'localStorage', { get() { throw new Error('forbidden'); } })"
-    )
+    page.add_init_script(FORBIDDEN)
     reload(page)
     asked = []
     page.on("dialog", lambda dialog: (asked.append(dialog.type), dialog.accept()))

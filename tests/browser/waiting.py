@@ -1,9 +1,18 @@
 """Waiting for what a page does."""
 
 EVERY_MS, TRIES = 100, 150
-OPENING_MS = 500  # Chromium tells a page nothing of what is written in the moment in which it opens
-RELOADS = 20
-STORED = "() => { try { return JSON.stringify(localStorage); } catch { return null; } }"
+READY = "!document.body.hasAttribute('aria-busy')"
+KEPT = """new Promise(done => {
+    let opening;
+    try { opening = indexedDB.open('courtside', 1); } catch { done(); return; }
+    opening.onsuccess = () => {
+        const asked = opening.result.transaction('work').objectStore('work').count();
+        asked.onsuccess = () => done(opening.result.close());
+    };
+})"""  # changes that a page makes come before what is asked after them
+FORBIDDEN = (
+    "Object.defineProperty(window, 'indexedDB', { get() { throw new Error('forbidden'); } })"
+)
 
 
 def until(page, expression, arg=None):
@@ -28,30 +37,21 @@ def next_frames(page):
     page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
 
-def second_tab(context, address):
-    """Open a page in another tab, and wait until it hears of what others write into the storage."""
-    first = context.pages[0]
-    first.wait_for_timeout(OPENING_MS)
-    page = context.new_page()
-    page.goto(address)
-    _load_until_stored(page, lambda: page.evaluate(STORED) == first.evaluate(STORED))
-    page.wait_for_timeout(OPENING_MS)
+def ready(page):
+    """Wait until a page has found what the browser keeps of it."""
+    until(page, READY)
     return page
 
 
+def second_tab(context, address):
+    """Open a page in another tab."""
+    page = context.new_page()
+    page.goto(address)
+    return ready(page)
+
+
 def reload(page):
-    """Load a page again, with all that it has written into the storage."""
-    written = page.evaluate(STORED)
-    page.wait_for_timeout(OPENING_MS)
+    """Load a page again when the browser has kept what the page has changed."""
+    page.evaluate(KEPT)
     page.reload()
-    _load_until_stored(page, lambda: page.evaluate(STORED) in (written, None))
-
-
-def _load_until_stored(page, is_stored):
-    """Load a page again until it finds what was written: Chromium stores it a moment later."""
-    for _ in range(RELOADS):
-        if is_stored():
-            return
-        page.wait_for_timeout(OPENING_MS)
-        page.reload()
-    raise AssertionError(f"the storage is not as it was written after {RELOADS} reloads")
+    ready(page)

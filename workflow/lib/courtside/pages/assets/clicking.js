@@ -16,7 +16,7 @@
   let at = 0, chosen = "", fits = {}, turns = {}, views = {}, shownFrame = "";
   const savedTexts = {}; // by table: what its file holds
   const unsaved = (table) => table.text() !== savedTexts[table.name];
-  const work = courtside.keeper(`courtside clicks ${given.stamp}`, () => used.some(unsaved));
+  const work = courtside.keeping.keeper(`courtside clicks ${given.stamp}`, () => used.some(unsaved));
 
   const frame = () => frames[at];
   const isTake = (one) => one.take !== null;
@@ -196,7 +196,8 @@
 
   // ---- keeping, saving, loading ----
   function keep() {
-    byId("afresh").disabled = !work.keep({ marks, past: past.slice(-UNDOS), saved: savedTexts, time: new Date().toISOString() });
+    work.keep({ marks, past: past.slice(-UNDOS), saved: savedTexts, time: new Date().toISOString() })
+      .then((isKept) => { byId("afresh").disabled = !isKept; });
   }
 
   function rows(takes) {
@@ -421,7 +422,8 @@
   for (const [id, action] of Object.entries(actions)) byId(id).addEventListener("click", action);
 
   // ---- start ----
-  function start() {
+  async function start() {
+    const kept = await work.read();
     frames.forEach((one, index) => {
       const tab = button(byId("tabs"), `${label(one)} `, () => {
         open(index);
@@ -437,7 +439,6 @@
     }
     button(byId("files"), "Load…", () => byId("chooser").click(), { id: "load" });
     for (const table of used) savedTexts[table.name] = table.text();
-    const kept = work.read();
     if (kept && kept.marks) {
       for (const one of frames) if (kept.marks[one.id]) marks[one.id] = kept.marks[one.id];
       past = kept.past || [];
@@ -452,5 +453,5 @@
     chosen = first.name;
     open(0);
   }
-  start();
+  courtside.keeping.start(start);
 })();

@@ -4,7 +4,7 @@
 (() => {
   const given = courtside.data("people");
   const { byId, button, say } = courtside;
-  const SAVED = `courtside people saved ${given.session} ${given.target}`; // by take: rows that this session's pages saved
+  const SAVED = `courtside people saved ${given.session} ${given.target}`;
   const UNDOS = 20;
   const COLOURS = ["#0b62b0", "#d1495b", "#1d7a3e", "#9a5400", "#7b4fb5", "#00838f", "#b0306a", "#5f6b00"];
   const FEW = 4; // cameras whose pictures are shown of each person, unless all are wanted
@@ -16,7 +16,8 @@
   let state = { parts: partsOf(given.named), loaded: {}, since: 0 };
   let past = [], future = []; // states as text
   let savedText = ""; // of the file
-  const work = courtside.keeper(`courtside people ${given.stamp}`, () => text() !== savedText);
+  let saved = {}, sharing = null; // by take: rows that this session's pages saved; what tells them to the other pages
+  const work = courtside.keeping.keeper(`courtside people ${given.stamp}`, () => text() !== savedText);
 
   function partsOf(names) {
     const named = (person) => names.filter((one) => one.person === person.index);
@@ -285,16 +286,18 @@
 
   // What this session's pages saved, by take, {rows, time, before}, counts as long as people.csv has the rows `before`,
   // of when it was saved. Once the file has the saved rows, these are that.
-  function notePlaced() {
-    const saved = courtside.storage.get(SAVED) || {};
-    const placed = Object.entries(saved).filter(([take, one]) => same(inFile(take), one.rows) && !same(one.rows, one.before));
-    placed.forEach(([, one]) => { one.before = one.rows; });
-    if (placed.length) courtside.storage.set(SAVED, saved);
+  function placed(one, take) {
+    return same(inFile(take), one.rows) ? { ...one, before: one.rows } : one;
+  }
+
+  async function share() {
+    sharing = await courtside.keeping.shared(SAVED, (known) => { saved = known || {}; renderSide(); });
+    const anew = (known) => Object.fromEntries(Object.entries(known || {}).map(([take, one]) => [take, placed(one, take)]));
+    if (!same(anew(saved), saved)) await sharing.change(anew);
   }
 
   // Returns the rows of every other take, the newest of people.csv, of a loaded file and of what other pages saved.
   function others() {
-    const saved = courtside.storage.get(SAVED) || {};
     return given.takes.filter((take) => take !== given.take).map((take) => {
       const ways = [{ rows: inFile(take), time: state.since, where: "of people.csv when this page was made" }];
       if (take in state.loaded) ways.push({ ...state.loaded[take], where: "of a loaded file" });
@@ -314,7 +317,7 @@
     savedText = text();
     courtside.download("people.csv", savedText, "text/csv");
     const one = { rows: rows.map((row) => row.map(String)), time: Date.now(), before: inFile(given.take) };
-    courtside.storage.set(SAVED, { ...courtside.storage.get(SAVED), [given.take]: one });
+    sharing.change((known) => ({ ...known, [given.take]: one }));
     const held = [{ take: given.take, rows }, ...more].map((one) => `${counted(one.rows)} of ${one.take}`).join(", ");
     say(`Saved ${held}. Put the file where the workflow reads it: ${given.target}.`
       + (more.length || given.takes.length < 2 ? "" : " If that file has names of other takes by now, load it here first, then save again."));
@@ -354,17 +357,16 @@
     event.preventDefault();
     action(event.shiftKey);
   });
-  window.addEventListener("storage", (event) => { if (event.key === SAVED) renderSide(); });
   const bar = document.querySelector("header");
   new ResizeObserver(() => document.documentElement.style.setProperty("--bar", `${bar.offsetHeight}px`)).observe(bar);
 
   // ---- start ----
-  function start() {
-    notePlaced();
+  async function start() {
+    await share();
     given.persons.forEach(addCard);
     byId("left-out").textContent = given.left_out ? `${given.left_out} more, seen in less than 2 % of the take, are not shown.` : "";
     savedText = text();
-    const kept = work.read(), before = JSON.stringify([state.parts, state.loaded]);
+    const kept = await work.read(), before = JSON.stringify([state.parts, state.loaded]);
     if (kept && kept.parts) {
       ({ past } = kept);
       state = { parts: kept.parts, loaded: kept.loaded, since: kept.since };
@@ -374,5 +376,5 @@
     const rows = others().flatMap((one) => one.rows);
     say(`Your work of ${new Date(kept.time).toLocaleString()} is here again${rows.length ? `, with ${counted(rows)} of other takes` : ""}.`);
   }
-  start();
+  courtside.keeping.start(start);
 })();

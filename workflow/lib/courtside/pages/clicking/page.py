@@ -16,7 +16,8 @@ from courtside.pages import page
 from courtside.study.errors import StrPath
 from courtside.video import images
 
-SCRIPTS = ["csv.js", *(f"clicking{part}.js" for part in ("_table", "_fit", "_court", "_view", ""))]
+PARTS = "_table", "_fit", "_court", "_view", ""
+SCRIPTS = ["keeping.js", "csv.js", *(f"clicking{part}.js" for part in PARTS)]
 FRAME_KEYS = ("camera", "take", "frame_idx", "size", "clicks", "proposals")  # that scripts get
 ENDS = {
     "top": "tip of the racket's head: the outermost point of its frame",

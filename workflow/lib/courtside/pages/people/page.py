@@ -63,7 +63,7 @@ def build(
         title,
         page.render("people.html", session=words["session"], take=words["take"]),
         css=["people.css"],
-        js=["csv.js", "people_table.js", "people.js"],
+        js=["keeping.js", "csv.js", "people_table.js", "people.js"],
         data={"people": data},
         images={_name(shot): (shot.picture, JPEG) for shot in shots},
     )
