@@ -18,6 +18,17 @@ SHOWN = {
         "joints": "{view.n}",
         "with": "{view.command}",
     },
+    "neighbouring-court": {
+        "one camera clicked on the court beside": "{row}",
+        "strain of right clicks": "{right}",
+        "refused": "{refused}",
+        "warned: strain": "{strain}",
+        "below the floor": "{floor}",
+        "other lines": "{others}",
+        "nothing said": "{nothing}",
+        "cases": "{nothing.n}",
+        "with": "{nothing.command}",
+    },
     "stated-left-out": {
         "stated normal distribution": "{row}",
         "two views": "{two}",
