@@ -14,6 +14,7 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 COURTS = REPOSITORY / "config" / "courts"
+SESSIONS = REPOSITORY / "config" / "sessions"
 sys.path.insert(0, str(REPOSITORY / "workflow" / "lib"))
 
 from courtside.study import installed
@@ -30,26 +31,31 @@ from courtside.study.errors import InputError
 CONFIG_FILES = ("config", "derived_joints", "detectors", "external", "full", "models", "tiny")
 
 
-def main(folder, name, court, sessions):
-    """Draft one session and return the lines to print."""
+def main(folder, name, court, sessions=None):
+    """Draft one session and return the lines to print.
+
+    Without a folder for the files of sessions, these and the study are this repository's.
+    """
+    root, sessions = (Path.cwd(), sessions) if sessions else (REPOSITORY, SESSIONS)
     check_court(court)
     title = (folder.resolve() if folder.name in ("", "..") else folder).name  # of a link its own
     name = name or file_names.name(title, "session1")
     check_name(name)
     check_folder(sessions)
-    recordings = survey.survey(folder, root=Path.cwd())
+    recordings = survey.survey(folder, root=root)
     found = guess.guess(recordings)
-    written = survey.written(folder, Path.cwd())
+    written = survey.written(folder, root)
     path = sessions / f"{name}.yaml"
     if path.is_file():
         content = session_files.filled(schemas.read(path, "session"))
         return additions.to_paste(found, content, path=shown(path), folder=written)
     draft.write(path, draft.text(found, title=title, folder=written, court=court))
-    study = shown(sessions.parent / f"{name}.yaml")
+    study = sessions.parent / f"{name}.yaml"
     filmed = [t for t, films in found.takes.items() if films and t not in draft.unfilmed(found)]
-    said = [f"Wrote {shown(path)}.", draft.write_study(study, name, filmed)]
+    said = [f"Wrote {shown(path)}.", draft.write_study(shown(study), name, filmed)]
     points = None if court == "none" else draft.court_points(found, written)
-    return [*said, *advice.to_check(found, shown(path), points, study)]
+    where = "" if Path.cwd() == root else f"In {root}: "
+    return [*said, *advice.to_check(found, shown(path), points, survey.written(study, root), where)]
 
 
 def check_court(court):
@@ -99,7 +105,6 @@ if __name__ == "__main__":
     parser.add_argument(
         "--sessions",
         type=Path,
-        default=REPOSITORY / "config" / "sessions",
         help="folder of the files of sessions (default: config/sessions)",
     )
     given = parser.parse_args()

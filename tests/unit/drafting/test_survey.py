@@ -19,6 +19,7 @@ from fixtures.recordings import video_files
 from fixtures.recordings.real_data import REAL, needs_real
 
 PROGRAM = schemas.SCHEMAS.parents[1] / "workflow" / "draft_session.py"
+CONFIG = PROGRAM.parents[1] / "config"
 
 
 @pytest.fixture(scope="module")
@@ -287,7 +288,6 @@ def test_an_unknown_court_is_refused_with_those_that_there_are(gym, court, monke
     assert not list((gym / "sessions").glob("with-court*"))
 
 
-CONFIG = PROGRAM.parents[1] / "config"
 STUDIES = {path.stem for path in (CONFIG / "sessions").glob("*.yaml")}  # of one session each
 OF_CONFIG = {path.stem for path in CONFIG.glob("*.yaml")} - STUDIES
 
@@ -381,6 +381,34 @@ def test_a_link_to_a_disk_that_is_not_there_is_told(tmp_path):
         "a link to /no such disk/left.mp4, where nothing is; connect that disk, or copy the "
         "recording here"
     )
+
+
+@pytest.fixture
+def studies(tmp_path):
+    """Return a folder of studies, with the program, and one of recordings outside it."""
+    home, elsewhere = tmp_path / "my studies", tmp_path / "serves"
+    (home / "workflow").mkdir(parents=True)
+    (home / "config" / "sessions").mkdir(parents=True)
+    shutil.copytree(CONFIG / "courts", home / "config" / "courts")
+    shutil.copy(PROGRAM, home / "workflow")
+    for name in ("lib", "schemas"):
+        (home / "workflow" / name).symlink_to(PROGRAM.parent / name)
+    elsewhere.mkdir()
+    video_files.write(str(elsewhere / "left.mp4"), n=20, rate=10)
+    return home, elsewhere
+
+
+@pytest.mark.parametrize(("at", "told"), [("home", "`"), ("elsewhere", "In {home}: `")])
+def test_the_program_may_be_called_from_the_folder_of_recordings(studies, at, told):
+    home, elsewhere = studies
+    cwd, folder = (home, elsewhere) if at == "home" else (elsewhere, ".")
+    command = [sys.executable, str(home / "workflow" / PROGRAM.name), str(folder)]
+    done = subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    last = done.stdout.splitlines()[-1]
+    assert last == f"{told.format(home=home)}snakemake --configfile config/serves.yaml` makes it."
+    content = yaml.safe_load((home / "config" / "sessions" / "serves.yaml").read_text())
+    assert content["walks"]["left"]["video"] == str(elsewhere / "left.mp4")
 
 
 @pytest.mark.parametrize(("given", "name"), [("north/", "north"), (".", "here"), ("a/..", "here")])

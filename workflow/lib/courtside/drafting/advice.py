@@ -18,11 +18,13 @@ SHOWN = 5  # files that are not used, on the terminal; the draft lists all
 SHORT_S = 15  # ASSUME: in shorter takes the clocks of cameras are seldom found
 
 
-def to_check(guess: Guess, path: StrPath, court_points: str | None, study: StrPath) -> list[str]:
+def to_check(
+    guess: Guess, path: StrPath, court_points: str | None, study: StrPath, where: str = ""
+) -> list[str]:
     """List what a user should check after drafting, in order.
 
     `path` is the draft, `court_points` where clicked court points are expected, None without a
-    court, `study` the study that names the session.
+    court, `study` the study that names the session; `where` begins the lines with commands.
     """
     lines = [f"Look at {path}: every line with `{draft.MARK}`, and everything under `not used`."]
     left_out = draft.left_out(guess)
@@ -43,9 +45,10 @@ def to_check(guess: Guess, path: StrPath, court_points: str | None, study: StrPa
     elif guess.calibration is None and guess.cameras:
         lines += _of_cameras(guess, court_points)
     lines.append(
-        f"`snakemake -n -q rules --configfile {study}` checks it and counts what will be made."
+        f"{where}`snakemake -n -q rules --configfile {study}` checks it and counts what will be "
+        "made."
     )
-    lines.append(f"`snakemake --configfile {study}` makes it.")
+    lines.append(f"{where}`snakemake --configfile {study}` makes it.")
     return lines
 
 
