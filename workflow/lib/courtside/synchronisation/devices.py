@@ -63,17 +63,17 @@ def synchronise(
     """Find the clock of every source against the first one's.
 
     `events_of` holds the events of every source, `devices` its device: sources of one device share
-    its clock. Clocks `known` against the reference are used as they are. The stated delay of a
-    source (`latency`, with its standard deviation, s) is reported, not subtracted: places must be
-    compared at the times of the same event. An `InputError` if the claps of a source cannot be
-    paired with those of the reference, are not the same by the motion, or leave its clock
-    uncertain.
+    its clock. Clocks `known` against the reference are used as they are, with what the motion says
+    against them. The stated delay of a source (`latency`, with its standard deviation, s) is
+    reported, not subtracted: places must be compared at the times of the same event. An
+    `InputError` if the claps of a source cannot be paired with those of the reference, are not the
+    same by the motion, or leave its clock uncertain.
     """
     reference, *others = motions
     found = {reference.source: Found(Clock(status="reference", note="the take's clock"), [])}
     for motion in others:
         if motion.source in known:
-            found[motion.source] = Found(known[motion.source], [])
+            found[motion.source] = Found(_stated(reference, motion, known, events_of), [])
         elif devices[motion.source] == devices[reference.source]:
             clock = Clock(note="one device with the reference: one clock")
             found[motion.source] = Found(clock, [])
@@ -135,7 +135,32 @@ def _against(reference, motion, events_of) -> Found:
         doubts = clock_doubts.doubts(
             (reference, motion), chosen, signals, time_s, one.clock, PRIOR_DRIFT
         )
-    return replace(one, clock=replace(one.clock, doubt="; ".join(doubts)))
+    doubts += filter(None, [clock_doubts.unpaired(claps, pairs, one.clock)])
+    doubt = "; ".join(doubts) or _unlike(reference, motion, one.clock, events_of)
+    return replace(one, clock=replace(one.clock, doubt=doubt))
+
+
+def _stated(reference, motion, known, events_of) -> Clock:
+    """Return the clock that the session states, with what speaks against it."""
+    clock = known[motion.source]
+    claps = events_of[reference.source].claps, events_of[motion.source].claps
+    is_shown = any(
+        abs(clock.to_reference(second.time_s) - first.time_s) <= SAME_S
+        for first, second in product(*claps)
+    )
+    doubt = "" if is_shown else clock_doubts.unpaired(claps, [], clock)
+    doubt = doubt or _unlike(reference, motion, clock, events_of)
+    return replace(clock, doubt=doubt) if doubt else clock
+
+
+def _unlike(reference, motion, clock, events_of) -> str:
+    """Return what the whole motion says against a clock, as of two takes; empty if nothing."""
+    time_s = _both(reference, motion, clock.offset_s)
+    events = [events_of[each.source] for each in (reference, motion)]
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "All-NaN|Mean of empty|Degrees of freedom")
+        signals = Signals(reference, motion)
+        return clock_doubts.unlike((reference, motion), signals, time_s, clock, events)
 
 
 def _likeness(signals, reference, motion) -> Callable[[float], float]:
