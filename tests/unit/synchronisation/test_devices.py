@@ -162,6 +162,17 @@ def test_other_peoples_claps_do_not_pair_silently():
     assert np.isnan(found.motion_offset_s)
 
 
+def test_a_recording_that_is_given_twice_is_told():
+    """Its copy has another name, and agrees with it to the last digit."""
+    rng, take = np.random.default_rng(0), device_takes.truth(0)
+    reference = device_takes.device(rng, take, **CAMERAS)
+    suits = [device_takes.mocopi(rng, take, source=name) for name in ("first", "other")]
+    copy = replace(suits[0], source="copy")
+    found = solve(reference, *suits, copy)
+    assert [found[name].clock.doubt for name in ("first", "other")] == ["", ""]
+    assert "found that of first to the last digit" in found["copy"].clock.doubt
+
+
 def claps(*times_s, uncertainty_s=0.005):
     return [Clap(at_s, uncertainty_s, 0, 0.1, 2.5, 0.0, False) for at_s in times_s]
 

@@ -1,9 +1,9 @@
 """Clock offsets and drifts of devices, from claps and motion."""
 
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import combinations, product
 
 import numpy as np
 import pandas as pd
@@ -84,6 +84,7 @@ def synchronise(
         else:
             found[motion.source] = _against(reference, motion, events_of)
     shared = _shared(found, [m for m in others if m.source not in known], devices)
+    shared |= {source: _twice(shared[source], line) for source, line in _copies(motions)}
     for source, (delay_s, sigma_s) in latency.items():
         if source in shared:
             one = shared[source]
@@ -138,6 +139,22 @@ def _against(reference, motion, events_of) -> Found:
     doubts += filter(None, [clock_doubts.unpaired(claps, pairs, one.clock)])
     doubt = "; ".join(doubts) or _unlike(reference, motion, one.clock, events_of)
     return replace(one, clock=replace(one.clock, doubt=doubt))
+
+
+def _copies(motions: Sequence[DeviceMotion]) -> Iterator[tuple[str, str]]:
+    """Yield the sources that repeat an earlier one to the last digit, with a line."""
+    for one, other in combinations(motions, 2):
+        if np.array_equal(one.xyz, other.xyz, equal_nan=True):
+            yield (
+                other.source,
+                f"expected a motion of its own, found that of {one.source} to the last digit: one "
+                "recording was given twice",
+            )
+
+
+def _twice(found: Found, line: str) -> Found:
+    doubt = "; ".join(filter(None, [found.clock.doubt, line]))
+    return replace(found, clock=replace(found.clock, doubt=doubt))
 
 
 def _stated(reference, motion, known, events_of) -> Clock:
