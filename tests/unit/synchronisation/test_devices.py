@@ -215,6 +215,13 @@ def test_what_nothing_decides_is_an_error_that_names_the_times():
     assert str(caught.value).startswith("mocopi against rgb")
 
 
+def test_a_wrong_rate_is_named_where_as_many_claps_do_not_pair():
+    """A file of 60 frames per second that states 50, for instance."""
+    rate = "in order, the times between them are 1.2000 times as long: .* a wrong rate"
+    with pytest.raises(InputError, match=rate):
+        devices.pair(claps(4.0, 60.0), claps(4.8, 72.0), nothing, "mocopi against rgb")
+
+
 def test_surer_claps_count_more():
     pairs = [*zip(claps(0.0), claps(1.0), strict=True)]
     pairs += zip(claps(9.0, uncertainty_s=0.0), claps(10.05, uncertainty_s=0.001), strict=True)

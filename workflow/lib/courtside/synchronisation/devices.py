@@ -324,11 +324,22 @@ def pair(
         offsets = ", ".join(f"{offset_s(pairs):.2f}" for _, pairs in best)
         raise InputError(
             f"{where}: expected claps that pair in one way, found {len(best)} ways (offsets "
-            f"{offsets} s): claps at {times[1]} s against {times[0]} s; give the device's offset_s "
-            "under clocks of the take, or, if a file lacks frames between them, its parts as takes "
-            "of their own"
+            f"{offsets} s): claps at {times[1]} s against {times[0]} s; {_stretch(first, second)}"
+            "give the device's offset_s under clocks of the take, or, if a file lacks frames "
+            "between them, its parts as takes of their own"
         )
     return best[0][1]
+
+
+def _stretch(first: Sequence[Clap], second: Sequence[Clap]) -> str:
+    """Return a clause on how claps that are as many would pair in order; empty for others."""
+    if not len(first) == len(second) > 1:
+        return ""
+    ratio = (second[-1].time_s - second[0].time_s) / (first[-1].time_s - first[0].time_s)
+    return (
+        f"if these are the same {len(first)} in order, the times between them are {ratio:.4f} "
+        "times as long: look whether a file states a wrong rate or lacks frames; else "
+    )
 
 
 def offset_s(pairs: Pairs) -> float:
