@@ -107,6 +107,19 @@ def test_the_colour_camera_alone_is_not_doubted():
     assert (motion.kind, bodyframe.doubt(motion, frame)) == ("rgb", None)
 
 
+@pytest.mark.parametrize(("bent_deg", "told"), [(10, False), (30, True)])
+def test_bent_arms_in_the_t_pose_are_told(bent_deg, told):
+    motion = device_takes.mocopi(np.random.default_rng(0), device_takes.truth(0))
+    spell = tpose.find(motion)[0]
+    turn = Rotation.from_rotvec([0, bent_deg, 0], degrees=True)  # about the vertical of the suit
+    elbow, wrist = (motion.joints.tolist().index(f"left_{part}") for part in ("elbow", "wrist"))
+    xyz = motion.xyz.copy()
+    xyz[:, wrist] = xyz[:, elbow] + turn.apply(xyz[:, wrist] - xyz[:, elbow])
+    bent = replace(motion, xyz=xyz)
+    said = bodyframe.doubt(bent, bodyframe.at_tpose(bent, CARRIED_BY, spell)) or ""
+    assert ("found elbows bent by 3" in said and "the unit" in said) == told == bool(said)
+
+
 def test_residuals_are_those_of_a_known_body():
     tilt, n = np.radians(3.0), 31
     wave = 0.01 * np.where(np.arange(n) % 2, 1.0, -1.0)

@@ -143,6 +143,18 @@ def test_a_pose_that_is_repeated_is_told(tmp_path, capsys, n_repeats, told):
     assert told in said if told else not said
 
 
+@pytest.mark.parametrize(
+    ("seconds", "way_m", "told"), [(3, (0, 0.1, 0), True), (3, (0.001, 0, 0), False), (1, 0, False)]
+)
+def test_a_root_without_its_way_is_told(tmp_path, capsys, seconds, way_m, told):
+    posed = recorded(tmp_path / "take.bvh", n_frames=1 + 60 * seconds)
+    moved = posed.translation.copy()
+    moved[:, 0] += np.sin(np.arange(len(moved)) / 20)[:, None] * way_m
+    writer.write(tmp_path / "take.bvh", replace(posed, translation=moved))
+    mocopi.read(tmp_path / "take.bvh", MOCOPI)
+    assert ("take.bvh: the root is at one place of the floor" in capsys.readouterr().err) == told
+
+
 @pytest.mark.parametrize(("n_frames", "n_performed"), [(0, 0), (1, 0), (2, 1)])
 def test_fewer_than_two_frames_of_motion_are_refused(tmp_path, n_frames, n_performed):
     recorded(tmp_path / "a.bvh", n_frames=n_frames)

@@ -216,3 +216,13 @@ def test_a_hand_that_is_lost_behind_the_other_leaves_the_clap():
     for number, clap in enumerate(found, 1):
         assert abs(clap.time_s - take[2][f"clap_{number}"]) < 2.5 * clap.uncertainty_s
     assert len(found) == 2
+
+
+def test_exchanged_sides_are_named():
+    """Then the chest is behind, and a clap in front of it is behind the back."""
+    motion = device_takes.mocopi(np.random.default_rng(0), device_takes.truth(0))
+    names = [str(name) for name in motion.joints]
+    other = {"left": "right", "right": "left"}
+    names = [re.sub("left|right", lambda side: other[side[0]], name) for name in names]
+    line = why_none(replace(motion, joints=np.array(names)))
+    assert "not in front of the chest but behind: are left and right exchanged?" in line

@@ -1,5 +1,6 @@
 """Clocks of devices that their claps get wrong: the motion tells; right ones are not doubted."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -140,3 +141,79 @@ def test_a_drift_that_no_clock_has_is_told():
     assert abs(doubted.clock.drift_ppm - fast.drift_ppm) < 200
     line = doubted.clock.doubt
     assert "expected a drift of at most 800 ppm" in line
+
+
+def test_a_clap_that_one_device_misses_is_no_doubt():
+    reference, suit = two()
+    for missed in CLAPS_S:
+        _, right = found(reference, hidden(suit, missed - 8.0, missed + 8.0))
+        assert len(right.claps) == 1 and right.clock.doubt == ""
+
+
+def other_take(seed):
+    """Return a take with the same T-poses and claps, and motion of its own between them."""
+    times, xyz, events = long()
+    noise = np.random.default_rng(seed).normal(size=xyz.shape)
+    noise = ndimage.gaussian_filter1d(noise, 0.15 * 120.0, axis=0)
+    swing = ndimage.gaussian_filter1d(
+        np.random.default_rng(seed + 50).normal(size=xyz.shape), 40.0, axis=0
+    )
+    wrists = np.char.endswith(np.array(device_takes.JOINTS), "_wrist")[:, None]
+    both = 0.1 * noise / noise.std() + 0.25 * wrists * swing / swing.std()
+    return times, xyz + both * np.clip(20.0 - np.abs(times - 30.0), 0.0, 1.0)[:, None, None], events
+
+
+@pytest.mark.parametrize("lost_s", [0.4, 2.0])
+def test_frames_lost_between_two_claps_leave_one_of_each_beside_the_clock(lost_s):
+    """Half of the take is then off, and each pairing leaves one clap of each device over."""
+    reference, suit = two(other_take(1))
+    claps, doubted = found(reference, lacking(suit, 20.0, lost_s))
+    assert claps == [2, 2] and len(doubted.claps) == 1
+    line = re.search(r"the clap at \d+\.\d\d s is ([+-]\d+) ms beside", doubted.clock.doubt)
+    assert line and abs(abs(int(line[1])) - 1e3 * lost_s) < 30
+
+
+def test_the_file_of_another_take_is_told():
+    (reference, suit), (_, stranger) = two(other_take(1)), two(other_take(2))
+    _, right = found(reference, suit)
+    _, wrong = found(reference, stranger)
+    assert right.clock.doubt == ""
+    assert "look whether both files are of this take, and none lacks frames" in wrong.clock.doubt
+
+
+STATED = [
+    (0.0, ""),
+    (0.05, ""),  # a device's delay
+    (1.0, "s is -1000 ms beside the clock: look whether it is stated right"),
+    (-2 * TRUE.offset_s, "and its stated clock is right"),  # the wrong sign
+]
+
+
+@pytest.mark.parametrize("off_s, told", STATED)
+def test_a_wrong_clock_that_is_stated_is_told(off_s, told):
+    motions = two(other_take(1))
+    own = device_takes.each_its_own(motions)
+    stated = Clock(TRUE.offset_s + off_s, TRUE.drift_ppm, note="stated")
+    solved = devices.synchronise(
+        motions, detect.detect(motions), devices=own, known={"mocopi": stated}, latency={}
+    )
+    clock = solved["mocopi"].clock
+    assert (clock.offset_s, clock.usable) == (stated.offset_s, True)
+    line = re.sub(r"is -(9[89]|10[012])\d ms", "is -1000 ms", clock.doubt)
+    assert told in line and bool(told) == bool(line)
+
+
+def frozen():
+    """Return T-pose and clap at both ends, and between them somebody who does not move at all."""
+    times, xyz, events = long()
+    held = (times > 11.0) & (times < 47.0)
+    return times, np.where(held[:, None, None], xyz[times.searchsorted(11.0)], xyz), events
+
+
+def test_somebody_who_stands_still_is_not_doubted():
+    """Then the noise of the devices is all there is to compare."""
+    for seed in range(3):
+        rng = np.random.default_rng(seed)
+        reference = device_takes.blazepose(rng, frozen())
+        _, right = found(reference, device_takes.mocopi(rng, frozen(), clock=TRUE))
+        assert right.clock.doubt == ""

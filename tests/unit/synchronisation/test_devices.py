@@ -1,5 +1,6 @@
 """Clocks of virtual devices: offsets and drifts against those that the devices were given."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -123,7 +124,8 @@ def test_sources_of_one_device_have_one_clock_and_known_clocks_stay():
     found = solve(reference, rgb, depth, mocopi, devices=devices, known={"mocopi": stated})
     assert found["d415-rgb"].clock == found["d415-depth"].clock
     assert found["d415-rgb"].clock.offset_s == pytest.approx(1.5, abs=0.008)
-    assert found["mocopi"].clock is stated
+    assert replace(found["mocopi"].clock, doubt="") == stated
+    assert re.search(r"is -2[45]\d ms beside the clock", found["mocopi"].clock.doubt)
     shared = solve(depth, rgb, devices=devices)
     assert shared["d415-rgb"].clock.offset_s == 0 and shared["d415-rgb"].clock.usable
 
@@ -158,6 +160,17 @@ def test_other_peoples_claps_do_not_pair_silently():
     found = solve(first, second)["mocopi"]
     assert "too little alike" in found.clock.note
     assert np.isnan(found.motion_offset_s)
+
+
+def test_a_recording_that_is_given_twice_is_told():
+    """Its copy has another name, and agrees with it to the last digit."""
+    rng, take = np.random.default_rng(0), device_takes.truth(0)
+    reference = device_takes.device(rng, take, **CAMERAS)
+    suits = [device_takes.mocopi(rng, take, source=name) for name in ("first", "other")]
+    copy = replace(suits[0], source="copy")
+    found = solve(reference, *suits, copy)
+    assert [found[name].clock.doubt for name in ("first", "other")] == ["", ""]
+    assert "found that of first to the last digit" in found["copy"].clock.doubt
 
 
 def claps(*times_s, uncertainty_s=0.005):
@@ -200,6 +213,13 @@ def test_what_nothing_decides_is_an_error_that_names_the_times():
     with pytest.raises(InputError, match=r"2 ways .*15\.00, 50\.00 s against 3\.00 s") as caught:
         devices.pair(claps(3.0), claps(15.0, 50.0), nothing, "mocopi against rgb")
     assert str(caught.value).startswith("mocopi against rgb")
+
+
+def test_a_wrong_rate_is_named_where_as_many_claps_do_not_pair():
+    """A file of 60 frames per second that states 50, for instance."""
+    rate = "in order, the times between them are 1.2000 times as long: .* a wrong rate"
+    with pytest.raises(InputError, match=rate):
+        devices.pair(claps(4.0, 60.0), claps(4.8, 72.0), nothing, "mocopi against rgb")
 
 
 def test_surer_claps_count_more():

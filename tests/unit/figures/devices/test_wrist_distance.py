@@ -90,6 +90,17 @@ def test_contacts_bands_and_distances_are_drawn_at_the_tables_values():
     assert notes.texts[0].get_text() == "a (mocopi, 9.00 s): the arms are bent"
 
 
+def test_sources_of_one_colour_are_told_apart_in_the_panels():
+    kinds = {"cameras": "inertial", "mocopi": "inertial"}
+    distances = wrists(TWO, (3.0, 9.0))
+    events = wrist_distance.table(distances, EVENTS)
+    above, zooms, _ = wrist_distance.draw(distances, events, kinds=kinds).subfigs
+    named = [axis.get_legend().legend_handles[0].get_marker() for axis in above.axes]
+    marked = [line.get_marker() for line in zooms.axes[0].lines]
+    assert named == [marker for marker in marked if marker != "None"]
+    assert len(set(named)) == 2
+
+
 def test_without_clocks_each_source_is_shown_by_itself():
     distances = wrists({"cameras": 0.0, "mocopi": 0.1})
     events = wrist_distance.table(distances, EVENTS, aligned=False)

@@ -56,6 +56,8 @@ LEANS_DEG = {
              "as much; level it before the next take"),
     "inertial": (45.0, "Y is not up in its file, and all exports lie down; export it with Y up"),
 }  # fmt: skip
+# ASSUME: degrees; T-poses of the virtual gym had 13 at most. 30 shorten the unit by 5 %.
+BENT_DEG = 20.0
 REMAKE = "make it again with the rule align_bodies"
 
 
@@ -168,17 +170,37 @@ def at_tpose(motion: DeviceMotion, carried_by: Anchors, tpose: TPose) -> BodyFra
 
 
 def doubt(motion: DeviceMotion, frame: BodyFrame) -> str | None:
-    """Return why the vertical of a device is none, if the trunk leans too far in the T-pose."""
+    """Return what makes a T-pose doubtful; None if nothing, or for a network in single pictures.
+
+    The trunk leans too far, so that the vertical of the device is none; or the arms are bent, so
+    that the unit is short.
+    """
     if motion.kind not in LEANS_DEG:
         return None
+    return "; ".join(filter(None, (_leaning(motion, frame), _bent(motion, frame)))) or None
+
+
+def _leaning(motion: DeviceMotion, frame: BodyFrame) -> str:
     most_deg, why = LEANS_DEG[motion.kind]
     up = UPRIGHT[motion.kind][2] @ frame.body_from_device.rotation[1]
     lean_deg = np.degrees(np.arccos(np.clip(up, -1, 1)))
     if lean_deg <= most_deg:
-        return None
+        return ""
     return (
         f"{motion.source}: expected a trunk within {most_deg:g} degrees of its vertical in the "
         f"T-pose, found {lean_deg:.1f}: {why}"
+    )
+
+
+def _bent(motion: DeviceMotion, frame: BodyFrame) -> str:
+    bent_deg = [frame.residuals[f"elbow_{side}_deg"] or 0.0 for side in tposes.SIDES]
+    if max(bent_deg) <= BENT_DEG:
+        return ""
+    left, right = (f"{deg:.0f}" for deg in bent_deg)
+    return (
+        f"{motion.source}: expected straight arms in the T-pose, found elbows bent by {left} "
+        f"degrees (left) and {right}: the unit, half the distance of the wrists, is too short, and "
+        "lengths and arcs in units are too long; stretch the arms in the next take"
     )
 
 

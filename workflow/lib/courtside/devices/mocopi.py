@@ -32,6 +32,7 @@ WRITTEN_TO_S = 0.6e-6  # the app writes its frame time with six decimals: 0.0166
 BODY_M = (0.85, 2.3)
 # Three angles of at most 2 pi, read as degrees, turn a joint by less; nobody moves so little.
 LEAST_TURN_DEG = 11.0
+LEAST_PLACE_S, NO_WAY_M = 2.0, 1e-5  # ASSUME: within this time everybody sways by more
 NO_TURN = 1e-6  # rounding: largest entry by which a rotation may differ from the identity
 
 
@@ -55,7 +56,7 @@ def read(
 
     A frame time of 0.016667 s means 1/60 s: as written the clock would run 20 ppm fast. Frame times
     of 30, 50 and 60 frames a second are taken as these; others as written. Times in which every
-    row repeats one pose are told.
+    row repeats one pose are told, and a root that never leaves its place.
     """
     unit = unit or "cm"
     posed = bvh.read(path, unit_m=METRES[unit], radians=angles == "radians")
@@ -74,6 +75,7 @@ def read(
         _check_angles(path, posed)
     performed = _performed(path, posed)
     _tell_of_held(path, posed)
+    _tell_of_place(path, posed, performed)
     xyz, _ = hierarchy.forward(posed)
     order = [posed.hierarchy.joints.index(joint) for joint in skeleton.joints]
     return DeviceMotion(
@@ -157,5 +159,19 @@ def _tell_of_held(path: StrPath, posed: PosedHierarchy) -> None:
         log.tell(
             f"{Path(path).name}: the same pose in every row from {', '.join(spans)}: the suit lost "
             "its sensors or its link; record again, or do not use these times",
+            path,
+        )
+
+
+def _tell_of_place(path: StrPath, posed: PosedHierarchy, performed: NDArray) -> None:
+    """Tell of a root that stands still to the last digit: no person's does."""
+    root = posed.hierarchy.parents.tolist().index(hierarchy.NO_PARENT)
+    place = posed.translation[performed, root][:, [0, 2]]
+    time_s = posed.time_s[performed]
+    if time_s[-1] - time_s[0] >= LEAST_PLACE_S and (np.ptp(place, axis=0) < NO_WAY_M).all():
+        log.tell(
+            f"{Path(path).name}: the root is at one place of the floor in every row: the file was "
+            "written without the way that the body went; its angles count, but no place, path or "
+            "speed: export it with root motion",
             path,
         )

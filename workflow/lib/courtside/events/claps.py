@@ -158,6 +158,8 @@ def _why_not(motion, spell, near, apart, most_m) -> str:
     meeting = _within(time_s, time_s[near], MEETING_S)
     hands = sum(at[f"{s}_wrist"] - at[f"{s}_shoulder"] for s in tpose.SIDES)[meeting] / 2
     hands = np.nanmedian(hands, axis=0)
+    if hands @ forwards < -IN_FRONT * arm_m:
+        return "the hands are not in front of the chest but behind: are left and right exchanged?"
     if not hands @ forwards > IN_FRONT * arm_m:
         return "the hands are not in front of the chest"
     if not abs(hands @ up) < LEVEL * arm_m:

@@ -1,5 +1,6 @@
 """What speaks against the clock of a device that its claps gave: the motion of the whole take."""
 
+import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
@@ -7,9 +8,10 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from courtside.events import claps
 from courtside.records.devices.clocks import Clock
 from courtside.records.devices.device_motion import DeviceMotion
-from courtside.records.devices.events import TPose
+from courtside.records.devices.events import CLAP_WITHIN_S, Clap, Events, TPose
 from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
 from courtside.synchronisation import motion_signals, smooth_tracks
@@ -32,6 +34,16 @@ MOST_DRIFT = 4.0
 WINDOW_S, REACH_S, LAG_STEP_S = 6.0, 1.5, 0.05
 LEAST_RUN = 2  # ASSUME: windows one after the other that must prefer the same offset
 ALIKE_S = 0.1  # ASSUME: offsets that differ by less are the same
+# ASSUME: around a T-pose and its clap, which are alike in every take: until arms hang again.
+RAISED_S, LOWERED_S = 1.5, 1.0
+# ASSUME: of the correlations of all distances, the one that a quarter exceeds: limbs that hardly
+# move show noise. Files of one take of the virtual gym had 0.66 and more with it, of two takes 0.41
+# at most.
+QUANTILE = 0.75
+# ASSUME: of the largest wrist distance: wrists of somebody who stands still move by less, as nine
+# tenths of the frames show them. In takes of the virtual gym with free motion they move by 0.42.
+LEAST_MOVED = 0.1
+WRIST_PAIRS = 7  # of the signals' pairs, from the first
 
 
 def refuse_other_claps(signals: Signals, offset_s: float, where: str) -> None:
@@ -103,6 +115,82 @@ def doubts(
     ]
     said += _beside(signals, time_s, clock)
     return [line for line in said if line]
+
+
+def unlike(
+    motions: Sequence[DeviceMotion],
+    signals: Signals,
+    time_s: NDArray,
+    clock: Clock,
+    events: Sequence[Events],
+) -> str:
+    """Return a line if the motions do not show one take: T-pose and clap are in every other, too.
+
+    `events` are those of both devices, `time_s` (T,) uniform times of the first one's clock. The
+    line is empty where little time is left beside T-poses and claps, or somebody stands still then.
+    """
+    apart = _apart(time_s, clock, events)
+    own = np.stack([time_s, clock.from_reference(time_s)])[:, apart]
+    known = np.any([one[0] for one in signals.sampled(own)], axis=(0, 2))
+    common_s = known.sum() * (time_s[1] - time_s[0]) if len(time_s) > 1 else 0.0
+    if not (common_s >= COMMON_S and min(map(_moved, motions, own)) >= LEAST_MOVED):
+        return ""
+    found = float(np.quantile(signals.correlation(own), QUANTILE))
+    if found >= LEAST_ALIKE:
+        return ""
+    other = "its stated clock is right" if clock.status == "assumed" else "none lacks frames"
+    return (
+        f"expected motions with a correlation of {LEAST_ALIKE:g} or more beside T-poses and claps, "
+        f"found {found:.2f} over {common_s:.0f} s: look whether both files are of this take, and "
+        f"{other}"
+    )
+
+
+def unpaired(
+    shown: Sequence[Sequence[Clap]], pairs: Sequence[tuple[Clap, Clap]], clock: Clock
+) -> str:
+    """Return a line if a clap of each device is left over, both at nearly the same time.
+
+    `shown` are the claps of both devices, `pairs` those that are one by the `clock` of the second.
+    A device may miss a clap that the other shows; then it shows no other one at nearly that time.
+    """
+    used = list(zip(*pairs, strict=True)) or [(), ()]
+    left = [[clap for clap in own if clap not in one] for own, one in zip(shown, used, strict=True)]
+    apart = [
+        (float(clock.to_reference(second.time_s)) - first.time_s, first.time_s)
+        for first, second in itertools.product(*left)
+    ]
+    apart_s, at_s = min(apart, key=lambda one: abs(one[0]), default=(np.inf, np.nan))
+    if abs(apart_s) > CLAP_WITHIN_S:
+        return ""
+    line = f"the clap at {at_s:.2f} s is {1e3 * apart_s:+.0f} ms beside the clock"
+    if not pairs:
+        return f"{line}: look whether it is stated right, and both files are of this take"
+    return (
+        f"{line} that another clap gives: a file probably lacks frames between them, or states a "
+        "wrong rate; give the parts before and after as takes of their own"
+    )
+
+
+def _moved(motion: DeviceMotion, own_s: NDArray) -> float:
+    """Return how far the wrists move against each other and the hips at times (T,), in spans."""
+    across = claps.wrist_distance(motion)
+    spread_m = []
+    for first, second in motion_signals.PAIRS[:WRIST_PAIRS]:
+        apart_m = np.linalg.norm(motion.joint(first) - motion.joint(second), axis=1)
+        then_m = np.interp(own_s, motion.time_s, apart_m)
+        spread_m.append(np.subtract(*np.nanquantile(then_m, [0.9, 0.1])))
+    return float(np.median(spread_m) / np.nanquantile(across, 0.95))
+
+
+def _apart(time_s: NDArray, clock: Clock, events: Sequence[Events]) -> NDArray:
+    """Return which times (T,) of the first device are not around a T-pose with a clap of either."""
+    apart = np.ones(len(time_s), dtype=bool)
+    for own, read in zip(events, (time_s, clock.from_reference(time_s)), strict=True):
+        for clap in own.claps:
+            start_s = own.tposes[clap.tpose].start_s
+            apart &= (read < start_s - RAISED_S) | (read > clap.time_s + LOWERED_S)
+    return apart
 
 
 def drift(drift_ppm: float, prior_drift: float) -> str:

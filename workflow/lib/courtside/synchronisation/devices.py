@@ -1,9 +1,9 @@
 """Clock offsets and drifts of devices, from claps and motion."""
 
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import combinations, product
 
 import numpy as np
 import pandas as pd
@@ -63,17 +63,17 @@ def synchronise(
     """Find the clock of every source against the first one's.
 
     `events_of` holds the events of every source, `devices` its device: sources of one device share
-    its clock. Clocks `known` against the reference are used as they are. The stated delay of a
-    source (`latency`, with its standard deviation, s) is reported, not subtracted: places must be
-    compared at the times of the same event. An `InputError` if the claps of a source cannot be
-    paired with those of the reference, are not the same by the motion, or leave its clock
-    uncertain.
+    its clock. Clocks `known` against the reference are used as they are, with what the motion says
+    against them. The stated delay of a source (`latency`, with its standard deviation, s) is
+    reported, not subtracted: places must be compared at the times of the same event. An
+    `InputError` if the claps of a source cannot be paired with those of the reference, are not the
+    same by the motion, or leave its clock uncertain.
     """
     reference, *others = motions
     found = {reference.source: Found(Clock(status="reference", note="the take's clock"), [])}
     for motion in others:
         if motion.source in known:
-            found[motion.source] = Found(known[motion.source], [])
+            found[motion.source] = Found(_stated(reference, motion, known, events_of), [])
         elif devices[motion.source] == devices[reference.source]:
             clock = Clock(note="one device with the reference: one clock")
             found[motion.source] = Found(clock, [])
@@ -84,6 +84,7 @@ def synchronise(
         else:
             found[motion.source] = _against(reference, motion, events_of)
     shared = _shared(found, [m for m in others if m.source not in known], devices)
+    shared |= {source: _twice(shared[source], line) for source, line in _copies(motions)}
     for source, (delay_s, sigma_s) in latency.items():
         if source in shared:
             one = shared[source]
@@ -135,7 +136,48 @@ def _against(reference, motion, events_of) -> Found:
         doubts = clock_doubts.doubts(
             (reference, motion), chosen, signals, time_s, one.clock, PRIOR_DRIFT
         )
-    return replace(one, clock=replace(one.clock, doubt="; ".join(doubts)))
+    doubts += filter(None, [clock_doubts.unpaired(claps, pairs, one.clock)])
+    doubt = "; ".join(doubts) or _unlike(reference, motion, one.clock, events_of)
+    return replace(one, clock=replace(one.clock, doubt=doubt))
+
+
+def _copies(motions: Sequence[DeviceMotion]) -> Iterator[tuple[str, str]]:
+    """Yield the sources that repeat an earlier one to the last digit, with a line."""
+    for one, other in combinations(motions, 2):
+        if np.array_equal(one.xyz, other.xyz, equal_nan=True):
+            yield (
+                other.source,
+                f"expected a motion of its own, found that of {one.source} to the last digit: one "
+                "recording was given twice",
+            )
+
+
+def _twice(found: Found, line: str) -> Found:
+    doubt = "; ".join(filter(None, [found.clock.doubt, line]))
+    return replace(found, clock=replace(found.clock, doubt=doubt))
+
+
+def _stated(reference, motion, known, events_of) -> Clock:
+    """Return the clock that the session states, with what speaks against it."""
+    clock = known[motion.source]
+    claps = events_of[reference.source].claps, events_of[motion.source].claps
+    is_shown = any(
+        abs(clock.to_reference(second.time_s) - first.time_s) <= SAME_S
+        for first, second in product(*claps)
+    )
+    doubt = "" if is_shown else clock_doubts.unpaired(claps, [], clock)
+    doubt = doubt or _unlike(reference, motion, clock, events_of)
+    return replace(clock, doubt=doubt) if doubt else clock
+
+
+def _unlike(reference, motion, clock, events_of) -> str:
+    """Return what the whole motion says against a clock, as of two takes; empty if nothing."""
+    time_s = _both(reference, motion, clock.offset_s)
+    events = [events_of[each.source] for each in (reference, motion)]
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "All-NaN|Mean of empty|Degrees of freedom")
+        signals = Signals(reference, motion)
+        return clock_doubts.unlike((reference, motion), signals, time_s, clock, events)
 
 
 def _likeness(signals, reference, motion) -> Callable[[float], float]:
@@ -282,11 +324,22 @@ def pair(
         offsets = ", ".join(f"{offset_s(pairs):.2f}" for _, pairs in best)
         raise InputError(
             f"{where}: expected claps that pair in one way, found {len(best)} ways (offsets "
-            f"{offsets} s): claps at {times[1]} s against {times[0]} s; give the device's offset_s "
-            "under clocks of the take, or, if a file lacks frames between them, its parts as takes "
-            "of their own"
+            f"{offsets} s): claps at {times[1]} s against {times[0]} s; {_stretch(first, second)}"
+            "give the device's offset_s under clocks of the take, or, if a file lacks frames "
+            "between them, its parts as takes of their own"
         )
     return best[0][1]
+
+
+def _stretch(first: Sequence[Clap], second: Sequence[Clap]) -> str:
+    """Return a clause on how claps that are as many would pair in order; empty for others."""
+    if not len(first) == len(second) > 1:
+        return ""
+    ratio = (second[-1].time_s - second[0].time_s) / (first[-1].time_s - first[0].time_s)
+    return (
+        f"if these are the same {len(first)} in order, the times between them are {ratio:.4f} "
+        "times as long: look whether a file states a wrong rate or lacks frames; else "
+    )
 
 
 def offset_s(pairs: Pairs) -> float:

@@ -139,6 +139,10 @@ def _draw_rows(part, wrists, events, looks, aligned) -> None:
         _draw_events(axis, events[events["source"] == source], look.colour, top)
         axis.set_ylim(0, top)
         axis.set_title(source, loc="left", color=look.colour, pad=2)
+        # Its look in the panels below, where sources of one kind have one colour.
+        shown = bars.mark(look.colour, marker=look.marker, line=look.line)
+        axis.legend(handles=[shown], labels=[""], loc="lower right", bbox_to_anchor=(1, 0.95),
+                    borderpad=0, borderaxespad=0, handletextpad=0, handlelength=3)  # fmt: skip
     clock = "on the reference clock" if aligned else "on each source's own clock: not synchronised"
     axes[-1].set_xlabel(f"time (s), {clock}")
     part.supylabel("distance of the wrists (m)", fontsize=8)
