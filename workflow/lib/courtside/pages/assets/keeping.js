@@ -58,28 +58,28 @@ courtside.keeping = (() => {
    */
   function keeper(key, unsaved) {
     let last = null; // what this tab read or wrote last
-    let open = false, waiting = 0; // whether a change is not kept, and how many are being kept
+    let isOpen = false, waiting = 0; // whether the last change is not kept, and how many are being kept
     function warn(words) {
       courtside.byId("unkept").textContent = words;
       courtside.byId("unkept").hidden = !words;
     }
     listen(key, async () => { if ((await read(key)) !== last) warn(ELSEWHERE); });
-    window.addEventListener("beforeunload", (event) => { if ((open || waiting) && unsaved()) event.preventDefault(); });
+    window.addEventListener("beforeunload", (event) => { if ((isOpen || waiting) && unsaved()) event.preventDefault(); });
 
     async function swap(text) {
       const before = last;
       last = text;
       waiting += 1;
       try {
-        open = (await write(key, (found) => (found === before ? text : undefined))) === undefined;
-        warn(open ? ELSEWHERE : "");
+        isOpen = (await write(key, (found) => (found === before ? text : undefined))) === undefined;
+        warn(isOpen ? ELSEWHERE : "");
       } catch {
-        open = true;
+        isOpen = true;
         warn(NOWHERE);
       }
-      if (open && last === text) last = before;
+      if (isOpen && last === text) last = before;
       waiting -= 1;
-      return !open;
+      return !isOpen;
     }
 
     return {
