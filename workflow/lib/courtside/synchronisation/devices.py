@@ -120,12 +120,12 @@ def _against(reference, motion, events_of) -> Found:
     """Find the clock of one source against another."""
     where = f"{motion.source} against {reference.source}"
     claps = events_of[reference.source].claps, events_of[motion.source].claps
-    signals = Signals(reference, motion)
+    unaligned = Signals(reference, motion)
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "All-NaN|Mean of empty|Degrees of freedom")
-        pairs = pair(*claps, _likeness(signals, reference, motion), where)
+        pairs = pair(*claps, _likeness(unaligned, reference, motion), where)
         if len(pairs) == 1:
-            clock_doubts.refuse_other_claps(signals, offset_s(pairs), where)
+            clock_doubts.refuse_other_claps(unaligned, offset_s(pairs), where)
         spells = events_of[reference.source].tposes, events_of[motion.source].tposes
         chosen = [spell[clap.tpose] for spell, clap in zip(spells, pairs[0], strict=True)]
         axes = motion_signals.common_axes((reference, motion), chosen)
@@ -137,7 +137,7 @@ def _against(reference, motion, events_of) -> Found:
             (reference, motion), chosen, signals, time_s, one.clock, PRIOR_DRIFT
         )
     doubts += filter(None, [clock_doubts.unpaired(claps, pairs, one.clock)])
-    doubt = "; ".join(doubts) or _unlike(reference, motion, one.clock, events_of)
+    doubt = "; ".join(doubts) or _unlike(unaligned, reference, motion, one.clock, events_of)
     return replace(one, clock=replace(one.clock, doubt=doubt))
 
 
@@ -166,17 +166,17 @@ def _stated(reference, motion, known, events_of) -> Clock:
         for first, second in product(*claps)
     )
     doubt = "" if is_shown else clock_doubts.unpaired(claps, [], clock)
-    doubt = doubt or _unlike(reference, motion, clock, events_of)
+    signals = Signals(reference, motion)
+    doubt = doubt or _unlike(signals, reference, motion, clock, events_of)
     return replace(clock, doubt=doubt) if doubt else clock
 
 
-def _unlike(reference, motion, clock, events_of) -> str:
+def _unlike(signals, reference, motion, clock, events_of) -> str:
     """Return what the whole motion says against a clock, as of two takes; empty if nothing."""
     time_s = _both(reference, motion, clock.offset_s)
     events = [events_of[each.source] for each in (reference, motion)]
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "All-NaN|Mean of empty|Degrees of freedom")
-        signals = Signals(reference, motion)
         return clock_doubts.unlike((reference, motion), signals, time_s, clock, events)
 
 
